@@ -38,10 +38,10 @@ faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 
 # The figures of the machines' papers from our data, docs/papers.md and docs/papers/*.svg, and the
-# pictures of the machines and of the house, and the answer that the README quotes.
+# gallery, pictures of the machines and of the house, and the answer that the README quotes.
 figures: $(BASE)
 	@$(BIN)/python docs/papers
-	@cd docs && ../$(BIN)/python -m sketches
+	@cd docs && ../$(BIN)/python -m sketches && ../$(BIN)/python -m gallery
 	@$(BIN)/python docs/house.py
 	@$(BIN)/python docs/first_answer.py
 
@@ -65,6 +65,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam_mesh
 	@$(BIN)/python -m benchmarks.vibrator
 	@$(BIN)/python -m benchmarks.mole
+	@$(BIN)/python -m benchmarks.outside
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
 	@$(BIN)/python -m benchmarks.scaling

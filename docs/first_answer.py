@@ -10,7 +10,7 @@ HOUSE = Path(__file__).parents[1]
 README = HOUSE / "README.md"
 STUDY = "studies/exponential-wear.toml"
 BEGIN, END = "<!-- answer -->\n\n```text\n", "```\n\n<!-- end of answer -->"
-_WIDTH = 98
+_WIDTH = 88
 
 
 def printed() -> str:

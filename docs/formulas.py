@@ -20,10 +20,11 @@ _FUNCTION = re.compile("(<mi>(?:sin|cos|tan|sgn|Sgn|Im)</mi>)")
 _SIGN = re.compile(r"(?<=(?:&#x0003D;|&#x00028;)</mo>)<mo>(?=&#x0002B;|&#x02212;)")
 _CONTINUED = re.compile(r"<mrow><mo>(?=&#x0002B;|&#x02212;)")
 
-_CHARACTERS = (
+CHARACTERS = (
     (0x20, 0x7F),  # ASCII
     (0xA0, 0x100),
     (0x300, 0x310),  # accents
+    (0x2D8, 0x2DE),  # dots above letters
     (0x391, 0x3F7),  # Greek
     (0x2010, 0x2050),  # punctuation
     (0x210E, 0x210F),  # h, in italics
@@ -32,6 +33,7 @@ _CHARACTERS = (
     (0x1D434, 0x1D468),  # italic letters, as which a browser writes those of a formula
     (0x1D6E2, 0x1D71C),
 )
+"""Ranges of the characters that the font has."""
 
 
 def inline(tex: str) -> str:
@@ -73,7 +75,7 @@ def write_font(path: Path) -> None:
     assert package and package.origin
     font = TTFont(os.path.join(os.path.dirname(package.origin), "fonts/STIXTwoMath-Regular.ttf"))
     subsetter = Subsetter(Options(layout_features=["mark", "mkmk", "ssty", "dtls"], hinting=False))
-    subsetter.populate(unicodes=[code for ends in _CHARACTERS for code in range(*ends)])
+    subsetter.populate(unicodes=[code for ends in CHARACTERS for code in range(*ends)])
     subsetter.subset(font)
     font.flavor = "woff"
     font.save(path)

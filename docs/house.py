@@ -116,6 +116,7 @@ def _packages() -> Iterator[tuple[str, Box]]:
         runners = [name for name in names if name in RUNNERS]
         others = [name for name in names if name not in (*READERS, *RUNNERS)]
         end = UQ if number else WIDTH - 2 * MARGIN  # what machines import, too
+        end -= LANE * (names == ("outside",))  # which leaves the arrow to `methods` a way
         spans = {
             **_shared(readers, 0, LEFT + (LANE - GAP / 2) * (names == ("report",))),
             **_shared(others, LEFT + GAP / 2 if readers else 0, end),
@@ -194,13 +195,20 @@ def _sharing() -> Iterator[str]:
 
 
 def _arrow(boxes: dict[str, Box], upper: str, lower: str) -> str:
-    """Return an arrow straight down, where no box stands in its way."""
+    """Return an arrow straight down, where no box stands in its way; slanted to a box beside."""
     a, b = boxes[upper], boxes[lower]
+    if b.top - a.bottom == PITCH - TALL and min(a.right, b.right) < max(a.left, b.left):
+        ends = (a.left + GAP, b.right - GAP) if b.right < a.left else (a.right - GAP, b.left + GAP)
+        return _line(upper, lower, ends, (a.bottom, b.top))
     between = [box for box in boxes.values() if a.bottom <= box.top and box.bottom <= b.top]
     free = _free(max(a.left, b.left), min(a.right, b.right), between)
     assert free, f"{upper} imports {lower}: no way for an arrow"
     x = sum(max(free, key=lambda ends: ends[1] - ends[0])) / 2
-    ends = f'x1="{x:g}" x2="{x:g}" y1="{a.bottom:g}" y2="{b.top - 1:g}"'
+    return _line(upper, lower, (x, x), (a.bottom, b.top))
+
+
+def _line(upper: str, lower: str, x: tuple[float, float], y: tuple[float, float]) -> str:
+    ends = f'x1="{x[0]:g}" x2="{x[1]:g}" y1="{y[0]:g}" y2="{y[1] - 1:g}"'
     return f'<line class="arrow" {ends}><title>{upper} imports {lower}</title></line>'
 
 

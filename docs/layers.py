@@ -14,13 +14,14 @@ LAYERS = (
     ("contract",),
     ("ground",),
     ("designs",),
-    ("inputs", "methods", "outside"),
+    ("inputs", "methods"),
+    ("outside",),
     ("study",),
     ("rows",),
     ("indices", "population", "store"),
     ("analysis", "running"),
-    ("conclusions",),
-    ("drawing", "tracing", "upkeep", "exploring"),
+    ("conclusions", "learning"),
+    ("drawing", "tracing", "exploring", "upkeep"),
     ("report",),
     ("cli",),
 )
@@ -29,7 +30,16 @@ LAYERS = (
 ``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
 """
 
-READERS = ("indices", "population", "analysis", "conclusions", "drawing", "tracing", "report")
+READERS = (
+    "indices",
+    "population",
+    "analysis",
+    "conclusions",
+    "learning",
+    "drawing",
+    "tracing",
+    "report",
+)
 """Packages that read results, and therefore import none of the `RUNNERS`."""
 
 RUNNERS = ("running", "upkeep", "exploring")

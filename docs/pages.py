@@ -1,12 +1,15 @@
 """The generated parts of the pages.
 
 A line ``{{ table argument }}`` in a page becomes what the function of that name in `generated`
-returns, and ``{{ text README }}`` a text of the repository's root: nothing is typed twice.
+returns, ``{{ gallery }}`` the gallery, and ``{{ text README }}`` a text of the repository's root:
+nothing is typed twice.
 """
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
+import gallery
 import generated
 
 ROOT = Path(__file__).parents[1]
@@ -22,6 +25,9 @@ def text(name: str) -> str:
     for file, page in TEXTS.items():
         found = found.replace(f"]({file}.md", f"]({page}.md")
     return found.replace("](docs/", "](")
+
+
+_OTHERS: dict[str, Callable[..., str]] = {"text": text, "gallery": gallery.page}
 
 
 def expanded(page: str) -> str:
@@ -44,7 +50,7 @@ def expanded(page: str) -> str:
 
     def replacement(found: re.Match[str]) -> str:
         name, argument = found.groups()
-        function = text if name == "text" else getattr(generated, name)
+        function = _OTHERS.get(name) or getattr(generated, name)
         return str(function(argument) if argument else function())
 
-    return _DIRECTIVE.sub(replacement, page)
+    return _DIRECTIVE.sub(replacement, page).replace("](../../notebooks/", "](../notebooks/")

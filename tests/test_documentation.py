@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from matplotlib import pyplot
 
 import uq as public
 from uq import plots
@@ -37,9 +38,12 @@ SOURCES = {
     str(path.relative_to(HOUSE)): path.read_text(encoding="utf-8")
     for path in (HOUSE / "README.md", HOUSE / "CONTRIBUTING.md", *(HOUSE / "docs").rglob("*.md"))
 }
+SOURCES["docs/gallery.md"] = pages.expanded(SOURCES["docs/gallery.md"])
 every_source = pytest.mark.parametrize("name", SOURCES)
 
 ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
+ELSEWHERE = ("docs/clusters.md", "docs/gallery.md", "docs/guide/learning.md")
+"""Pages whose Python needs a cluster or inspections, or is run by a test of its own."""
 EXAMPLES = sorted(
     {found.__module__ for name in public.__all__ if isfunction(found := getattr(public, name))}
 )
@@ -68,6 +72,20 @@ def test_there_are_examples():
 
 
 @every_source
+def test_links_to_headings_lead_to_one(name):
+    here = (HOUSE / name).parent
+    for link, heading in re.findall(r"\]\(([\w./-]*\.md)?#([\w-]+)\)", SOURCES[name]):
+        page = str((here / link).resolve().relative_to(HOUSE)) if link else name
+        assert heading in slugs(pages.expanded(SOURCES[page])), f"{link}#{heading}"
+
+
+def slugs(text):
+    """Return the anchors of the headings of a page, as GitHub and myst-parser make them."""
+    headings = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", one.lower()).replace(" ", "-") for one in headings}
+
+
+@every_source
 def test_directives_stand_for_something(name):
     assert "{{ " not in pages.expanded(SOURCES[name])
 
@@ -89,6 +107,8 @@ def test_commands_and_their_options_exist(name):
 @every_source
 def test_studies_shown_are_accepted(name):
     for block in blocks(name, "toml"):
+        if "machine" in tomllib.loads(block):
+            continue  # a machine file
         refusals = {model: refusal(block, model) for model in models_of(block)}
         assert not all(refusals.values()), (block, refusals)
 
@@ -128,6 +148,25 @@ def test_python_shown_compiles_and_names_what_there_is(name):
             assert set(re.split(r", *", names)) <= found.keys()
 
 
+RUN = [name for name in SOURCES if blocks(name, "python") and name not in ELSEWHERE]
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("name", RUN)
+def test_python_shown_runs(name, folder):
+    (folder / "studies").mkdir()
+    for path in (HOUSE / "studies").glob("*.toml"):
+        fewer = re.sub(r"^samples = \d+", "samples = 128", path.read_text(), flags=re.MULTILINE)
+        (folder / "studies" / path.name).write_text(fewer)
+    names = {"__name__": "shown"}
+    for block in blocks(name, "python"):
+        for result in re.findall(r'open_result\("(.+?)"\)', block):
+            public.run("studies/beam-lifetime.toml", result)
+        exec(compile(block.replace(", 200)", ", 5)"), name, "exec"), names)
+    pyplot.close("all")
+
+
 @every_source
 def test_files_modules_and_targets_named_exist(name):
     text = SOURCES[name]
@@ -137,7 +176,7 @@ def test_files_modules_and_targets_named_exist(name):
         assert importlib.util.find_spec(module), module
     for path in re.findall(r"`((?:uq|models|tests|docs|studies|benchmarks)/[\w./-]*)`", text):
         assert (HOUSE / path).exists(), path
-    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png|svg))[#)]", text):
+    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png|svg|ipynb))[#)]", text):
         inside = (HOUSE / name).parent / link
         assert inside.is_file(), link
     targets = re.findall(r"^(\w+):", (HOUSE / "Makefile").read_text(), re.M)
@@ -220,10 +259,23 @@ def test_the_picture_of_a_machine_is_what_its_script_draws_and_shown_where_it_is
 
 
 def test_the_answer_that_the_readme_quotes_has_the_numbers_that_are_printed():
-    numbers = [
-        re.findall(r"\d+(?:\.\d+)?", t) for t in (first_answer.quoted(), first_answer.printed())
-    ]
-    assert len(numbers[0]) > 10 and numbers[0] == numbers[1], "run: python docs/first_answer.py"
+    quoted, printed = map(numbers, (first_answer.quoted(), first_answer.printed()))
+    assert len(quoted) > 10
+    assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
+
+
+def test_the_study_that_the_readme_shows_is_the_one_that_it_runs():
+    shown = tomllib.loads(blocks("README.md", "toml")[0])
+    study = tomllib.loads((HOUSE / first_answer.STUDY).read_text())
+    for law in study["uncertain"].values():
+        del law["source"]
+    for key in ("description", "seed"):
+        study["study"].pop(key, None), study["design"].pop(key, None)
+    assert shown == study
+
+
+def numbers(text):
+    return [float(one) for one in re.findall(r"\d+(?:\.\d+)?", text)]
 
 
 def test_every_key_and_every_law_is_described():
@@ -257,6 +309,12 @@ def test_what_is_quoted_is_what_is_printed(module, kept, capsys):
     importlib.import_module(module).main()
     printed = capsys.readouterr().out
     assert comparable(printed) == comparable((HOUSE / kept).read_text())
+
+
+@pytest.mark.slow
+def test_the_facts_of_the_beam_are_those_that_are_printed(capsys):
+    importlib.import_module("models.beam.paper.facts").main()
+    assert capsys.readouterr().out in SOURCES["docs/beam-facts.md"]
 
 
 def comparable(text):

@@ -56,7 +56,7 @@ def test_a_figure_is_drawn_reported_and_documented(toy_figure, tmp_path):
     assert {"rows-in-order-work", "rows-in-order-life"} == stems
     text = page(ds, "toy.nc")
     for output in ("work", "life"):
-        assert f"<figcaption>{output} row by row: {ds[output].long_name}</figcaption>" in text
+        assert f'aria-label="{output} row by row: {ds[output].long_name}"' in text
     assert "| `rows-in-order` | each output with numbers |" in generated.figures()
     assert "the values of an output as the rows came in" in generated.figures()
 

@@ -19,7 +19,11 @@ from .exploring.basins import basins as basins
 from .exploring.rare_events import rare_event as rare_event
 from .exploring.row_again import row as row
 from .exploring.simulation import simulate as simulate
+from .exploring.updating import update as update
 from .indices.dataset import sensitivity as sensitivity
+from .learning.answer import learnt as learnt
+from .learning.next_inspection import worth as worth
+from .learning.result import as_unit as as_unit
 from .outside.function import machine as machine
 from .outside.returned import Returned as Returned
 from .outside.returned import censored as censored

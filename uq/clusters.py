@@ -23,19 +23,23 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
     ----------
     samples : int
         The number of samples: of independent things, at most.
+    are_samples : bool
+        Whether the parts are samples, not replicates of a design.
     """
 
     samples: int
+    are_samples: bool
 
-    def __new__(cls, of: ArrayLike, samples: int) -> Self:
+    def __new__(cls, of: ArrayLike, samples: int, are_samples: bool = True) -> Self:
         """Mark the part of each row, shape (n,)."""
         marked = np.asarray(of, dtype=np.int64).view(cls)
-        marked.samples = samples
+        marked.samples, marked.are_samples = samples, are_samples
         return marked
 
     def __array_finalize__(self, other: Any) -> None:
         """Keep the number of samples where some rows are taken."""
         self.samples = getattr(other, "samples", 0)
+        self.are_samples = getattr(other, "are_samples", True)
 
 
 def linearised_means(values: NDArray[Any], of: NDArray[np.integer]) -> Floats:

@@ -1,6 +1,6 @@
 """One number with its interval, or the reason why there is none."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 
@@ -38,6 +38,11 @@ class Estimate:
         """The same, with NaN for every number that is not finite."""
         value, low, high = (one if isfinite(one) else nan for one in self.numbers)
         return Estimate(value, low, high, self.reason, self.assumes)
+
+    def over(self, size: float) -> "Estimate":
+        """Return the same in units of this size."""
+        value, low, high = (one / size for one in self.numbers)
+        return replace(self, value=value, low=low, high=high)
 
     @property
     def has_interval(self) -> bool:

@@ -13,6 +13,8 @@ from uq.errors import InputError, nearest
 
 SUMMARY = "summary"
 
+_LONGEST = 200  # characters of a key in an error line
+
 Path = tuple[str, ...]
 Options = Mapping[str, str]
 Json = Mapping[str, Any]
@@ -85,7 +87,9 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
         begins = any(name.startswith(one) for one in names if one.endswith("."))
         if not (name in names or begins) or not equals:
             known = ", ".join(f"{one}{'NAME' * one.endswith('.')}=..." for one in names) or "none"
-            raise InputError(f"key '{key}': no such option of {verb}: {text} (allowed: {known})")
+            raise InputError(
+                f"key '{_cut(key)}': no such option of {verb}: {_cut(text)} (allowed: {known})"
+            )
         options[name] = value
     return Key(verb, options, tuple(_plain(part) for part in rest.split("/")) if rest else ())
 
@@ -171,7 +175,13 @@ def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
     if inside:
         return InputError(f"key '{wanted}': several numbers; add to it, as in '{inside[0]}'")
     near = nearest(wanted, known) or nearest(wanted.partition("/")[0], verbs)
-    return InputError(f"no such key '{wanted}'{near or f' (the first one: {known[0]})'}")
+    return InputError(f"no such key '{_cut(wanted)}'{near or f' (the first one: {known[0]})'}")
+
+
+def _cut(key: str) -> str:
+    """Return a key for an error line, cut if it is longer than any."""
+    line = " ".join(key.split())
+    return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
 
 
 def _escaped(part: str) -> str:

@@ -43,7 +43,17 @@ FIGURES: dict[str, Entry] = {
     "quantiles": Entry(
         quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
     ),
-    "scatter": Entry(scatter, of.outputs, "{name} against its most influential inputs"),
+    "events": Entry(
+        event_probability,
+        of.decided_events,
+        "{name} over the input that decides it",
+    ),
+    "scatter": Entry(
+        scatter,
+        of.outputs,
+        "{name} against its most influential inputs",
+        applies=(of.has_plain_rows,),
+    ),
     "convergence": Entry(
         convergence,
         of.outputs,
@@ -57,12 +67,7 @@ FIGURES: dict[str, Entry] = {
         of.the_result,
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
-        applies=(of.in_regimes, of.has_several_inputs),
-    ),
-    "events": Entry(
-        event_probability,
-        of.decided_events,
-        "{name} over the input that decides it",
+        applies=(of.in_regimes, of.has_several_inputs, of.has_plain_rows),
     ),
     "indices": Entry(
         index_bars,

@@ -79,7 +79,7 @@ def unit_of(units: str, typical: float) -> Unit:
         return Unit(DEGREES, pi / 180)
     if units == "1" or size == 0 or _SMALLEST <= size < _LARGEST:
         return Unit(units, 1.0)
-    power = 3 * floor(log10(size) / 3)
+    power = max(3 * floor(log10(size) / 3), -300)
     name = f"10{str(power).translate(_RAISED)} {units}"
     if units.split(" ")[0] in PREFIXED and power in _PREFIXES:
         name = _PREFIXES[power] + units

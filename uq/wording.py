@@ -1,7 +1,7 @@
 """Numbers, intervals and laws as text, for tables on a terminal and in a report."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import floor, inf, isfinite, isnan, log10
 from typing import Any
 
@@ -185,11 +185,18 @@ def percent_interval(low: float, high: float) -> str:
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
 
 
+def listed(labels: Sequence[str], most: int = 8) -> str:
+    """Return the labels of a category; of many, the first and the last."""
+    some = labels if len(labels) <= most else (*labels[:3], "...", labels[-1])
+    return ", ".join(some)
+
+
 def law(stated: Any) -> str:
-    """Return the law of an input: ``normal(mean = 1.0, sd = 0.1)``."""
+    """Return the law of an input, numbers to six digits: ``normal(mean = 1.0, sd = 0.1)``."""
     without = {"distribution", "source", "times", "level"}
     given = stated.model_dump(exclude=without, exclude_none=True)
     if given.get("file") is not None:
         given.pop("values", None)  # a result keeps the file's name alone
+    given |= {n: float(f"{one:.6g}") for n, one in given.items() if isinstance(one, float)}
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"

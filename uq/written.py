@@ -18,6 +18,8 @@ _NUMBER = r"[-+]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,
 _UNIT = r"[A-Za-zµμΩ°%].{0,40}"
 _QUANTITY = re.compile(rf"\s*((?>{_NUMBER}))\s*({_UNIT})")
 
+EXAMPLE = '"24 hours", "250 um"'
+
 SHAPE = rf"^\s*{_NUMBER}\s*{_UNIT}$"
 """Of a quantity, for editors."""
 
@@ -74,7 +76,7 @@ def read_quantity(text: str) -> Written:
     """
     found = _QUANTITY.fullmatch(text)
     if found is None:
-        raise ValueError('must be a number, or a number with its unit, such as "24 hours"')
+        raise ValueError(f"must be a number, or have its unit: {EXAMPLE}")
     size, turns, dimensions, name = _taken_apart(found[2].strip())
     try:
         value = Written(float(Fraction(found[1]) * size) * pi**turns / 180.0**turns)

@@ -62,6 +62,50 @@ def drawn(units, integrated, rng):
     return Units(element, place, None, () if integrated else ("depth",))
 
 
+def worlds_scaled(rest, rng, samples=100, units=10):
+    """Return units whose rate is integrated, in worlds that share something else, too."""
+    shape = (samples, units)
+    rate, other = (
+        np.broadcast_to(sigma * rng.standard_normal((samples, 1)), shape)
+        for sigma in (SHARED, rest)
+    )
+    life = np.exp(OWN * rng.standard_normal(shape) - rate + other).ravel()
+    nothing = np.zeros(life.size, dtype=bool)
+    element = Element("life", "life", LIFE, {}, life, nothing, nothing)
+    sample, unit = np.unravel_index(np.arange(life.size), shape)
+    place = Nesting(samples, units, 1, sample, unit, 0 * unit, np.zeros(samples, np.int64))
+    scale = IndependentScale(("rate",), lognormal_term(SHARED), -rate.ravel())
+    return Units(element, place, scale, ("depth",))
+
+
+def shared_scale(repetitions):
+    """Count fleets where only what units share is integrated, and units are counted."""
+    lines, size, allow, time = [], 5, 1, np.exp(-0.6)
+    for rest in (0.0, 0.3):
+        spread = np.hypot(SHARED, rest)
+
+        def ended(z, spread=spread):
+            return special.ndtr((np.log(time) + spread * z) / OWN)
+
+        name = f"fleet of {size}, 100 samples of 10 units, a shared rate integrated"
+        tally = Tally(name + f" and {rest:g} beside it" * bool(rest), REASONS)
+        rng = np.random.default_rng(3)
+        for _ in range(repetitions):
+            of = FleetNumbers(worlds_scaled(rest, rng), size, allow, None, True)
+            failed, kept = of.failed(time), of.at_most_allowed(time)
+            tally.estimate("number ended", size * over_worlds(ended), failed.estimate)
+            share = over_worlds(lambda z, p=ended: special.bdtr(allow, size, p(z)))
+            tally.estimate(f"P(at most {allow})", share, kept.estimate)
+            for end, share in (("low", LOW), ("high", HIGH)):
+                text = f"{100 * share:g} % of samples"
+                z = stats.norm.ppf(share)
+                tally.estimate(f"number ended, {text}", size * ended(z), getattr(failed, end))
+                least = special.bdtr(allow, size, ended(-z))
+                tally.estimate(f"P(at most {allow}), {text}", least, getattr(kept, end))
+        lines += tally.lines()
+    return lines
+
+
 def fleets(name, repetitions):
     """Count what `uq fleet` reports."""
     units, size, integrated = CASES[name]

@@ -6,6 +6,8 @@ y = 2 x1 + (1 + x1) x2 + 2 e with x1 shared, x2 own, both uniform on [0, 1], and
 is the upper one where x2 + e exceeds 1.
 """
 
+from itertools import product
+
 import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
@@ -150,13 +152,42 @@ def effects(name, repetitions):
         rng = np.random.default_rng(0)
         for _ in range(repetitions):
             for truth in SHARES:
-                shapes = ((samples, 1, 1), (samples, units, 1), (samples, units, repeats))
-                y = sum(v**0.5 * draw(rng, shape) for v, shape in zip(truth, shapes, strict=True))
+                y = _drawn(draw, rng, truth, (samples, units, repeats))
                 found = nested_shares(y)
                 for level, share, one in zip(PARTS, truth, found[:3], strict=True):
                     tally.estimate(f"{level}, {share:g}", share, one)
         lines += tally.lines()
     return lines
+
+
+KNOWN = ((0.0, 1.0, 0.0), (0.3, 0.3, 0.3), (3.0, 0.0, 0.0))
+"""Variances of shared, own and chance that are integrated, beside those of normal effects."""
+
+
+def integrated(repetitions):
+    """Count the shares of normal effects of which parts are known exactly."""
+    lines = []
+    for samples, units, repeats in SIZES_OF_EFFECTS:
+        size = f"{samples} samples of {units} units, {repeats} repeats"
+        reasons = {"": WIDENED} if samples < 100 else {}
+        tally = Tally(f"random effects (normal) beside known ones, {size}", reasons)
+        rng = np.random.default_rng(0)
+        for _ in range(repetitions):
+            for rest, known in product(SHARES, KNOWN):
+                y = _drawn(EFFECTS["normal"], rng, rest, (samples, units, repeats))
+                added = np.broadcast_to(np.reshape(known, (3, 1, 1, 1)), (3, *y.shape))
+                truth = np.add(rest, known) / (1 + sum(known))
+                found = nested_shares(y, known=added)
+                for level, share, one in zip(PARTS, truth, found[:3], strict=True):
+                    part = sum(known) / (1 + sum(known))
+                    tally.estimate(f"{level}, {share:.3g}, {part:.0%} known", share, one)
+        lines += tally.lines()
+    return lines
+
+
+def _drawn(draw, rng, variances, shape):
+    shapes = ((shape[0], 1, 1), (*shape[:2], 1), shape)
+    return sum(v**0.5 * draw(rng, one) for v, one in zip(variances, shapes, strict=True))
 
 
 HEAVY = "few samples of effects with a heavy tail hold too few of the largest"

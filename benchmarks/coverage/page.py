@@ -25,15 +25,17 @@ random times; lives of which 60 % *never end*, known at once, while the others, 
 censored; Weibull and lognormal lives; the *g-function*; a *linear function* in two studies;
 *Pareto* values without variance or mean; gamma lives and lives with infant mortality, to which
 wrong laws are fitted; a *random model*, x1 + (1 + 2 x2) e with noise e; limits with a probability
-of 1e-5. Their true values are closed forms or quadratures (`benchmarks/coverage`).
+of 1e-5; nested *random effects* of samples, units and repeats; lives *scaled* by a lognormal input;
+*fleets* of units that share a lognormal rate, each with a depth of its own. Their true values are
+closed forms or quadratures (`benchmarks/coverage`).
 
 *Held or refused* counts intervals that contain the truth together with those refused with a reason.
 Since refusals depend on the rows, the intervals that are given do not represent all samples.
 
 Some numbers are reported without an interval, because none would be valid: within-regime sd,
-extended FAST, RBD-FAST, delta, PAWN, HDMR and quantile-oriented indices. The last table counts what
-is given instead, the dummy: an input without effect should stay below it in 95 % of cases. The
-table before it counts the bootstrap intervals of other libraries for such indices.
+extended FAST, RBD-FAST, delta, PAWN, HDMR and quantile-oriented indices. The tables *input without
+effect* count what is given instead, the dummy: such an input should stay below it in 95 % of cases.
+Bootstrap intervals of other libraries for such indices are counted, too.
 """
 
 

@@ -68,6 +68,7 @@ PARTS = {
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
+    "levels-integrated": Part(nested.integrated),
     "morris": Part(indices.morris),
     **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
     "effects": Part(effects.average),
@@ -86,4 +87,5 @@ PARTS = {
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
+    "fleet-shared": Part(fleets.shared_scale, 1000),
 }

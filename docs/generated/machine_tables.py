@@ -6,6 +6,7 @@ from pathlib import Path
 from uq.contract import Status
 from uq.study.reading import read_study_text
 from uq.study.registry import find_model, model_names, module_of
+from uq.wording import listed
 
 from .markdown import formula, interval, minus, table, unit, value
 
@@ -52,7 +53,7 @@ def outputs(name: str) -> str:
     """Tabulate the outputs of a model."""
     lines = []
     for output, one in find_model(name).outputs.items():
-        meaning = one.meaning + "".join(f"<br>`{word}`" for word in one.categories)
+        meaning = one.meaning + (f"<br>{listed(one.categories)}" if one.categories else "")
         more = [] if one.kind == "value" else [one.kind]
         more += ["may be undefined"] if one.may_be_undefined else []
         late = one.has_censored_flag and not one.never_known_at_once

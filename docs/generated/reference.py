@@ -76,4 +76,4 @@ def functions(name: str) -> str:
 def _is_own(found: Any, module: ModuleType) -> bool:
     if not isfunction(found) or found.__name__.startswith("_"):
         return False
-    return found.__module__ == module.__name__ or found.__module__.endswith("_plot")
+    return found.__module__ == module.__name__ or found.__module__.endswith(("_plot", "_plots"))

@@ -56,6 +56,7 @@ def branch(omega: float) -> xr.Dataset:
     )
     ratio = joined["forcing_frequency"] / first
     named = {"long_name": "forcing frequency over the rod's first (omega)", "units": "1"}
+    joined["dimensionless_work_rate"].attrs["long_name"] = "dimensionless work-rate"
     return joined.assign(omega=ratio.assign_attrs(named))
 
 
@@ -67,7 +68,8 @@ def wear(omega: float) -> xr.Dataset:
     ds["gap_ratio"] = ratio.assign_attrs(ds["gap_ratio"].attrs)
     both = (ds["gap"] / X_0).assign_attrs(long_name="gap over the initial gap", units="1")
     right = both.sel(site="right", drop=True).copy()
-    right.attrs["long_name"] = "gap of the right site (x_1) over the initial gap"
+    right.attrs["long_name"] = "right gap over the initial gap (x_1)"
+    ds["mean_work"].attrs["long_name"] = "dimensionless work-rate"
     return ds.assign(x=both, x_1=right)
 
 

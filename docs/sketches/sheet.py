@@ -64,7 +64,7 @@ class Sheet:
         )
         style = f"<style>@media (prefers-color-scheme: dark) {{\n{dark}\n}}</style>\n <defs>"
         whole = re.sub(r"<defs>", style, text.getvalue(), count=1)
-        return re.sub(r" +$", "", whole, flags=re.MULTILINE)
+        return re.sub(r" *\n(?=[LQCz])", " ", whole)  # one line for each path
 
     def line(
         self, *points: Point, colour: str = INK, width: float = 1.1, dashes: str = "-"

@@ -176,12 +176,12 @@ def _in_units(
             where=first_reached & np.isfinite(linear),
         ),
         "gap_ratio": np.where(first_reached, s.lives.ratio, np.nan),
-        "period": s.response.period,
         "floquet_multiplier": s.response.multiplier,
         "regime_changes": np.where(lost, np.nan, s.lives.changes),
         "fundamental_frequency": s.fundamental / (2 * np.pi),
     }
     outputs["regime"] = np.where(lost, np.int8(-1), s.response.regime)
+    outputs["period"] = np.where(lost, -1, s.response.period).astype(np.int8)
     unfinished = (censored & (time < settings.horizon)).any(axis=(1, 2))
     status = np.where(lost | unfinished, Status.OUT_OF_BUDGET, Status.OK).astype(np.int8)
     absurd = ~has_band(p)

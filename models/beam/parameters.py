@@ -14,6 +14,9 @@ from uq.contract import Output, Parameter, Setting
 PAPER = "Knudsen & Massih 2002, Table 1"
 GIVEN, INFERRED = f"{PAPER}: given", f"{PAPER}: inferred"
 SITES = ("right", "left")
+LONGEST_PERIOD = 16
+"""Forcing periods of the longest response that is recognised as periodic."""
+PERIODS = ("aperiodic", *map(str, range(1, LONGEST_PERIOD + 1)))
 REGIMES = ("no-impact", "period-1-symmetric", "period-1-asymmetric", "period-k", "aperiodic")
 
 
@@ -197,7 +200,9 @@ OUTPUTS: Mapping[str, Output] = {
         may_be_undefined=True,
     ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
-    "period": Output("1", "period of the response in forcing periods, 0 if aperiodic"),
+    "period": Output(
+        "1", "period of the response in forcing periods", "category", categories=PERIODS
+    ),
     "floquet_multiplier": Output(
         "1",
         "largest modulus of the periodic response's Floquet multipliers, over its period",

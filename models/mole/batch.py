@@ -84,7 +84,7 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
         "lyapunov_exponent": exponent,
         "lyapunov_exponent_error": exponent_error,
         "regime": regime.astype(np.int8),
-        "period": np.where(known, response.period, np.nan),
+        "period": np.where(known, response.period, -1).astype(np.int8),
     }
 
 

@@ -17,6 +17,9 @@ DIFFERENTIATED = f"{GIVEN}, estimated there by differentiating displacements twi
 RMS_GIVEN, MAINS = f"{PAPER}: 58 V RMS given", "assumed: European mains"
 TURN = 2 * pi
 
+LONGEST_PERIOD = 64
+"""Common periods of the longest response that is recognised as periodic."""
+PERIODS = ("non-repeating", *map(str, range(1, LONGEST_PERIOD + 1)))
 REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic", "undecided")
 FORMULATIONS = ("physical", "paper", "as-printed")
 NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC, UNDECIDED = range(5)
@@ -138,5 +141,7 @@ OUTPUTS: Mapping[str, Output] = {
         "s-1", "standard error of the Lyapunov exponent, 0 where the motion repeats"
     ),
     "regime": Output("1", "type of settled response", "category", categories=REGIMES),
-    "period": Output("1", "common periods after which the response repeats, 0 if it does not"),
+    "period": Output(
+        "1", "common periods after which the response repeats", "category", categories=PERIODS
+    ),
 }

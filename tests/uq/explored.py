@@ -1,7 +1,10 @@
 """The part of a report that answers back, and its numbers."""
 
+from pathlib import Path
+
 import numpy as np
 
+import uq.report
 from uq.analysis.findings import Findings
 from uq.report.embedded import rows_inside
 from uq.report.page import templates
@@ -10,9 +13,9 @@ CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(
   line.dataset.key,
   ...[...line.cells].slice(1).map(cell => [cell.querySelector("data")?.value ?? "NaN",
   cell.dataset.low ?? "NaN", cell.dataset.high ?? "NaN"])])"""
-PAGE = """<!DOCTYPE html><html lang=en><meta charset=utf-8>
-<meta name=viewport content="width=device-width">
-<style>:root { --faint: gray; --line: silver; --accent: navy; color-scheme: light dark }</style>"""
+STYLE = (Path(uq.report.__file__).parent / "page.css").read_text()
+PAGE = f"""<!DOCTYPE html><html lang=en><meta charset=utf-8>
+<meta name=viewport content="width=device-width"><style>{STYLE}</style>"""
 
 
 def explorer(ds):

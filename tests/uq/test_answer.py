@@ -267,6 +267,7 @@ def test_bounds_are_rounded_to_the_safe_side():
     assert rounded(1.1879, -np.inf) == "1.18" and rounded(1.1821, np.inf) == "1.19"
     assert rounded(1.18, -np.inf) == rounded(1.18, np.inf) == "1.18"
     assert rounded(-0.0012345, -np.inf) == "-0.00124"
+    assert (rounded(5e-324), rounded(1.7976e308, np.inf)) == ("4.94e-324", "1.8e+308")
     one = Promise(0.95, 0.95, np.nan, 1.1821, Unit("m"))
     assert one.sentence == "With 95 % confidence, at least 95 % stay below 1.19 m."
 
@@ -278,6 +279,25 @@ def test_numbers_of_rows_are_rounded_up():
 def test_nothing_is_said_of_an_event_without_rows():
     assert Event("P(y>1.0)", "exceed 1", Estimate()).sentence == ""
     assert Ranking("y", "sobol").sentence == ""
+
+
+def test_undefined_rows_are_named_beside_a_probability():
+    turn = np.random.default_rng(1).uniform(-0.5, 0.5, 200)
+    turn[:50] = np.nan
+    ds = with_output(linear(samples=200), "turn", turn, "angle")
+    ds["turn"].attrs |= {"units": "rad", "may_be_undefined": 1}
+    ds = asking(ds, outputs=["turn"], thresholds={"turn": "20 degrees"})
+    (event,) = answer(ds).lead.events
+    share, _, _, undefined = numbers(
+        r"# % \(# to # %\) exceed 20° in magnitude; # % are undefined\.", event.sentence
+    )
+    known = summarised(ds)["outputs"]["turn"]["thresholds"][repr(event_at(event))]
+    assert share == pytest.approx(100 * known["above"]["value"], abs=0.05)
+    assert undefined == 100 * known["undefined"] == 25
+
+
+def event_at(event):
+    return float(event.name.partition(">")[2].rstrip(")"))
 
 
 def test_a_notebook_shows_the_same_sentences():

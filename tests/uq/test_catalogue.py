@@ -39,7 +39,7 @@ def test_one_model_is_shown_in_full(uq):
 
 
 def test_a_parameter_may_be_infinite_unless_given(uq):
-    assert "k       inf N m-1  10000 to inf" in uq("models", "sample_models:MOUNTED").out
+    assert "k       inf N m⁻¹  10000 to inf" in uq("models", "sample_models:MOUNTED").out
     described = strict_json(uq("models", "sample_models:MOUNTED", "--json").out)
     shown = described["parameters"]["mount_stiffness"]
     assert (shown["nominal"], shown["bounds"]) == (None, [1e4, None])

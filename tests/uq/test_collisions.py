@@ -50,6 +50,18 @@ def test_no_text_of_a_figure_by_regime_touches_another():
         assert not collisions(figure), name
 
 
+@pytest.mark.parametrize("most", [9e4, 4e5, 3e7])
+def test_the_second_scale_of_a_life_touches_nothing(most):
+    ds = with_output(linear(samples=100), "life", np.geomspace(1e3, most, 100), "lifetime")
+    (figure,) = (one for name, one in figures(asking(ds, outputs=["life"])) if "lifetime" in name)
+    (second,) = figure.axes[0].child_axes
+    numbers = [one.get_window_extent() for one in second.get_yticklabels() if one.get_text()]
+    label = second.yaxis.label.get_window_extent()
+    assert numbers and not any(one.overlaps(label) for one in numbers)
+    assert label.x1 <= figure.bbox.x1
+    assert not collisions(figure)
+
+
 def test_thresholds_are_drawn_wherever_the_output_is():
     ds = with_output(linear(samples=100), "psi", np.radians(np.linspace(-20, 20, 100)), "angle")
     ds["psi"].attrs["units"] = "rad"

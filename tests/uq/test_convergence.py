@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from asked_indices import sensitivities
-from computed import kinds, linear, summarised, with_output
+from computed import asking, kinds, linear, summarised, with_output
 
 from uq import store
 from uq.analysis.convergence import enough, running_estimates
@@ -101,3 +101,13 @@ def test_the_command_shows_and_writes_json(uq, folder):
     assert [line[0] for line in of_mean[:6]] == ["32", "64", "128", "256", "512", "1024"]
     store.write(linear("latin-hypercube", 64, 8), folder / "lhs.nc")
     assert uq("convergence", "lhs.nc").code == 2
+
+
+def test_the_verdict_comes_first_also_of_one_output(uq, folder):
+    ds = asking(linear(samples=64), outputs=["y"], thresholds={"y": 5.0})
+    store.write(with_output(ds, "y_error", np.full(64, 9.0)), folder / "out.nc")
+    for arguments in ((), ("--output", "y")):
+        first, *_ = uq("convergence", "out.nc", *arguments).out.splitlines()
+        assert first.startswith("Not enough rows: ")
+        words = " ".join(uq("convergence", "out.nc", *arguments).out.split())
+        assert words.index("more rows do not help") < words.index("samples mean")

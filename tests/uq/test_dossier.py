@@ -107,7 +107,7 @@ def test_a_design_without_statistics_says_what_it_lacks(plain):
     found = found_in(linear("morris", 8))
     uncertainty = found["uncertainty"]["Estimate, standard uncertainty and coverage interval"]
     assert not uncertainty.is_provided
-    assert found["sensitivities"]["Indices by morris"].is_provided
+    assert found["sensitivities"]["Indices of y"].is_provided
     assert "Not provided" in plain(linear("morris", 8))
 
 
@@ -124,3 +124,18 @@ def test_it_is_one_file_in_which_nothing_acts(uq, folder, no_other_figures):
     assert set(links) <= set(ids) and len(ids) == len(set(ids))
     refused = uq("report", "out.nc", "--dossier", "-o", "out.nc")
     assert refused.code == 2 and "is the result itself" in refused.err
+
+
+def test_it_is_shown_and_printed_without_complaint(browser, tmp_path, no_other_figures):
+    path = tmp_path / "out-dossier.html"
+    path.write_text(dossier(crossed(), "out.nc"), encoding="utf-8")
+    for width in (400, 1400):
+        browser.open(path, width=width)
+        assert browser.value("document.documentElement.scrollWidth") <= width
+        assert browser.complaints() == []
+        assert all(one.startswith(("file:", "data:")) for one in browser.requests())
+    headings = browser.value("[...document.querySelectorAll('main h2')].map(h => h.textContent)")
+    assert headings[:2] == ["1. Context", "2. Information made available"]
+    pdf = browser.pdf()
+    sizes = set(re.findall(rb"/MediaBox ?\[([^\]]+)\]", pdf))
+    assert {tuple(round(float(n)) for n in size.split()) for size in sizes} == {(0, 0, 595, 842)}

@@ -1,11 +1,12 @@
 """Fleets of units that share a world, against closed forms and brute force."""
 
+import re
 from itertools import combinations
 
 import numpy as np
 import pytest
 from command_line import strict_json
-from computed import computed, once, study_of, with_output
+from computed import asking, computed, linear, once, study_of, with_output
 from scipy import special, stats
 
 import uq as api
@@ -18,6 +19,7 @@ from uq.population.counting import at_most
 from uq.population.fleets import units_of
 from uq.population.worlds import ONE_UNIT, Noisy
 from uq.rows.elements import elements_of
+from uq.store.files import write_result
 
 OWN, SHARED = 0.4, 0.3
 
@@ -105,6 +107,17 @@ def test_units_and_the_exact_law_agree():
     assert exact.by[5e5][0].estimate.value == pytest.approx(5 * p.mean(), abs=0.1)
 
 
+def test_lives_as_computed_where_nothing_is_to_be_integrated():
+    ds = fleet_result(units=20)
+    found = fleet_of(ds, 5, [5e5], allow=1, plain=True)
+    assert found.integrated == ()
+    element = next(elements_of(ds, ["life"]))
+    ended = (element.values < 5e5).astype(float).reshape(200, 20, 1)
+    assert found.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
+    with pytest.raises(InputError, match="set units = 21 in .* depth is not"):
+        fleet_of(ds, 21, plain=True)
+
+
 def test_no_power_of_the_mean():
     """Units of a sample agree: the mean of powers is not the power of the mean."""
     found = fleet_of(fleet_result(), 50, [5e5]).by[5e5]
@@ -175,30 +188,39 @@ BESIDE = {
     "own": {"z": NORMAL},
     "own and chance": {"z": NORMAL, "c": LISTED | {"level": "chance"}},
     "shared": {"z": NORMAL | {"level": "shared"}},
+    "own, and scaling": {"z": NORMAL, "a": lognormal(OWN, 1.0)},
+    "chance, and scaling": {"z": NORMAL, "c": lognormal(OWN, 1.0, level="chance")},
+    "all": {
+        "z": NORMAL | {"level": "chance"},
+        "a": lognormal(OWN, 1.0),
+        "c": lognormal(OWN, 1.0, level="chance"),
+    },
 }
 
 
 @pytest.mark.parametrize("beside", list(BESIDE.values()), ids=list(BESIDE))
-@pytest.mark.parametrize(("size", "allow"), [(1, 0), (3, 0), (3, 1)])
-def test_what_is_shared_is_integrated_where_nothing_else_is(beside, size, allow):
+@pytest.mark.parametrize("allow", [0, 1])
+def test_each_level_is_integrated_where_it_belongs(beside, allow):
     """Against sums over all fleets of each world, at many values of the shared input."""
     repeats = 2 if "c" in beside else 1
-    ds = scaled_fleet(beside | {"b": B_SHARED}, repeats=repeats)
-    rest = (ds["life"].values * ds["b"].values ** 2).reshape(12, 4, repeats)
+    size, ds = 3, scaled_fleet(beside | {"b": B_SHARED}, samples=6, repeats=repeats)
+    inside = {name: {"a": 1.0, "c": 0.5}[name] for name in beside if beside[name].get("sigma")}
+    spread = OWN * np.hypot.reduce(list(inside.values())) if inside else 1e-12
+    rest = np.log(ds["life"].values) + 2 * np.log(ds["b"].values)
+    rest -= sum(exponent * np.log(ds[name].values) for name, exponent in inside.items())
     time = float(np.median(ds["life"].values))
-    z = np.linspace(-6, 6, 1201)
+    z = np.linspace(-6, 6, 401)
     kept = [
-        np.mean([brute_force((world * np.exp(-2 * SHARED * at) < time).mean(1), size, allow)])
-        for world in rest
+        brute_force(special.ndtr((np.log(time) - one) / spread).mean(1), size, allow)
         for at in z
+        for one in rest.reshape(6, 4, repeats) - 2 * SHARED * at
     ]
-    truth = np.average(np.reshape(kept, (12, -1)).mean(axis=0), weights=np.exp(-(z**2) / 2))
-    found = fleet_of(ds, size, [time], allow)
-    assert found.integrated == ("b",)
-    assert found.by[time][1].estimate.value == pytest.approx(truth, abs=2e-3)
-    first = found.first[0.5].estimate.value
-    again = fleet_of(ds, size, [first]).by[first][1].estimate.value
-    assert again == pytest.approx(0.5, abs=1e-9)
+    truth = np.average(np.reshape(kept, (-1, 6)).mean(axis=1), weights=np.exp(-(z**2) / 2))
+    units = units_of(ds, next(elements_of(ds, ["life"])))
+    assert set(units.integrated) == {"b", *inside}
+    found = units.fleet(size, allow, None)
+    assert found.below(time).value == pytest.approx(1 - truth, abs=5e-3)
+    assert found.below(found.middle(0.3)).value == pytest.approx(0.3, abs=1e-9)
 
 
 def test_bands_of_units_that_end_together():
@@ -230,6 +252,20 @@ def test_a_shared_input_that_depends_on_another_is_integrated():
         kept = found.by[1.0][1].estimate
         assert kept.low < truth < kept.high
         assert kept.high - kept.low < 0.12
+
+
+def test_what_is_not_integrated_says_why():
+    for inputs, tables, words in (
+        ({"b": B_SHARED, "a": lognormal(0.005, 1.0)}, {}, "b not integrated: it scatters .* a"),
+        (
+            {"b": LISTED | {"values": [0.5, 1.0, 2.0], "level": "shared"}},
+            {},
+            "b not integrated: its law is one of listed",
+        ),
+        ({"b": B_SHARED}, {"settings": {"horizon": 1.5}}, "b not integrated: .* are censored"),
+    ):
+        notes = fleet_of(scaled_fleet({"z": NORMAL} | inputs, **tables), 2, [0.1]).notes
+        assert any(re.match(words, note) for note in notes), notes
 
 
 def test_points_over_what_is_shared_state_what_they_assume():
@@ -267,6 +303,7 @@ def test_more_units_than_there_are_is_refused():
         ({"size": 0}, "at least 1"),
         ({"size": 1, "allow": -1}, "at least 0"),
         ({"size": 1, "by": [-1.0]}, "not a time"),
+        ({"size": 1, "by": [np.inf]}, "not a time"),
         ({"size": 1, "output": "rate"}, "no such output"),
     ],
 )
@@ -300,6 +337,12 @@ def test_failed_rows_are_taken_at_best_and_at_worst():
         assert one.failed.low < truth.estimate.value < one.failed.high
     first = found.first[0.5]
     assert first.failed.low <= first.estimate.low < first.estimate.high <= first.failed.high
+
+
+def test_no_more_than_the_fleet_can_end():
+    kept = fleet_of(fleet_result(units=4, samples=100, depth=LISTED), 4, [5e5], allow=4)
+    for one in (kept.by[5e5][1].estimate, kept.by[5e5][1].low, kept.by[5e5][1].high):
+        assert one.numbers == (1.0, 1.0, 1.0) and not one.assumes
 
 
 def test_nothing_shared_has_no_band():
@@ -341,6 +384,23 @@ def test_python_terminal_json_and_report_agree(uq, tmp_path):
 
 
 @pytest.mark.slow
+def test_intervals_of_fleets_with_a_shared_scale_hold_the_truth():
+    assert [line for line in counted.shared_scale(1000) if line.unexplained] == []
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(counted.CASES))
 def test_intervals_of_fleets_hold_the_truth(name):
     assert [line for line in counted.fleets(name, 200) if line.unexplained] == []
+
+
+def test_units_whose_life_ends_in_success_have_succeeded(uq, folder):
+    ds = with_output(linear(samples=64), "start", np.linspace(1.0, 5.0, 64), "lifetime")
+    ds["start"].attrs["success"] = "the motors have locked"
+    write_result(asking(ds, outputs=["start"]), folder / "out.nc")
+    shown = uq("fleet", "out.nc", "--size", "1", "--by", "3000 ms").out
+    assert "the first of 1 has succeeded" in shown and "by 3000 ms" in shown
+    assert "have succeeded" in shown and "ended" not in shown
+    refused = uq("fleet", "out.nc", "--size", "1", "--by", "3 kg")
+    assert (refused.code, refused.out) == (2, "")
+    assert refused.err.startswith("--by 3 kg: the unit 'kg' does not fit 'a life'")

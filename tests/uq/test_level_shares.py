@@ -361,6 +361,14 @@ def test_terminal_json_and_python_say_what_is_integrated(uq, tmp_path, monkeypat
     assert str(api.levels(ds, plain=True)["integrated"].values[0]) == ""
 
 
+def test_a_heavy_tail_is_replaced_and_the_note_promises_nothing_else():
+    ds = nested_result(samples=100)
+    heavy = with_output(ds, "w", np.exp(12 * ds["y"].values))
+    (name, found), *_ = by_level(heavy, "w").outputs.items()
+    assert name == "log(w)"
+    assert found.sentences[0].endswith(": these are shares of the variance of its logarithm")
+
+
 def test_a_random_model_differs_by_chance():
     ds = computed(noisy("monte-carlo", 400, 1, units=2, repeats=2))
     found = by_level(ds, "y").outputs["y"].shares

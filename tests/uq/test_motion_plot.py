@@ -41,5 +41,5 @@ def test_stops_and_angles_are_drawn_where_they_are():
     )
     place, _, angle, _ = figure.axes
     assert [line.get_ydata()[0] for line in place.lines[1:]] == [0.5]
-    assert "Place 3 [mm]; dashed: stops" in words(figure)
+    assert "Place 3 [mm], dashed: stop" in words(figure)
     assert np.abs(angle.lines[0].get_ydata()).max() < 12 and "turns" not in words(figure)

@@ -1,6 +1,8 @@
 """A plain function as a machine: what a study makes of it, and what goes wrong."""
 
 import itertools
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -146,3 +148,30 @@ def test_a_file_that_is_not_there_or_has_the_name_of_another_module_is_one_line(
 def test_a_study_names_no_code(uq, write):
     file = write(WEAR, STUDY.replace('"wear"', '"own_machine.py"'))
     assert file and "must consist of letters" in uq("check", "own.toml").err
+
+
+def test_a_compiled_function_returns_a_tuple(uq, write):
+    file = write(
+        "from math import inf\nimport numba\nimport uq\n"
+        '@uq.machine(returns={"life": uq.Returned("s", life=True), "energy": "J"})\n'
+        "@numba.njit\ndef wear(load=1.0, depth=3.0):\n"
+        "    return (depth / load if load > 0.1 else inf), load**2\n"
+    )
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet")
+    ds = package.open_result("own.nc")
+    load = ds["load"].values
+    assert (ds["energy"].values == load**2).all()
+    assert (ds["life"].values == np.where(load > 0.1, 3.0 / load, np.inf)).all()
+
+
+def test_a_new_machine_passes_as_it_is_written(uq, folder):
+    name = f"new_machine_{next(_numbers)}"
+    ended = uq("init", "--machine", name)
+    assert ended.code == 0 and (folder / name / "README.md").is_file()
+    file, study = (f"{name}/{name}.{ending}" for ending in ("py", "toml"))
+    assert uq("check", study, "--model", file).code == 0
+    assert "150 days" in uq("run", study, "--model", file, "-o", "own.nc").out
+    tests = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    assert subprocess.run(tests, cwd=folder / name, stdout=subprocess.DEVNULL).returncode == 0
+    assert "exists already" in uq("init", "--machine", name).err
+    assert "another module" in uq("init", "--machine", "random").err

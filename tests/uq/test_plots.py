@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from computed import asking, kinds, linear, summarised, with_output
 from drawn import words
+from matplotlib.figure import Figure
 from wordings import sentence
 
 from uq import plots
+from uq.drawing.scatter_plot import _fragments, _is_empty
 from uq.errors import InputError
 
 
@@ -135,6 +137,23 @@ def test_histograms_by_regime_add_up():
     assert len(plots.histogram_by_regime(ds, "life").axes) == 4
     part = with_output(ds, "part", np.where(ds["regime"] == 0, ds["x1"], np.nan))
     assert "fast" not in words(plots.histogram_by_regime(part, "part"))
+
+
+def test_a_line_has_no_pieces_too_short_to_be_one():
+    there = np.array([1, 1, 0, 1, 1, 1, 0, 0, 1], dtype=bool)
+    assert _fragments(there).nonzero()[0].tolist() == [0, 1, 8]
+    assert not _fragments(np.ones(3, dtype=bool)).any()
+
+
+def test_a_mean_through_empty_space_is_no_line_but_one_between_few_rows_is():
+    axes = Figure().subplots()
+    axes.set_ylim(0, 10)
+    apart = np.r_[np.linspace(0, 1, 10), np.linspace(9, 10, 10)]
+    assert _is_empty(apart, float(apart.mean()), axes)
+    few = np.random.default_rng(1).uniform(0, 10, (200, 20))
+    found = [_is_empty(rows, float(rows.mean()), axes) for rows in few]
+    assert np.mean(found) < 0.02
+    assert not _is_empty(apart, np.inf, axes)
 
 
 def test_scatter_leads_with_what_matters_and_shows_conditional_means():

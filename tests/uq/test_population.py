@@ -13,7 +13,7 @@ from uq.analysis.overview import summary
 from uq.clusters import Clusters
 from uq.inputs.registry import law_of
 from uq.population.functionals import Population
-from uq.population.means import EXACT, FEW, effective_rows, weighted_share
+from uq.population.means import EXACT, FEW, effective_rows, share_to_compare, weighted_share
 from uq.population.scaling import (
     inputs_of,
     integrated,
@@ -22,6 +22,7 @@ from uq.population.scaling import (
 )
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.elements import independent_rows, replicates_of
+from uq.two_samples import difference
 
 EVERYWHERE = (-np.inf, np.inf)
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
@@ -195,10 +196,41 @@ def test_paired_rows_of_two_studies_are_compared_by_their_laws():
     assert json.dumps(summarised(wider))
 
 
+def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice():
+    """Both are skewed to the same side; each alone has a wider interval."""
+    rare = {"analysis": {"outputs": ["life"], "thresholds": {"life": [0.2]}}}
+    first, second = (computed(with_seed(scaled_study(WHOLE, **rare), seed)) for seed in (1, 2))
+    key = ("life", "P(<0.2)")
+    found = compare(first, second).loc[key]
+    numbers = [next(population(ds, ["life"])).below(0.2) for ds in (first, second)]
+    expected = difference(*map(share_to_compare, numbers), 0.0)
+    assert (found["low"], found["high"]) == pytest.approx((expected.low, expected.high))
+    alone = difference(*map(weighted_share, numbers), 0.0)
+    assert found["high"] - found["low"] < 0.95 * (alone.high - alone.low)
+
+
 def test_failed_rows_still_give_bounds():
     ds = computed(scaled_study(WHOLE, settings={"fail_above": 1.5}))
     below = summarised(ds)["outputs"]["life"]["thresholds"]["1.0"]["below"]
     assert below["failed_low"] < below["low"] < below["high"] < below["failed_high"]
+
+
+def test_few_replicates_of_nested_samples_are_not_few_rows():
+    design = {"method": "sobol", "replicates": 4, "units": 2}
+    found = populated(computed(scaled_study(WHOLE, design, samples=32)))[0].below(1.0)
+    assert found.low < 0.5 < found.high and found.high - found.low < 0.2
+
+
+def test_rows_that_all_failed_have_no_worth():
+    ds = computed(scaled_study(WHOLE, samples=10, settings={"fail_above": -99.0}))
+    assert summarised(ds)["outputs"]["life"]["failed"] == 10
+
+
+def test_probabilities_of_one_but_for_rounding_are_not_exact():
+    """Rows that all end show no more than that a longer life is rare."""
+    found = weighted_share(np.full(16, 1 - 2.0**-53))
+    assert found.value == found.high == 1.0 and 0.7 < found.low < 0.85 and not found.reason
+    assert weighted_share(np.full(16, 1e-9)).reason == EXACT
 
 
 def test_replicates_give_the_interval_of_other_designs():

@@ -201,7 +201,7 @@ def test_where_all_rows_failed_the_report_says_why():
 def test_what_is_missing_is_left_out_or_said(ds):
     found = read(ds)
     assert found.tags.count("section") >= 8
-    assert ("Regimes, with" in found.plain_words) == ("regime" in ds)
+    assert ("Regime, with" in found.plain_words) == ("regime" in ds)
     for strange in ("nan", "None", "[]", "inf "):
         assert not re.search(
             rf"(?<![a-z]){re.escape(strange)}(?![a-z])", found.words.split("cpu")[0]
@@ -212,7 +212,7 @@ def test_all_that_is_said_of_an_output_stands_together(asked, text):
     sections = re.split("<section", text)[1:]
     first = [one for one in sections if "life[side=left,depth=0.5]</small>" in one]
     assert len(first) == 1 and first[0].startswith(' id="output-1"')
-    of_event = "Indices of P(life[side=left,depth=0.5]&lt;1.0) by pawn"
+    of_event = "Indices of P(life[side=left,depth=0.5] &lt; 1 s) by pawn"
     for expected in ("B10 is the time", "Probabilities", of_event, "life by regime"):
         assert expected in first[0], expected
     assert "an angle" not in first[0]

@@ -60,7 +60,7 @@ def test_tables_sort_by_a_click_and_back(browser, report):
     browser.open(report)
     column = (
         "(() => { const t = [...document.querySelectorAll('table')].find(t =>"
-        " t.caption.textContent.startsWith('Statistics'));"
+        " t.caption?.textContent.startsWith('Statistics'));"
         " const i = [...t.tHead.rows[0].cells].findIndex(c => c.textContent === '50 % quantile');"
         " {}; return [...t.tBodies[0].rows].map(r => Number(r.cells[i].dataset.key)) })()"
     )
@@ -125,3 +125,15 @@ def test_a_report_of_one_row_is_shown_too(browser, tmp_path):
     path.write_text(page(linear(samples=1), "one.nc"), encoding="utf-8")
     browser.open(path, width=400)
     assert browser.complaints() == []
+
+
+@pytest.mark.parametrize(("width", "height", "screens"), [(1400, 900, 1), (400, 800, 2)])
+def test_the_answer_fits_the_first_screen_or_two_of_a_phone(
+    browser, report, width, height, screens
+):
+    browser.open(report, width=width, height=height)
+    answer = "document.querySelector('.answer')"
+    bottom = browser.value(f"{answer}.getBoundingClientRect().bottom + scrollY")
+    assert bottom <= screens * height
+    for part in (".answer-promise", "svg", ".bar", ".answer-todo"):
+        assert browser.value(f"{answer}.querySelector('{part}') !== null"), part

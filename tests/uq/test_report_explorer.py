@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from computed import kinds, linear, with_output
 from explored import cells
 
 from uq.analysis.findings import Findings
+from uq.analysis.life_quantiles import ended_by, life_quantiles, quantile_estimate
 from uq.intervals import share_interval
 from uq.report.embedded import MOST_ROWS, rows_inside
-from uq.rows.elements import replicates_of
+from uq.rows.elements import elements_of, replicates_of
 
 ASKED = {"thresholds": {"y": 6.0}}
 
@@ -38,7 +40,8 @@ def drag_handle(browser, name, end, steps):
 def place_of_a_point(browser):
     """Return a place of the page where a point is drawn, in the colour of rows."""
     return browser.value(
-        "(() => { const c = document.querySelector('.scatter canvas'); c.scrollIntoView();"
+        "(() => { const c = document.querySelector('.scatter canvas');"
+        " c.scrollIntoView({behavior: 'instant'});"
         " const box = c.getBoundingClientRect();"
         " const p = c.getContext('2d').getImageData(100, 20, c.width - 140, c.height - 60);"
         " for (let i = 0; i < p.data.length; i += 4) if (p.data[i] === 160 && p.data[i + 1] === 166"
@@ -73,6 +76,11 @@ def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
     assert among == pytest.approx(expected, rel=1e-9, nan_ok=True)
     assert everywhere == pytest.approx((hits.mean(), *share_interval(hits, part)), nan_ok=True)
     assert np.isnan(among[1]) == (design == "one replicate")
+    element = next(elements_of(ds, ["y"]))
+    for rows, found in zip((chosen, hits | True), cells(browser)["quantile/0.1"], strict=True):
+        some = replace(element, values=element.values[rows], censored=element.censored[rows])
+        expected = quantile_estimate(some, 0.1, None if part is None else part[rows])
+        assert found == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
     said = browser.value("document.querySelector('.said').textContent")
     assert said.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
 
@@ -110,6 +118,21 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     (low, high) = ranges(browser)[1]
     ended = known & ~censored & (life >= low) & (life <= high)
     assert ended.sum() == browser.value(count)
+
+
+@pytest.mark.parametrize("design", [("monte-carlo", 400, 1), ("sobol", 64, 8)], ids=str)
+def test_censored_lives_have_the_numbers_of_python(shown, design):
+    ds = kinds(*design, analysis={"thresholds": {"life": [1.4, 9.0]}})
+    part = replicates_of(ds)
+    found = cells(shown(ds))
+    first = next(elements_of(ds, ["life"]))
+    for time in (1.4, 9.0):
+        assert first.unknown_sides(time).any()
+        (here,) = found[f"{first.name}/{time:g}"]
+        assert here == pytest.approx(ended_by(first, time, part)[1].numbers, nan_ok=True)
+    for name, one in life_quantiles(first, {"0.1": 0.1, "0.5": 0.5}, part).items():
+        (here,) = found[f"quantile/{name}"]
+        assert here == pytest.approx(one.numbers, nan_ok=True)
 
 
 def test_chips_leave_out_a_regime(shown):
@@ -172,3 +195,48 @@ def test_a_page_of_many_rows_is_small_and_says_which_part_it_holds(shown):
     assert len(inside["columns"]) == 12 and inside["total"] == 100_000
     assert len(numbers) == MOST_ROWS and 45_000 < numbers.mean() < 55_000
     assert len(json.dumps(inside)) < 4e6
+
+
+EVERYTHING = """(async () => {
+  const found = [], frame = requestAnimationFrame, sliders = ".tolerance input";
+  const painted = () => new Promise(f => frame(() => frame(f)));
+  const set = async (element, value, event) => {
+    element.value = value;
+    element.dispatchEvent(new Event(event));
+    await painted();
+    const words = document.body.innerText.match(/NaN|Infinity|undefined/);
+    if (words) found.push(words[0]);
+    if (document.querySelector('svg [d*=NaN], svg [x*=NaN], svg [x1*=NaN]')) found.push("path");
+    if (document.documentElement.scrollWidth > innerWidth) found.push("too wide");
+  };
+  for (const select of document.querySelectorAll("select"))
+    for (const option of select.options) await set(select, option.value, "change");
+  for (const handle of document.querySelectorAll(".range input")) await set(handle, 250, "input");
+  for (const chip of document.querySelectorAll(".chip")) chip.click();
+  for (const value of [0.2, 1.5, 0.9])
+    for (const slider of document.querySelectorAll(sliders)) await set(slider, value, "input");
+  await new Promise(f => setTimeout(f, 300));
+  return found })()"""
+
+
+def odd_results():
+    """Yield results that leave little to show, or too much."""
+    asked = {"thresholds": {"y": 6.0}}
+    yield linear(samples=1, analysis=asked)
+    yield linear(samples=2, units=2, analysis=asked)
+    yield kinds(samples=7, analysis={"thresholds": {"life": 1.0}})
+    ds = linear(samples=50)
+    for values in (np.full(50, 3.0), np.full(50, np.nan), 10.0 ** np.linspace(-200, 200, 50)):
+        ds = with_output(ds, f"y{len(ds)}", values)
+    ds["y"].attrs["long_name"] = "</script> " + 60 * "long" + " \u202e \U0001f600 \"'&"
+    yield ds
+
+
+def test_odd_results_are_shown_without_a_fault(shown):
+    for ds in odd_results():
+        browser = shown(ds, width=400)
+        answer = browser.do(
+            "Runtime.evaluate", expression=EVERYTHING, awaitPromise=True, returnByValue=True
+        )
+        assert answer["result"].get("value") == [], answer
+        assert browser.complaints() == []

@@ -64,6 +64,14 @@ def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
     assert "Truncated" not in text and "were recomputed" not in text
 
 
+def test_a_picture_has_the_colour_of_the_text_around_it():
+    figure = Figure(figsize=(2, 2))
+    figure.subplots().plot([0, 1], color="black")
+    drawn = picture(figure, "a line").html
+    assert "#000000" not in drawn and "#ffffff" not in drawn
+    assert drawn.count("stroke: currentColor") > 5  # marks of ticks, too, which no rule reaches
+
+
 def test_a_picture_is_described_to_who_cannot_see_it():
     figure = Figure(figsize=(2, 2))
     figure.subplots().plot([0, 1])

@@ -23,8 +23,8 @@ from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
-from uq.report.inputs import fixed_inputs, input_tables
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
+from uq.report.inputs import _quantiles, fixed_inputs, input_tables
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table
 
 DAY = 86400.0
 
@@ -85,6 +85,17 @@ def test_probabilities_stand_on_their_side_of_the_threshold():
     assert float(below.text) == pytest.approx(11 / 64, abs=1e-4)
 
 
+def test_undefined_rows_have_a_column_beside_both_probabilities():
+    ds = kinds(samples=100, analysis={"outputs": ["angle"], "thresholds": {"angle": "30 degrees"}})
+    table = results_of(ds, "Probabilities")
+    line = lines(table)["angle"]
+    share = float(np.isnan(ds["angle"].values).mean())
+    assert line["undefined"] == f"{100 * share:.1f} %" and line["threshold"] == "magnitude 30°"
+    assert float(line["P(above)"]) + float(line["P(below)"]) + share == pytest.approx(1, abs=1e-3)
+    whole = results_of(lives(thresholds={"life": [7 * DAY]}), "Probabilities")
+    assert "undefined" not in whole.header
+
+
 def test_a_probability_that_assumes_something_says_so():
     ds = lives(censored=30, thresholds={"life": [14 * DAY]})
     entry = summarised(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
@@ -112,7 +123,7 @@ def test_the_status_table_is_of_all_rows():
 def test_shares_of_regimes_have_their_interval():
     ds = kinds(samples=50)
     summary = summarise(ds)
-    label, rows, share = regime_table(summary).rows[0]
+    label, rows, share = category_table("regime", summary.regimes).rows[0]
     low, high = (100 * getattr(summary.regimes["slow"].estimate, end) for end in ("low", "high"))
     assert (label.text, rows.text) == ("slow", "25")
     assert (share.text, share.more) == ("50.0 %", f"{low:.1f} to {high:.1f} %")
@@ -140,6 +151,20 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     assert found["x2"]["law"] == "equals x1" and found["x2"]["50 %"] == ""
     assert found["x4"]["law"] == "x1 times uniform(lower = 0.4, upper = 0.6)"
     assert float(found["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
+
+
+@pytest.mark.parametrize(
+    ("units", "found", "texts"),
+    [
+        ("rad s-1", [156.742, 157.0, 157.258], ["156.74 rad s⁻¹", "157.00 rad s⁻¹"]),
+        ("m", [2.09e-4, 2.5e-4, 2.91e-4], ["209 µm", "250 µm"]),
+        ("1", [0.2467, 0.295, 0.3435], ["0.247", "0.295"]),
+        ("N", [5.0, 5.0, 5.0], ["5 N", "5 N"]),
+    ],
+)
+def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):
+    cells = _quantiles("x", units, np.array(found))
+    assert [cell.text.replace("\u00a0", " ") for cell in cells][:2] == texts
 
 
 def test_fixed_inputs_have_units_and_correlations_a_source():

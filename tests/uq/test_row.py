@@ -131,6 +131,7 @@ def test_the_row_near_a_quantile_of_lives_may_never_end():
         ({"near_quantile": (0.5, "work")}, "choose one of 'work[side=left]', 'work[side=right]'"),
         ({"near_quantile": (5.0, "angle")}, "must lie between 0 and 1; write 0.05 for 5 %"),
         ({"near_quantile": (1e-6, "angle")}, "a 0.0001 % quantile needs 999999 rows"),
+        ({"near_quantile": (1e-300, "angle")}, "quantile needs more than 1e+09 rows"),
     ],
 )
 def test_a_choice_that_makes_no_sense_is_one_line(chosen, words):
@@ -213,6 +214,16 @@ def test_without_its_model_a_row_is_shown_alone(uq, write_study):
         file.setncattr("study", file.study.replace('"ishigami"', '"gone"'))
     ended = uq("row", "out.nc", 1)
     assert ended.code == 0 and "no such model 'gone'" in " ".join(ended.out.split())
+
+
+def test_a_model_that_is_not_that_of_the_rows_is_refused(uq, write_study):
+    uq("run", write_study(), "-o", "out.nc", "--quiet", "--workers", 0)
+    for model, line in (
+        ("linear", "--model linear: is 'linear'; the rows are of 'ishigami'"),
+        ("nowhere:X", "model 'nowhere:X' cannot be imported"),
+    ):
+        ended = uq("row", "out.nc", 1, "--model", model)
+        assert (ended.code, ended.out) == (2, "") and ended.err.startswith(line)
 
 
 def test_imported_rows_are_computed_again_too(tmp_path):

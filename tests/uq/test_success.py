@@ -9,6 +9,7 @@ from models import vibrator
 from uq import plots
 from uq.analysis.summary import summarise
 from uq.conclusions.answer import answer
+from uq.report.outcomes import outcomes, result_tables
 from uq.rows.variables import outputs_of
 
 
@@ -41,3 +42,18 @@ def test_the_latest_time_is_promised(locking):
 def test_the_vibrator_declares_its_success(locking):
     assert outputs_of(locking)["locking"].success == "the motors have locked"
     assert vibrator.MODEL.outputs["synchronisation_time"].success
+
+
+def test_a_report_speaks_of_success(locking):
+    table = next(
+        one
+        for one in result_tables(outcomes(locking, summarise(locking)))
+        if one.caption.startswith("Times by which")
+    )
+    assert table.header[2:5] == ("1 % by", "10 % by", "50 % by")
+    never = locking.copy(deep=True)
+    never["locking"][:100] = np.inf
+    found = answer(asking(never, outputs=["locking"])).lead.promise
+    assert found.why == "" or "too few succeed" in found.why
+    tables = list(result_tables(outcomes(never, summarise(never))))
+    assert any("rows never succeeding" in one.header for one in tables)

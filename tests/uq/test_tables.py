@@ -46,6 +46,20 @@ def test_an_angle_is_in_degrees_and_its_probability_of_the_magnitude(printed):
     lines = printed("summary", asking(ds, outputs=["psi"], thresholds={"psi": np.radians(12)}))
     assert cells(lines, "psi [°]")
     assert float(cells(lines, "P(|psi| > 12°)")[0]) == pytest.approx(0.4, abs=0.03)
+    ds["psi"][:16] = np.nan
+    lines = printed("summary", asking(ds, outputs=["psi"], thresholds={"psi": "12 degrees"}))
+    assert cells(lines, "P(|psi| > 12°)")[-1] == "25.0 % undefined"
+
+
+def test_a_reason_stands_below_the_table_and_once(printed):
+    values = 3600.0 * np.r_[np.linspace(5, 15, 50), np.full(14, 6.0)]
+    censored = np.arange(64) >= 50
+    ds = with_output(linear(samples=64), "life", values, "lifetime", censored)
+    ds = asking(ds, outputs=["life"], thresholds={"life": ["7 hours", "8 hours"]})
+    lines = [" ".join(cell.strip() for cell in line if cell) for line in printed("summary", ds)]
+    block = " ".join(lines[lines.index("life [hours] meaning of life") :])
+    reason = "14 of 64 rows were censored before that time"
+    assert block.count(reason) == 1 and f"P(< 8 hours): {reason}" in block
 
 
 def test_tolerance_bounds_that_few_rows_cannot_give_say_how_many_can(printed):

@@ -3,17 +3,23 @@
 import html
 import json
 import re
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from command_line import strict_json
 from computed import computed, kinds, linear, with_output
+from learnt_studies import measured, wear
 from nested_studies import nested
 
 import uq as api
 from uq.errors import InputError
+from uq.exploring.row_again import row
+from uq.exploring.updating import update
 from uq.keys import key_of, paths_of_numbers, value_at
 from uq.report import page
+from uq.store.files import write_result
 from uq.tracing.tracing import trace_json, traced
 from uq.tracing.verbs import VERBS
 
@@ -89,18 +95,41 @@ def test_options_are_part_of_a_key():
     check(ds, "sensitivity", {"method": "pawn"}, every=31)
     check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
+    check(crossed(), "inputs", every=5)
+
+
+def keys_in(text):
+    """Return the keys that a page shows; a sentence may have several."""
+    found = re.findall(r'data-trace="(.*?)"', text, re.DOTALL)
+    return [key for several in found for key in html.unescape(several).split("\n")]
+
+
+def test_the_numbers_of_each_sentence_lead_to_themselves():
+    ds = kinds(samples=400, analysis=ASKED)
+    found = api.answer(ds)
+    text = found._repr_html_()
+    keys = keys_in(text)
+    assert {f"answer/quantities/{found.lead.name}/{part}" for part in ("promise", "range")} < {
+        *keys
+    }
+    assert any("/share" in key for key in keys) and any("/contributions/" in key for key in keys)
+    for key in keys:
+        assert traced(ds, key).equal, key
+    rest = re.sub(r"<span data-trace=.*?</span>|<style>.*?</style>", "", text, flags=re.DOTALL)
+    assert " %" in text and " %" not in rest
 
 
 def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     ds = crossed()
     text = page(ds, "out.nc")
-    keys = [html.unescape(key) for key in re.findall(r'data-trace="(.*?)"', text)]
+    keys = keys_in(text)
     assert len(keys) == len(set(keys)) > 15
     for key in keys:
         assert traced(ds, key).equal, key
     assert "outputs/y/thresholds/5.0/above" in keys
     assert "sensitivity[method=sobol]/outputs/y/S1/x1" in keys
     assert {"status/ok", "outputs/y/mean", "outputs/y/failed"} <= set(keys)
+    assert {"answer/rows", "answer/failed", "inputs/x1/sampled/0.05"} <= set(keys)
 
 
 def test_the_rows_are_those_that_the_number_rests_on():
@@ -142,6 +171,64 @@ def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
 LAW = 'distribution = "uniform", lower = 1e-10, upper = 9e-10'
 
 
+def test_numbers_of_weighted_rows_are_traced_too():
+    ds = update(wear(samples=2000, analysis={"thresholds": {"life": [5.2e5]}}), measured(5e5))
+    check(ds, "summary", every=4)
+    check(ds, "answer", every=11)
+    assert traced(ds, "effective_rows").estimators[0].code.endswith("effective_rows")
+    with pytest.raises(InputError, match="not with rows that inspections have weighted"):
+        traced(ds, "sensitivity/rows_used")
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # their squares are 0 or infinite
+@pytest.mark.parametrize("size", [5e-324, 1e308])
+def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
+    ds = with_output(linear(), "v", np.random.default_rng(0).uniform(-1, 1, 64) * size)
+    check(ds, "summary", every=7)
+    check(ds, "answer", every=13)
+    assert "outputs/v/quantiles/0.5" in page(ds, "out.nc")
+    assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
+
+
+def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
+    kind = "sample_models:KINDS"
+    uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
+    ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
+    for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
+        found = trace_json(traced(ds, key))
+        assert found["equal"] and found["code"] == "0" and "numpy" in found["versions_here"]
+    write_result(ds, Path("gone.nc"))
+    assert uq("report", "gone.nc", "--dossier").code == uq("report", "gone.nc").code == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "key",
+    [
+        "outputs/life/quantiles/0.05",
+        "sensitivity/outputs/y/S1/x1",
+        "convergence/outputs/y/estimates/mean/0",
+        "what-if[uncertain.x1.upper=0.9]/outputs/y/mean",
+        "answer/quantities/y/promise",
+        "answer/quantities/y/ranking/contributions/0/inputs/x4",
+        "outputs/mistyped",
+    ],
+)
+def test_a_number_of_a_large_result_is_traced_in_seconds(key):
+    ds = linear(samples=100_000)
+    for name in "abcdefghij":
+        ds = with_output(ds, name, ds["y"].values + ord(name))
+    life = np.where(ds["x1"] < 0.02, np.inf, np.exp(ds["y"].values))
+    ds = with_output(ds, "life", life, "lifetime", np.zeros(100_000, bool))
+    start = time.process_time()
+    if key.endswith("mistyped"):
+        with pytest.raises(InputError, match="no such key"):
+            traced(ds, key)
+    else:
+        assert traced(ds, key).equal
+    assert time.process_time() - start < 10.0
+
+
 def test_names_with_a_slash_have_keys_of_their_own():
     ds = with_output(linear(), "a/b", linear()["y"].values)
     ds = with_output(ds, "a", linear()["x1"].values)
@@ -149,6 +236,14 @@ def test_names_with_a_slash_have_keys_of_their_own():
     assert found.equal and found.numbers["value"] == linear()["y"].values.mean()
     with pytest.raises(InputError, match="no such key 'outputs/a/b/mean'; did you mean"):
         traced(ds, "outputs/a/b/mean")
+
+
+def test_a_key_as_long_as_a_book_is_refused_in_a_line():
+    for key in ("outputs/" + "a" * 9999, "sensitivity[a=" + "b" * 9999 + "]/x", "outputs/\ny/\n"):
+        with pytest.raises(InputError) as refusal:
+            traced(linear(), key)
+        assert len(str(refusal.value)) < 600 and "\n" not in str(refusal.value)
+    assert traced(linear(), "  outputs/y/mean\n").equal  # as copied
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from computed import computed, study_of, summarised, with_seed
 from scipy import special
 from typer.testing import CliRunner
 
+from benchmarks.coverage import scaled as counted
 from uq.analysis.what_if import answer, read_changes, what_if, what_if_json
 from uq.cli.app import app
 from uq.contract import Output
@@ -189,6 +190,11 @@ def test_on_the_command_line(result, tmp_path):
     run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--json"])
     found = json.loads(run.output)
     assert found["effective_rows"] < 1000 and set(found["outputs"]) == {"life", "y"}
+
+
+@pytest.mark.slow
+def test_differences_from_fresh_rows_hold_zero():
+    assert [line for line in counted.what_if(1000) if line.unexplained] == []
 
 
 @pytest.mark.slow

@@ -66,7 +66,7 @@ def test_an_option_takes_plain_numbers_and_quantities():
     assert read_threshold("--by", "1 h", "a life", "s") == 3600.0
     with pytest.raises(InputError, match=r"--by 3 kg: the unit 'kg' does not fit 'a life'"):
         read_threshold("--by", "3 kg", "a life", "s")
-    with pytest.raises(InputError, match="--by soon: must be a number, or"):
+    with pytest.raises(InputError, match="--by soon: must be a number, or have"):
         read_threshold("--by", "soon", "a life", "s")
 
 
@@ -96,8 +96,12 @@ def test_a_threshold_gives_the_same_numbers_however_it_is_written():
     [
         ("10 kg", "life = \"10 kg\": the unit 'kg' does not fit 'life'"),
         (["1 h", "2 mm"], 'life = "2 mm": the unit'),
-        ("soon", 'must be a number, or a number with its unit, such as "24 hours"'),
-        (True, "must be a number, a number with its unit, or a list of them"),
+        (
+            "soon",
+            'thresholds.life = "soon": must be a number or a list of numbers, or have its unit',
+        ),
+        (True, "thresholds.life = true: must be a number or a list of numbers"),
+        (["soon"], 'life[0] = "soon": must be a number, or have its unit: "24 hours", "250 um"'),
         (["1 h", 3600.0], "3600.0 is listed twice"),
     ],
 )

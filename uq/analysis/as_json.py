@@ -12,7 +12,8 @@ from uq.analysis.input_changes import OnlyChange, Spread
 from uq.analysis.life_fit import Fit
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
-from uq.analysis.summary import Described, Summary, regime_json
+from uq.analysis.summary import REGIME, Described, Shares, Summary, share_json
+from uq.population.smoothing import Smoothed
 
 if TYPE_CHECKING:
     from uq.analysis.converging import Converging
@@ -27,21 +28,35 @@ def summary_json(summary: Summary) -> dict[str, Any]:
     -------
     dict
         ``samples`` and ``status`` count all rows. Everything else describes the ``rows_used``, the
-        independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
+        independent ones: ``regime`` (label -> count and share with interval), ``categories`` (the
+        same of other categories, such as the period, where they occur), ``outputs`` (name of
         element -> its statistics, each under its key) and ``notes``, sentences on what is missing.
         A number that does not exist or is not finite is None; beside it ``never``,
         ``low_censored`` and the like state why. Where rows failed, ``failed_low`` and
         ``failed_high`` bound an estimate (`uq.analysis.failed_rows`). ``fits``, if asked for: the
-        laws fitted to a lifetime.
+        laws fitted to a lifetime. Where inspections have weighted the rows: ``effective_rows`` and
+        ``pareto_k``.
     """
-    return {
+    return quality_json(summary.weights) | {
         "samples": summary.samples,
         "rows_used": summary.rows_used,
         "status": summary.status,
-        "regime": {label: regime_json(one) for label, one in summary.regimes.items()},
+        "regime": _labels(summary.regimes),
+        "categories": {name: _labels(one) for name, one in summary.categories.items()},
         "outputs": {name: _described(one) for name, one in summary.outputs.items()},
         "notes": summary.notes,
     }
+
+
+def _labels(shares: Shares) -> dict[str, Any]:
+    return {label: share_json(one) for label, one in shares.items()}
+
+
+def quality_json(weights: Smoothed | None) -> dict[str, Any]:
+    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
+    if weights is None:
+        return {}
+    return {"effective_rows": weights.effective, "pareto_k": json_form.number(weights.k)}
 
 
 def _described(one: Described) -> dict[str, Any]:
@@ -94,12 +109,16 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
         ``a`` and ``b``: title, samples, rows_used and status of each. ``changed``: kind, name, a
         and b of each entry that differs. ``only``: the one input that differs, if it is the only
         thing: name, units, and mean and sd of each; else None. ``pairing``: see
-        `Comparison`. ``regime``: label -> estimate; ``outputs``: element -> its statistics under
-        their keys in a summary, each with ``a`` and ``b``, as `summary_json` has them, and
-        ``difference``: ``value``, ``low``, ``high`` of b less a, and ``identical`` where the rows
-        are paired and agree: then there is no interval. A scale also has ``ratio``. ``notes``:
-        sentences.
+        `Comparison`. ``regime``: label -> estimate; ``categories``: the same of others, such as
+        the period; ``outputs``: element -> its statistics under their keys in a summary, each with
+        ``a`` and ``b``, as `summary_json` has them, and ``difference``: ``value``, ``low``,
+        ``high`` of b less a, and ``identical`` where the rows are paired and agree: then there is
+        no interval. A scale also has ``ratio``. ``notes``: sentences.
     """
+    shares = {
+        name: {label: _compared(one) for label, one in of.items()}
+        for name, of in comparison.shares.items()
+    }
     return {
         "a": _about(comparison.first),
         "b": _about(comparison.second),
@@ -109,7 +128,8 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
         ],
         "only": None if comparison.only is None else _only(comparison.only),
         "pairing": comparison.pairing,
-        "regime": {label: _compared(one) for label, one in comparison.regimes.items()},
+        "regime": shares.pop(REGIME, {}),
+        "categories": shares,
         "outputs": {name: _output(one) for name, one in comparison.outputs.items()},
         "notes": comparison.notes,
     }

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.differences import Compared, ComparedOutput, compared_output, compared_regimes
+from uq.analysis.differences import Compared, ComparedOutput, compared_output, compared_shares
 from uq.analysis.input_changes import Change, OnlyChange, changes, only_change
 from uq.analysis.pairing import Pair
 from uq.analysis.summary import Summary, summarise
@@ -44,7 +44,8 @@ class Comparison:
     pairing : str
         ``rows`` or ``replicates`` where these are paired by number, ``strangers`` where the samples
         are independent, else ``unknown``.
-    regimes : dict of str to Compared
+    shares : dict of str to dict
+        Category, such as the regime -> label -> `Compared`.
     outputs : dict of str to ComparedOutput
     notes : list of str
     """
@@ -54,7 +55,7 @@ class Comparison:
     changed: list[Change]
     only: OnlyChange | None
     pairing: str
-    regimes: Mapping[str, Compared]
+    shares: Mapping[str, Mapping[str, Compared]]
     outputs: Mapping[str, ComparedOutput]
     notes: list[str]
 
@@ -70,8 +71,8 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Index: ``output`` (its element, or ``regime``), ``estimate`` (``mean``, ``sd``,
-        ``quantile 0.5``, ``B10``, ``P(>t)``, ``P(<t)``, or the label of a regime). Columns:
+        Index: ``output`` (its element, or a category such as ``regime``), ``estimate`` (``mean``,
+        ``sd``, ``quantile 0.5``, ``B10``, ``P(>t)``, ``P(<t)``, or a label). Columns:
         ``first`` and ``second``, the estimates; ``difference``, the second less the first, with
         its 95 % interval ``low``, ``high``. NaN where there is none.
 
@@ -81,7 +82,7 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
         When the two are not of one model, or have nothing to compare.
     """
     found = comparison(first, second)
-    pairs = {("regime", label): one for label, one in found.regimes.items()}
+    pairs = {(name, label): one for name, of in found.shares.items() for label, one in of.items()}
     for name, output in found.outputs.items():
         pairs |= {(name, one.first.label): one for one in output.statistics}
     lines = [
@@ -112,7 +113,7 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
         changed=changed,
         only=only_change(first, second, changed),
         pairing=pair.kinship.name.lower().removesuffix("_imported"),
-        regimes=dict(compared_regimes(pair, found)),
+        shares=compared_shares(pair, found),
         outputs={
             name: compared_output(pair, [one[name] for one in elements], found)
             for name in elements[0]

@@ -17,6 +17,7 @@ from uq.methods.registry import METHODS, piloted_by
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 from uq.rows.nesting import first_samples
 from uq.rows.variables import error_name
+from uq.rows.weights import refuse_weights
 
 COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "input"]
 
@@ -53,6 +54,7 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     >>> running[running["estimate"] == "mean"]["samples"].to_list()
     [16, 32, 63, 125, 250, 500, 1000]
     """
+    refuse_weights(ds, "running estimates")
     names = None if output is None else {element.name for element in named_elements(ds, output)}
     # Those of all rows: of the first ones alone a life may have another target.
     targets = list(sensitivities(ds, method).targets) if (method := method_shown(ds)) else []
@@ -85,6 +87,7 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         all of them had the same sign; ``warning``, not empty where `own` is the larger: then more
         rows do not help.
     """
+    refuse_weights(ds, "the error of sampling")
     found, names = summarise(ds).outputs, output_names(ds)
     plain = [name for name in names if name not in {error_name(one) for one in names}]
     lines = {}

@@ -10,7 +10,7 @@ from uq.analysis import estimators
 from uq.analysis.estimators import Sample
 from uq.analysis.pairing import Pair
 from uq.analysis.statistics.statistic import Reader, Statistic
-from uq.analysis.summary import Summary
+from uq.analysis.summary import REGIME, Shares, Summary
 from uq.contract import Output
 from uq.estimate import NOTHING, Estimate
 from uq.rows.elements import Element
@@ -56,16 +56,20 @@ class ComparedOutput:
         return tuple(chain.from_iterable(self.parts.values()))
 
 
-def compared_regimes(pair: Pair, found: list[Summary]) -> Iterator[tuple[str, Compared]]:
-    """Yield label and shares of every regime that both results declare."""
-    shares = [one.regimes for one in found]
-    if not all(shares):
-        return
-    members = [estimators.in_regimes(rows) for rows in pair.rows]
+def compared_shares(pair: Pair, found: list[Summary]) -> dict[str, dict[str, Compared]]:
+    """Return category -> label -> what is compared: all regimes, else what occurs."""
+    names = [name for name in found[0].shares if name in found[1].shares]
+    return {name: dict(_shares(pair, [one.shares[name] for one in found], name)) for name in names}
+
+
+def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, Compared]]:
+    members = [estimators.in_categories(rows, name) for rows in pair.rows]
     for label in shares[0]:
-        if label in shares[1]:
+        both = [one[label] for one in shares if label in one]
+        occurs = name == REGIME or any(one.facts["count"] for one in both)
+        if len(both) > 1 and occurs:
             samples = [one[label] for one in members]
-            yield label, _compared(pair, [one[label] for one in shares], samples, samples)
+            yield label, _compared(pair, both, samples, samples)
 
 
 def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:

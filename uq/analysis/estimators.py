@@ -30,13 +30,13 @@ def whole(element: Element) -> Sample:
     return Sample(element.present, np.column_stack([element.values, element.censored]))
 
 
-def in_regimes(rows: xr.Dataset) -> dict[str, Sample]:
-    """Return which rows are in each regime, of those that did not fail without one."""
-    codes = rows["regime"].values
+def in_categories(rows: xr.Dataset, name: str) -> dict[str, Sample]:
+    """Return which rows are in each category of an output, of those that did not fail without."""
+    codes = rows[name].values
     kept = (codes >= 0) | (rows["status"].values == Status.OK)
     return {
         label: Sample(kept, (codes == code).astype(float))
-        for code, label in flags(rows["regime"])
+        for code, label in flags(rows[name])
         if code >= 0
     }
 
@@ -57,6 +57,8 @@ class Estimator:
         Whether it is a share of rows, or the value beyond which such a share lies.
     counts_hits : bool
         Whether the numbers of the rows are 0 and 1.
+    averages : bool
+        Whether the estimate is the mean of the rows' numbers, probabilities between 0 and 1.
     is_scale : bool
         Whether two of them are also compared by their ratio.
     """
@@ -66,6 +68,7 @@ class Estimator:
     sample: Callable[[Element], Sample | None] = with_value
     is_share: bool = False
     counts_hits: bool = False
+    averages: bool = False
     is_scale: bool = False
 
 

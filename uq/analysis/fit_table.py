@@ -8,6 +8,7 @@ import xarray as xr
 from uq.analysis.life_fit import Fit, fits_of
 from uq.analysis.life_quantiles import B_LIVES
 from uq.rows.elements import independent_rows, lifetimes, replicates_of
+from uq.rows.weights import refuse_weights
 
 _PARAMETERS = ("shape", "scale", "median", "sigma")
 _FACTS = ("rows", "p_value", "refused", "assumes")
@@ -64,6 +65,7 @@ def life_fits(ds: xr.Dataset, output: str) -> pd.DataFrame:
     >>> laws.loc["weibull", "refused"].startswith("rejected")
     True
     """
+    refuse_weights(ds, "laws fitted to lives")
     rows = independent_rows(ds)
     independent = replicates_of(rows) is None
     lines = {

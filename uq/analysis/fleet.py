@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -21,6 +22,7 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import levels_that_vary, size_in_words
 from uq.rows.variables import outputs_of
+from uq.rows.weights import refuse_weights
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,6 +48,8 @@ class Fleet:
     by : dict of float to tuple of Banded
         Time -> number that has ended, probability that at most `allow` have.
     notes : list of str
+    is_success : bool
+        Whether the end of the life is wished for.
     """
 
     output: str
@@ -57,6 +61,12 @@ class Fleet:
     first: dict[float, Banded]
     by: dict[float, tuple[Banded, Banded]]
     notes: list[str]
+    is_success: bool = False
+
+    @property
+    def ended(self) -> str:
+        """What a unit has done at the end of its life, in words."""
+        return "succeeded" if self.is_success else "ended"
 
     @property
     def sentences(self) -> list[str]:
@@ -71,6 +81,8 @@ def fleet(
     by: float | Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
+    *,
+    plain: bool = False,
 ) -> "pd.DataFrame":
     """Estimate when the first unit of a fleet ends, and how many have ended by a time.
 
@@ -87,6 +99,8 @@ def fleet(
         Number of units that may have ended.
     output : str, optional
         A life, or one element of it; needed where the study shows several.
+    plain : bool, optional
+        Whether to take lives as computed; by default what only scales them is integrated.
 
     Returns
     -------
@@ -112,7 +126,7 @@ def fleet(
     ['first', 'failed', 'at_most_allowed']
     """
     times = [float(by)] if isinstance(by, int | float) else [float(one) for one in by]
-    found = fleet_of(ds, size, times, allow, output)
+    found = fleet_of(ds, size, times, allow, output, plain=plain)
     lines = [("first", p, one) for p, one in found.first.items()]
     for time, (failed, at_most) in found.by.items():
         lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
@@ -146,17 +160,20 @@ def fleet_of(
     by: Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
+    *,
+    plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
+    refuse_weights(ds, "fleets")
     if why := why_no_statistics(ds):
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:
         raise InputError("uq fleet: the size must be at least 1, and what is allowed at least 0")
-    if bad := [time for time in by if not time > 0]:
+    if bad := [time for time in by if not 0 < time < inf]:
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
     rows = independent_rows(ds)
     element = the_life(rows, output)
-    units = units_of(rows, element)
+    units = units_of(rows, element, plain=plain)
     _refuse(units, size)
     analysis = analysis_of(ds)
     times = list(by) or list(analysis.thresholds.get(element.output, ()))
@@ -177,11 +194,13 @@ def fleet_of(
         notes.append(f"{place.samples - enough} samples have too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
+    notes += filter(None, [units.why_not_more])
     assumed = {one.assumes for both in of.ends for one in both if one.assumes}
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)
     names = units.integrated
-    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes)
+    is_success = bool(element.declared.success)
+    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes, is_success)
 
 
 def the_life(rows: xr.Dataset, output: str | None) -> Element:
@@ -201,8 +220,9 @@ def the_life(rows: xr.Dataset, output: str | None) -> Element:
 def _refuse(units: Units, size: int) -> None:
     if size > units.place.units and not units.are_alike:
         names = ", ".join(units.varying)
+        verb = "is" if len(units.varying) == 1 else "are"
         raise InputError(
             f"uq fleet: a fleet of {size} needs samples of as many units: set units = {size} in"
             f" [design], now {units.place.units}; more than that only where all that differs"
-            f" between units is integrated exactly, and {names} is not"
+            f" between units is integrated exactly, and {names} {verb} not"
         )

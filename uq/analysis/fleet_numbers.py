@@ -93,6 +93,8 @@ class FleetNumbers:
 
     def at_most_allowed(self, time: float) -> Banded:
         """Return the probability that no more have ended before a time than allowed."""
+        if self._allow >= self._size:
+            return Banded(*3 * (Estimate(1.0, 1.0, 1.0),))
         found = [_complement(one.below(time)) for one in self._beyond]
 
         def band(share: float) -> Estimate:
@@ -103,8 +105,6 @@ class FleetNumbers:
         return self._banded(found, band)
 
     def _kept(self, p: float) -> float:
-        if self._allow >= self._size:
-            return 1.0
         return float(special.bdtr(self._allow, self._size, p)) if p == p else p
 
     def _banded(

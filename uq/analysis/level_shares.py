@@ -35,6 +35,7 @@ from uq.rows.nesting import (
     size_in_words,
 )
 from uq.rows.variables import error_name
+from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 
 SOLVER = "solver"
@@ -54,6 +55,7 @@ _ONE_ROW = Estimate(
     reason="a single row a sample cannot separate what is shared from chance; set repeats = 2"
 )
 INCLUDES_CHANCE = "that chance counts as own"
+SHARES_OF = "these are shares of the variance of its {form}"
 NO_ERROR = "the model states no numerical error of it"
 NO_ERROR_OF = "the numerical error is that of the output, not of its {form}"
 
@@ -152,6 +154,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
+    refuse_weights(ds, "shares of levels")
     if why := why_no_statistics(ds):
         raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)
@@ -162,7 +165,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     chosen = elements_of(rows, shown) if output is None else named_elements(rows, output)
     found = {}
     for target in targets(chosen, analysis_of(rows).thresholds):
-        light = target if target.event else lightened(target)
+        light = target if target.event else lightened(target, SHARES_OF)
         scales = Scales({}) if plain else _scales(rows, light)
         found[light.name] = _shares(rows, light, place, scales, replicate)
     switches = "regime" in known and output is None

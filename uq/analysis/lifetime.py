@@ -45,7 +45,8 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
         plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
         independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
         where unknown. Where rows are laws of lives (attribute ``integrated``), the mean of their
-        probabilities at up to 500 of these times, between which to interpolate. ``band_low``,
+        probabilities at up to 500 of these times, between which to interpolate; so where rows have
+        weights. ``band_low``,
         ``band_high``: a simultaneous 95 % band, for independent rows only; see the attribute
         ``band``. ``never``: the share of rows known never to end. Counts: ``rows``,
         ``censored``, and ``undefined`` and ``failed``, which are excluded.
@@ -90,7 +91,7 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
     coords = places if dims else chosen[0].place
     axis = ("time", time, {"long_name": "time", "units": "s"})
     attrs = {"output": output, "long_name": of.attrs["long_name"]}
-    attrs["band"] = BAND if replicate is None else NO_BAND
+    attrs["band"] = _why_no_band(chosen[0], replicate) or BAND
     if chosen[0].law is not None:
         attrs["integrated"] = " ".join(chosen[0].law.inputs)
     return xr.Dataset(data, {**coords, "time": axis}, attrs)
@@ -101,6 +102,14 @@ BAND = (
     " Wellner's, which ends where fewer than 10 rows are at risk"
 )
 NO_BAND = "none: a simultaneous band needs independent rows"
+NO_WEIGHTED_BAND = "none: a simultaneous band needs rows of equal weight"
+
+
+def _why_no_band(element: Element, replicate: Replicates) -> str:
+    if element.weights is not None:
+        return NO_WEIGHTED_BAND
+    return "" if replicate is None else NO_BAND
+
 
 _MEANINGS = {
     "survival": "probability of a longer life",
@@ -119,14 +128,29 @@ _MEANINGS = {
 
 
 _MOST_TIMES = 500
+_RARE = 1e-4  # share of the weight that ends before the first time, and after the last
 
 
 def _times(chosen: list[Element]) -> Floats:
-    """Return every time at which a row ended, or some of these for laws of lives."""
+    """Return every time at which a row ended, or some of these for laws of lives or weights."""
+    if all(element.weights is not None for element in chosen):
+        return np.unique(np.concatenate([_weighted_times(element) for element in chosen]))
     time = np.unique(np.concatenate([e.values[np.isfinite(e.values)] for e in chosen]))
     if all(element.is_plain for element in chosen) or len(time) <= _MOST_TIMES:
         return time
     return time[np.linspace(0, len(time) - 1, _MOST_TIMES).round().astype(int)]
+
+
+def _weighted_times(element: Element) -> Floats:
+    """Return times between which equal shares of the weight have ended."""
+    assert element.weights is not None
+    ended = np.isfinite(element.values)
+    order = np.argsort(element.values[ended], kind="stable")
+    time, share = element.values[ended][order], np.cumsum(element.weights[ended][order])
+    if not len(time):
+        return time
+    wanted = np.linspace(_RARE, 1 - _RARE, min(_MOST_TIMES, len(time))) * share[-1]
+    return np.asarray(time[np.searchsorted(share, wanted)])
 
 
 class Curve(NamedTuple):
@@ -143,9 +167,12 @@ def _variables(
     """Return every variable of `survival` for one element, named and ordered as there."""
     plain = curve(element, time, replicate)
     band_low, band_high = _band(element.plain, time, replicate)
-    rows = int(element.present.sum())
+    kept = element.present
+    rows = int(kept.sum())
+    worth = None if element.weights is None else element.weights[kept]
+    never = np.average(element.never[kept], weights=worth) if rows else np.nan
     found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
-    found |= {"never": element.never.sum() / rows if rows else np.nan, "rows": rows}
+    found |= {"never": never, "rows": rows}
     found |= {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
     if with_failed:
         for end, life in (("low", 0.0), ("high", np.inf)):
@@ -185,7 +212,7 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
 def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
     """Return the simultaneous 95 % band of `survival` for one element; NaN for replicates."""
     values, censored = element.at_least, element.censored[element.present]
-    if len(values) == 0 or replicate is not None:
+    if len(values) == 0 or _why_no_band(element, replicate):
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
     found = outliving(values, censored, time, known_at_once=element.declared.never_known_at_once)
     among = found.among or found

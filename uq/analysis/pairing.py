@@ -16,6 +16,7 @@ from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
+from uq.population.means import share_to_compare
 from uq.rows.elements import (
     Floats,
     are_independent,
@@ -25,6 +26,7 @@ from uq.rows.elements import (
     study_file_of,
 )
 from uq.rows.nesting import is_nested
+from uq.rows.weights import has_weights
 from uq.study.file import Tied
 
 _ROUNDING = 1e-6  # an interval so much narrower than the plain ones is zero but for rounding
@@ -40,6 +42,7 @@ class Kinship(Enum):
     ROWS = "The studies share a seed: rows with the same number are paired."
     REPLICATES = "The studies share a seed: replicates with the same number are paired."
     ROWS_IMPORTED = "The imported rows are the same: rows with the same number are paired."
+    WEIGHTED = "Inspections have weighted the rows, so these intervals are conservative."
     UNKNOWN_IMPORTED = (
         "How the imported rows were drawn is unknown, so these intervals are conservative."
     )
@@ -62,6 +65,8 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
     Kinship
     """
     both = (first, second)
+    if any(has_weights(ds) for ds in both):
+        return Kinship.WEIGHTED
     if any(DESIGNS[ds.attrs["design"]].imported for ds in both):
         return _kinship_of_imported(first, second)
     if first.attrs["seed"] != second.attrs["seed"]:
@@ -159,8 +164,12 @@ class Pair:
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
                 return Estimate(value)
             return Estimate(value, *intervals.scatter_interval(value, apart))
+        if self.kinship is Kinship.WEIGHTED:
+            return two_samples.difference(known[0], known[1], self.unpaired)
         if estimator.counts_hits and all(one is None for one in self._replicate):
             known = [_newcombe(sample) for sample in samples]
+        elif estimator.averages:
+            known = [self._averaged(i, sample) for i, sample in enumerate(samples)]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
         if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
@@ -205,6 +214,11 @@ class Pair:
         if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
+
+    def _averaged(self, i: int, sample: Sample) -> Estimate:
+        """Return a mean of probabilities with the interval from which a difference is built."""
+        part = intervals.replicates_of_some(self._replicate[i], sample.kept)
+        return share_to_compare(sample.numbers[sample.kept], part=part)
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])

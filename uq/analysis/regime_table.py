@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from uq.analysis.statistics.between_regimes import between_share
-from uq.analysis.summary import regime_shares
+from uq.analysis.summary import REGIME, category_shares
 from uq.errors import InputError
 from uq.indices.targets import Target, category_targets, number_of
 from uq.methods.indices import RefusedError
@@ -24,6 +24,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.nesting import one_of_each_sample
+from uq.rows.weights import refuse_weights
 
 PROBABILITIES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -56,8 +57,11 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     """
     if "regime" not in ds:
         raise InputError("this result has no regimes to compare")
+    refuse_weights(ds, "a comparison of regimes")
     rows = independent_rows(ds)
-    shares = {name: one for name, one in regime_shares(rows).items() if one.facts["count"]}
+    shares = {
+        name: one for name, one in category_shares(rows, REGIME).items() if one.facts["count"]
+    }
     codes = {name: code for code, name in flags(rows["regime"]) if name in shares}
     members = [rows["regime"].values == code for code in codes.values()]
     inputs = {

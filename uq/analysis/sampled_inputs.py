@@ -14,6 +14,7 @@ from uq.inputs.law import Law
 from uq.rows.elements import Floats, independent_rows
 from uq.rows.nesting import one_of_each_sample
 from uq.rows.sampling import row_block, rows
+from uq.rows.weights import row_weights
 from uq.study.definition import Study
 from uq.study.input_checks import laws_of
 
@@ -83,30 +84,38 @@ def sampled_ranks(study: Study) -> Floats:
     return np.corrcoef([scipy.stats.rankdata(values[name]) for name in study.dependence.parameters])
 
 
-def compare(law: Law, values: Floats) -> SampledInput:
-    """Compare a law with values that should follow it.
+def compare(law: Law, values: Floats, weights: Floats | None = None) -> SampledInput:
+    """Compare a law with values that should follow it: quantiles of both [1]_, their distance.
 
     Parameters
     ----------
     law : Law
     values : ndarray, shape (n,)
+    weights : ndarray, shape (n,), optional
 
     Returns
     -------
     SampledInput
+
+    References
+    ----------
+    .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", The American
+       Statistician 50 (1996) 361, definition 1.
     """
     probabilities = np.array(PROBABILITIES)
-    ascending = np.sort(values)
+    worth = np.ones(len(values)) if weights is None else weights
+    order = np.argsort(values, kind="stable")
+    ascending, share = values[order], np.append(0.0, np.cumsum(worth[order]) / worth.sum())
     distinct = np.unique(ascending)
     stated = cdf_within(law, distinct, EVERYWHERE)
-    up_to = np.searchsorted(ascending, distinct, side="right") / len(ascending)
+    up_to = share[np.searchsorted(ascending, distinct, side="right")]
     distance = np.abs(up_to - stated).max()
     if not law.discrete:  # just before each step of the rows
-        before = np.searchsorted(ascending, distinct, side="left") / len(ascending)
+        before = share[np.searchsorted(ascending, distinct, side="left")]
         distance = max(distance, np.abs(before - stated).max())
     return SampledInput(
         ppf_within(law, probabilities, EVERYWHERE),
-        np.quantile(ascending, probabilities, method="inverted_cdf"),
+        np.quantile(values, probabilities, method="inverted_cdf", weights=weights),
         float(distance),
     )
 
@@ -124,8 +133,17 @@ def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
     dict of str to tuple of Law and ndarray
         For a parameter that is another times a factor, those of the factor.
     """
-    plain = one_of_each_sample(independent_rows(ds))
+    plain = _one_row_of_each(ds)
     if plain.sizes["sample"] == 0:
         return {}
     values = independent_inputs(plain)
     return {name: (law, values[name]) for name, law in laws_of(ds.attrs["study"]).items()}
+
+
+def weights_of_samples(ds: xr.Dataset) -> Floats | None:
+    """Return the weights of the rows of `laws_and_values`, None where they have none."""
+    return row_weights(_one_row_of_each(ds))
+
+
+def _one_row_of_each(ds: xr.Dataset) -> xr.Dataset:
+    return one_of_each_sample(independent_rows(ds))

@@ -1,6 +1,6 @@
 """The summary of a result: how rows ended, the regimes, and the statistics of each output."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
-from uq.analysis.estimators import in_regimes, share
+from uq.analysis.estimators import in_categories, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
 from uq.analysis.statistics.statistic import Context, Kind, Statistic
@@ -20,7 +20,7 @@ from uq.intervals import replicates_of_some, share_interval
 from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
-from uq.population.smoothing import Smoothed
+from uq.population.smoothing import Smoothed, weights_of
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -29,7 +29,6 @@ from uq.rows.elements import (
     flags,
     has_independent_samples,
     independent_rows,
-    output_names,
     replicates_of,
     shown_outputs,
     study_file_of,
@@ -37,6 +36,8 @@ from uq.rows.elements import (
 )
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
+from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights, refuse_weights
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
@@ -59,17 +60,23 @@ SOME_FAILED = (
 )
 
 
-def regime_json(one: Statistic) -> dict[str, Any]:
-    """Return count and share of a regime as JSON has them."""
+def share_json(one: Statistic) -> dict[str, Any]:
+    """Return count and share of a category as JSON has them."""
     share = {"count": one.facts["count"], "share": json_form.number(one.estimate.value)}
     return share | json_form.ends(one.estimate) | json_form.failed(one.failed)
 
 
 def _compared_json(one: Statistic) -> dict[str, Any]:
-    return regime_json(one) | {"value": json_form.number(one.estimate.value)}
+    return share_json(one) | {"value": json_form.number(one.estimate.value)}
 
 
-REGIME = Kind(entry=_compared_json)
+SHARE = Kind(entry=_compared_json)
+
+REGIME = "regime"
+"""The category by which rows are told apart in tables and figures."""
+
+Shares = Mapping[str, Statistic]
+"""Label -> its share."""
 
 
 @dataclass(frozen=True)
@@ -111,24 +118,41 @@ class Summary:
         The independent rows, on which everything but `status` is based.
     status : dict of str to int
         Number of rows with each status, of all rows.
-    regimes : dict of str to Statistic
-        Share of each, with ``count`` among its facts, also of those that do not occur; empty
-        without regimes.
+    shares : dict of str to dict
+        Of each category that is shown, such as the period, and of the regime in any case: label ->
+        `Statistic` of its share, with ``count`` among its facts.
     outputs : dict of str to Described
         By name of the element.
     most_failed : int
         The largest number of rows that lack an element because they failed.
     notes : list of str
         Sentences on what could not be estimated.
+    weights : Smoothed, optional
+        Of the rows, where inspections have weighted them.
     """
 
     samples: int
     rows_used: int
     status: Mapping[str, int]
-    regimes: Mapping[str, Statistic]
+    shares: Mapping[str, Shares]
     outputs: Mapping[str, Described]
     most_failed: int
     notes: list[str]
+    weights: Smoothed | None = None
+
+    @property
+    def regimes(self) -> Shares:
+        """Share of each regime, also of those that do not occur; empty without regimes."""
+        return self.shares.get(REGIME, {})
+
+    @property
+    def categories(self) -> dict[str, Shares]:
+        """The same of other categories, of those labels that occur."""
+        return {
+            name: {label: one for label, one in shares.items() if one.facts["count"]}
+            for name, shares in self.shares.items()
+            if name != REGIME
+        }
 
 
 def summarise(
@@ -162,11 +186,13 @@ def summarise(
     Summary
     """
     analysis = analysis or analysis_of(ds)
+    if fits:
+        refuse_weights(ds, "laws fitted to lives")
     notes = _notes(ds)
     if regime is not None:
         ds = within_regime(ds, regime)
     rows = independent_rows(ds)
-    of_all = None if weighting is None else weighting.all_inputs
+    of_all = weights_of(rows) if weighting is None else weighting.all_inputs
     context = Context(rows, analysis, replicates_of(rows), of_all)
     outputs, most = dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
@@ -181,10 +207,11 @@ def summarise(
         samples=ds.sizes["sample"],
         rows_used=rows.sizes["sample"],
         status=status_counts(ds),
-        regimes=regime_shares(rows, of_all) if "regime" in output_names(ds) else {},
+        shares={name: category_shares(rows, name, of_all) for name in _categories(ds, names)},
         outputs=outputs,
         most_failed=most,
         notes=notes,
+        weights=of_all if weighting is None else None,
     )
 
 
@@ -201,8 +228,19 @@ def status_counts(ds: xr.Dataset) -> dict[str, int]:
     return {label: count for label, count in counts.items() if count or label == "ok"}
 
 
-def regime_shares(rows: xr.Dataset, weights: Smoothed | None = None) -> dict[str, Statistic]:
-    """Return the share of each regime among the independent rows that did not fail."""
+def _categories(ds: xr.Dataset, shown: Collection[str]) -> list[str]:
+    """Return the categories without dimensions that are shown, and the regime."""
+    return [
+        name
+        for name, output in outputs_of(ds).items()
+        if output.is_category and not output.dims and (name in shown or name == REGIME)
+    ]
+
+
+def category_shares(
+    rows: xr.Dataset, name: str, weights: Smoothed | None = None
+) -> dict[str, Statistic]:
+    """Return the share of each label of a category among the independent rows that did not fail."""
     replicate = replicates_of(rows)
 
     def estimate(hits: Mask, kept: Mask) -> Estimate:
@@ -215,16 +253,16 @@ def regime_shares(rows: xr.Dataset, weights: Smoothed | None = None) -> dict[str
 
     return {
         label: Statistic(
-            ("regime", label),
+            (name, label) if name == REGIME else ("categories", name, label),
             label,
             estimate(hits, kept),
-            kind=REGIME,
+            kind=SHARE,
             failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
             by=(share_of, share_interval),
         )
-        for label, (kept, numbers) in in_regimes(rows).items()
+        for label, (kept, numbers) in in_categories(rows, name).items()
         for hits in [numbers > 0]
     }
 
@@ -234,7 +272,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
         return [NO_STATISTICS.format(design=ds.attrs["design"], why=why)]
     design = study_file_of(ds).design
     notes = []
-    if design.until is not None:
+    if design.until is not None and not has_weights(ds):
         notes.append(stopping.sentence(design, ds))
     if is_nested(ds):
         place = nesting_of(ds)

@@ -26,6 +26,7 @@ from uq.rows.elements import Element, elements_of, shown_outputs
 from uq.rows.evaluate import evaluate
 from uq.rows.results import build_rows
 from uq.rows.sampling import row_block, row_seeds, rows
+from uq.rows.weights import refuse_weights
 from uq.study.definition import Study, study_from_text
 
 MOST_ROWS = 1_000_000
@@ -120,6 +121,7 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
 
 def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
     """Return the estimates of `two_fidelities` as records."""
+    refuse_weights(ds, "estimates with a twin")
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     twin = study.analysis.twin
     if not twin:

@@ -22,6 +22,7 @@ from uq.population.densities import changed_laws, depends_otherwise
 from uq.population.reweighting import Weighting
 from uq.population.scaling import Inputs, inputs_of
 from uq.rows.elements import analysis_of, independent_rows, replicates_of, shown_outputs
+from uq.rows.weights import refuse_weights
 from uq.study.file import StudyFile
 from uq.study.reading import read_study_text
 
@@ -84,6 +85,7 @@ def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
 
 def answer(ds: xr.Dataset, changes: Mapping[str, Any]) -> WhatIf:
     """Return what `what_if` tabulates."""
+    refuse_weights(ds, "what if")
     rows = independent_rows(ds)
     old, new = inputs_of(rows), _changed(rows, changes)
     _refuse(ds, old, new)

@@ -6,7 +6,10 @@ from typing import Any
 from uq.cli.printing import console, grid, heading, number, paragraph
 from uq.contract import Model, Setting
 from uq.errors import InputError
+from uq.greek import readable
 from uq.study.registry import find_model, model_names
+from uq.units import powers
+from uq.wording import listed
 
 
 def list_models() -> list[dict[str, str]]:
@@ -65,23 +68,24 @@ def show(model: Model) -> None:
         else:
             heading(name, symbol)
             paragraph(f"{nominal}, admissible: {bounds}")
-        paragraph(model.parameter(name).meaning)
+        paragraph(readable(model.parameter(name).meaning))
         paragraph(model.parameter(name).source)
     if model.setting_names:
         heading("\nSettings")
     defaults = model.settings()
     for name in model.setting_names:
         setting = model.setting(name)
-        unit = "" if setting.unit == "1" else f" {setting.unit}"
+        unit = "" if setting.unit == "1" else f" {powers(setting.unit)}"
         heading(f"  {name}", f"{getattr(defaults, name)}{unit}{_allowed(setting)}")
         paragraph(setting.meaning)
     heading("\nOutputs")
     for name, output in model.outputs.items():
         dims = f"({', '.join(output.dims)})" if output.dims else ""
-        heading(f"  {name}{dims}", f"{output.kind} [{output.unit}]")
-        paragraph(output.meaning)
+        unit = "" if output.unit == "1" else f" [{powers(output.unit)}]"
+        heading(f"  {name}{dims}", f"{output.kind}{unit}")
+        paragraph(readable(output.meaning))
         if output.categories:
-            paragraph(", ".join(output.categories))
+            paragraph(listed(output.categories))
     if model.references:
         heading("\nReferences")
     for reference in model.references:
@@ -90,7 +94,7 @@ def show(model: Model) -> None:
 
 def _line(model: Model, name: str) -> tuple[str, str, str, str]:
     parameter = model.parameter(name)
-    unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+    unit = "" if parameter.unit == "1" else f" {powers(parameter.unit)}"
     bounds = " to ".join(map(number, parameter.bounds))
     return name, parameter.symbol, f"{model.nominal[name]:.6g}{unit}", bounds
 

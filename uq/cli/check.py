@@ -10,7 +10,8 @@ from uq.rows.sampling import group_size, rows
 from uq.running import runner
 from uq.running.loading import load_study
 from uq.study.definition import Study
-from uq.wording import law
+from uq.units import powers, typical, unit_of
+from uq.wording import in_brackets, law
 
 
 def check(path: str, model: str | None) -> None:
@@ -58,7 +59,7 @@ def check(path: str, model: str | None) -> None:
 
 def _unit(study: Study, name: str) -> str:
     times = study.uncertain[name].times
-    return study.model.parameter(name).unit if times is None else f"x {times}"
+    return powers(study.model.parameter(name).unit) if times is None else f"x {times}"
 
 
 def _show_sampled(study: Study) -> None:
@@ -77,8 +78,12 @@ def _show_sampled(study: Study) -> None:
     )
     lines = []
     for name, one in found.items():
-        lines.append((name, "stated", *map(number, one.stated), ""))
-        lines.append(("", "rows", *map(number, one.sampled), f"{one.distance:.2g}"))
+        is_factor = name in study.uncertain and study.uncertain[name].times is not None
+        units = "1" if is_factor else study.model.parameter(name).unit
+        unit = unit_of(units, typical(one.stated))
+        law_ends, row_ends = (map(number, of / unit.size) for of in (one.stated, one.sampled))
+        lines.append((name, "stated", *law_ends, ""))
+        lines.append((f" {in_brackets(unit)}", "rows", *row_ends, f"{one.distance:.2g}"))
     grid(lines, header=("parameter", "", "5 %", "50 %", "95 %", "largest distance"))
     if study.dependence is not None:
         heading("\nRank correlations")

@@ -12,7 +12,7 @@ from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.units import Unit, typical, unit_of
-from uq.wording import compared, estimated, in_brackets, interval, known, number
+from uq.wording import compared, estimated, in_brackets, in_unit, interval, known, number
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -40,10 +40,11 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
         grid([("A", change.first), ("B", change.second)], indent=4)
     if not found.changed:
         paragraph("none", indent=2)
-    if found.regimes:
-        heading("\nregime")
-        lines = [(label, *_cells(one)) for label, one in found.regimes.items()]
-        grid(lines, header=_HEADER)
+    for name, shares in found.shares.items():
+        if not shares:
+            continue
+        heading(f"\n{name}")
+        grid([(label, *_cells(one)) for label, one in shares.items()], header=_HEADER)
     for name, output in found.outputs.items():
         unit = _unit(output)
         heading(f"\n{name}{in_brackets(unit)}")
@@ -103,17 +104,22 @@ def bought(found: Comparison) -> list[str]:
     only = found.only
     if only is None:
         return []
-    unit = "" if only.units == "1" else f" {only.units}"
     first, second = only.first, only.second
-    change = f"sd {number(first.sd)} to {number(second.sd)}{unit}"
+    change = f"sd {_both(first.sd, second.sd, only.units)}"
     if abs(second.mean - first.mean) > 0.1 * max(first.sd, second.sd):
-        change += f", mean {number(first.mean)} to {number(second.mean)}{unit}"
+        change += f", mean {_both(first.mean, second.mean, only.units)}"
     sentences = [f"Only {only.name} differs ({change})."]
     for name, output in list(found.outputs.items())[:_MOST_OUTPUTS]:
         for one in output.statistics:
             if one.ratio is not None and isfinite(one.ratio.value):
                 sentences.append(_times(f"{one.first.label} of {name}", one.ratio))
     return [" ".join(sentences)]
+
+
+def _both(first: float, second: float, units: str) -> str:
+    """Return two numbers in the unit in which the first is read."""
+    unit = unit_of(units, first)
+    return f"{number(first / unit.size)} to {in_unit(second, unit)}"
 
 
 def _times(name: str, ratio: Estimate) -> str:

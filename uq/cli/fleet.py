@@ -14,23 +14,29 @@ from uq.written import read_threshold
 
 
 def fleet(
-    result: Path, size: int, by: Sequence[str], allow: int, output: str | None, json: bool
+    result: Path,
+    size: int,
+    by: Sequence[str],
+    allow: int,
+    output: str | None,
+    plain: bool,
+    json: bool,
 ) -> None:
     """Show when the first of some units ends, and how many have ended by a time."""
     ds = open_result(result)
     times = [read_threshold("--by", text, "a life", "s") for text in by]
-    found = fleet_of(ds, size, times, allow, output)
+    found = fleet_of(ds, size, times, allow, output, plain=plain)
     if json:
         print_json(fleet_json(found))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.design}")
     unit = unit_of("s", typical(one.estimate.value for one in found.first.values()))
-    heading(f"\n{found.output}{in_brackets(unit)}", f"the first of {size} ends")
+    heading(f"\n{found.output}{in_brackets(unit)}", f"the first of {size} has {found.ended}")
     _show([(f"quantile {p!r}", one) for p, one in found.first.items()], unit.size)
     for time, (failed, at_most) in found.by.items():
         heading(f"\nby {threshold(time, 's')}")
-        kept = "none has ended" if allow == 0 else f"at most {allow} have ended"
-        _show([("have ended", failed), (f"P({kept})", at_most)])
+        kept = f"none has {found.ended}" if allow == 0 else f"at most {allow} have {found.ended}"
+        _show([(f"have {found.ended}", failed), (f"P({kept})", at_most)])
     for text in found.sentences:
         note(text)
 

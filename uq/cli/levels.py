@@ -7,7 +7,7 @@ from pathlib import Path
 from uq.analysis.as_json import levels_json
 from uq.analysis.level_shares import SOLVER, LevelShares, by_level
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.cli.targets import Target
+from uq.conclusions.targets import Target
 from uq.designs.levels import LEVELS
 from uq.methods.indices import S1
 from uq.rows.results import open_result

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table
@@ -48,8 +49,12 @@ def _finite(value: Any) -> Any:
 
 
 def heading(text: str, more: str = "") -> None:
-    """Print a bold heading, followed by an explanation."""
-    console.print(Text.assemble((plain(text), "bold"), plain(f"  {more}") if more else ""))
+    """Print a bold heading, followed by an explanation: below it where the line is too short."""
+    text, more = plain(text), plain(more)
+    fits = cell_len(text.lstrip("\n")) + 2 + cell_len(more) <= console.width
+    console.print(Text.assemble((text, "bold"), f"  {more}" if more and fits else ""))
+    if more and not fits:
+        paragraph(more, indent=2)
 
 
 def paragraph(text: str, indent: int = 4) -> None:
@@ -77,12 +82,24 @@ def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int 
     titles = header or [""] * len(columns)
     table = Table(box=None, show_header=bool(header), pad_edge=False, padding=(0, 2, 0, 0))
     kept = [i for i, column in enumerate(columns) if any(column)]
+    room = console.width - indent - sum(2 + _longest_word(columns[i]) for i in kept[1:])
+    natural = sum(2 + max(map(cell_len, (titles[i], *columns[i]))) for i in kept)
     for i in kept:
-        justify: JustifyMethod = "right" if all(map(_looks_numeric, columns[i])) else "left"
-        table.add_column(titles[i], justify=justify, overflow="fold")
+        numeric = all(map(_looks_numeric, columns[i]))
+        justify: JustifyMethod = "right" if numeric else "left"
+        widest = max(map(cell_len, columns[i]))
+        names = i == kept[0] and len(kept) > 1 and widest <= room - 2
+        tight = numeric and cell_len(titles[i]) > widest and indent + natural > console.width
+        title = titles[i].replace(" ", "\n") if tight else titles[i]
+        table.add_column(title, justify=justify, overflow="fold", no_wrap=numeric or names)
     for row in zip(*(columns[i] for i in kept), strict=True):
         table.add_row(*(Text(plain(cell)) for cell in row))
     console.print(Padding(table, (0, 0, 0, indent), expand=False))
+
+
+def _longest_word(cells: Sequence[str]) -> int:
+    """Return the width that a column needs to break between words only."""
+    return max((cell_len(word) for cell in cells for word in cell.split()), default=0)
 
 
 def _looks_numeric(cell: str) -> bool:

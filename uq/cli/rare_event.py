@@ -90,8 +90,7 @@ def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
             ("95 % interval", f"{low} to {high}"),
             *([("with failed rows inside", f"up to {worst}")] if worst != "-" else []),
             ("rows", str(int(ds["rows"]))),
-            ("failed", str(int(ds["failed"]) or "")),
-            ("undefined", str(int(ds["undefined"]) or "")),
+            *((name, str(int(ds[name]))) for name in ("failed", "undefined") if ds[name] > 0),
         ]
     )
     if "typical" in ds:

@@ -5,10 +5,12 @@ from collections.abc import Iterator, Mapping
 import xarray as xr
 
 from uq.cli.printing import grid, heading, paragraph
-from uq.cli.targets import Target
+from uq.conclusions.targets import Target
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities
 from uq.methods.indices import S1, IndexKind, Null
+from uq.units import typical, unit_of
+from uq.wording import in_brackets
 
 
 def show(ds: xr.Dataset, found: Sensitivities) -> None:
@@ -18,14 +20,18 @@ def show(ds: xr.Dataset, found: Sensitivities) -> None:
     heading(f"Sensitivity by {found.method}", more)
     for name, one in found.targets.items():
         target = Target(ds, name)
-        heading(f"\n{target.name}", target.meaning)
+        effects = [
+            e.value for kind, of in one.kinds().items() if _is_effect(kind) for e in of.values()
+        ]
+        unit = unit_of(target.units if effects else "1", typical(effects))
+        heading(f"\n{target.name}{in_brackets(unit)}", target.meaning)
         if one.refused:
             paragraph(one.refused, indent=2)
             continue
         for table in (one.kinds(), one.kinds(of_pairs=True)):
             if table:
                 header = (text for kind in table for text in (kind.key, "95 % interval"))
-                grid(_lines(table, one.indices.nulls), header=("", *header))
+                grid(_lines(table, one.indices.nulls, unit.size), header=("", *header))
         if noise := one.indices.noise:
             share = (S1.text(noise.value), S1.interval(noise))
             grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
@@ -33,8 +39,16 @@ def show(ds: xr.Dataset, found: Sensitivities) -> None:
             paragraph(note, indent=2)
 
 
-def _lines(table: Values, nulls: Mapping[IndexKind, Null]) -> Iterator[list[str]]:
+def _is_effect(kind: IndexKind) -> bool:
+    """Return whether an index is in the unit of the output."""
+    return kind.unit == "output"
+
+
+def _lines(table: Values, nulls: Mapping[IndexKind, Null], per: float) -> Iterator[list[str]]:
     for label, estimates in lines(table, nulls):
-        pairs = zip(table, estimates, strict=True)
+        pairs = [
+            (kind, one.over(per) if _is_effect(kind) else one)
+            for kind, one in zip(table, estimates, strict=True)
+        ]
         cells = ((kind.text(one.value), kind.interval(one)) for kind, one in pairs)
         yield [label, *(text for pair in cells for text in pair)]

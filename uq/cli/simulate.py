@@ -11,10 +11,13 @@ from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
+from uq.greek import readable
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
 from uq.rows.one_row import Row, run_row
 from uq.running.loading import load_model
+from uq.units import typical, unit_of
+from uq.wording import in_brackets
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -145,27 +148,29 @@ def _show(row: Row) -> None:
 def show_outputs(row: Row) -> None:
     """Print every output of a row, with its unit and meaning."""
     for name, output in row.model.outputs.items():
-        unit = "" if output.unit == "1" else f" [{output.unit}]"
-        heading(f"\n{name}{unit}", output.meaning)
         if output.is_category:
+            heading(f"\n{name}", readable(output.meaning))
             grid([("", _plain(row.model, name, row.columns[name][0]) or "none")])
             continue
+        states = list(_states(row, name))
+        unit = unit_of(output.unit, typical(value for _, value, _ in states))
+        heading(f"\n{name}{in_brackets(unit)}", readable(output.meaning))
         grid(
             [
                 (
                     key[len(name) :].strip("[]"),
-                    _shown(value, state),
-                    duration(value) if output.unit == "s" else "",
+                    _shown(value, state, unit.size),
+                    f"{number(value)} s" if output.unit == "s" and duration(value) else "",
                 )
-                for key, value, state in _states(row, name)
+                for key, value, state in states
             ]
         )
 
 
-def _shown(value: float, state: str) -> str:
+def _shown(value: float, state: str, per: float) -> str:
     if state == "censored":
-        return f"more than {number(value)}"
-    return state or ("failed" if np.isnan(value) else number(value))
+        return f"more than {number(value / per)}"
+    return state or ("failed" if np.isnan(value) else number(value / per))
 
 
 def _number(text: str) -> tuple[str, float]:

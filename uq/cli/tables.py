@@ -11,11 +11,12 @@ from uq.analysis.findings import Findings
 from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
-from uq.analysis.summary import Described, Summary
+from uq.analysis.summary import REGIME, Described, Summary
 from uq.cli.printing import console, grid, heading, note, paragraph
 from uq.conclusions.answer import conclude
 from uq.conclusions.parts import Answer
 from uq.estimate import Estimate
+from uq.greek import readable
 from uq.indices.targets import split_name
 from uq.rows.variables import outputs_of
 from uq.units import Unit, typical, unit_of
@@ -48,15 +49,18 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         design += f", statistics from the {some} independent ones" if some else ", none independent"
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
     grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
-    if summary.regimes:
-        heading("\nregime")
-        shares = [_regime(one) for one in summary.regimes.values()]
-        grid(shares, header=("", "share", "95 % interval", "rows", "with failed rows"))
+    regimes = {REGIME: summary.regimes} if summary.regimes else {}
+    for name, shares in (regimes | summary.categories).items():
+        heading(f"\n{name}", str(ds[name].attrs["long_name"]))
+        lines = [_share(one) for one in shares.values()]
+        grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
     for name, output in summary.outputs.items():
-        meaning = ds[name.partition("[")[0]].attrs["long_name"]
+        meaning = readable(ds[name.partition("[")[0]].attrs["long_name"])
         block = _block(ds, name, output)
         heading(f"\n{name}{in_brackets(block.unit)}", meaning)
         grid(_lines(output, block), header=("", "value", "95 % interval", ""))
+        for text in _reasons(output, block):
+            paragraph(text, indent=2)
         for one in output.statistics:
             for text in one.notes:
                 paragraph(text, indent=2)
@@ -78,7 +82,7 @@ def show_answer(found: Answer) -> None:
             paragraph(one.with_cause, indent=0)
     if found.regimes:
         paragraph(found.regimes_sentence, indent=0)
-    if lead is not None and (ranking := lead.ranking) is not None:
+    if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
         paragraph(ranking.sentence, indent=0)
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
@@ -102,6 +106,11 @@ class Block(NamedTuple):
         """Return the size of the unit of a statistic."""
         return self.unit.size if one.unit == self.units else 1.0
 
+    def label(self, one: Statistic) -> str:
+        """Return the name of a statistic."""
+        asked = () if one.at is None else (one.at,)
+        return estimated(one.label, self.units, self.compared, asked)
+
 
 def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
     quantiles = (one.estimate.value for one in output.parts["quantiles"])
@@ -110,7 +119,7 @@ def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
     return Block(unit, output.units, compared(name, is_angle))
 
 
-def _regime(one: Statistic) -> tuple[str, ...]:
+def _share(one: Statistic) -> tuple[str, ...]:
     share = (one.label, one.words(), interval(one.estimate))
     return *share, str(one.facts["count"]), failed_interval(one.failed)
 
@@ -121,13 +130,9 @@ def _lines(output: Described, block: Block) -> Iterator[Line]:
         shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
         for one in shown:
             yield _line(one, block)
-            if isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise:
-                yield from _reason(one)
             yield from _failed(one, block)
             if one.otherwise and one.otherwise.label:
-                yield from _reason(one)
                 yield _line(one.otherwise, block)
-                yield from _reason(one.otherwise)
                 yield from _failed(one.otherwise, block)
                 yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
         for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
@@ -145,9 +150,7 @@ def _line(one: Statistic, block: Block) -> Line:
         more = f"of its {form}"
     elif undefined := one.facts.get("undefined"):
         more = f"{percent(undefined)} undefined"
-    asked = () if one.at is None else (one.at,)
-    label = estimated(one.label, block.units, block.compared, asked)
-    return label, one.words(per), interval(one.estimate, per), more
+    return block.label(one), one.words(per), interval(one.estimate, per), more
 
 
 def _failed(one: Statistic, block: Block) -> Iterator[Line]:
@@ -155,9 +158,20 @@ def _failed(one: Statistic, block: Block) -> Iterator[Line]:
         yield "  with failed rows", "", worst, ""
 
 
-def _reason(one: Statistic) -> Iterator[Line]:
-    if one.estimate.reason:
-        yield "", one.estimate.reason, "", ""
+def _reasons(output: Described, block: Block) -> Iterator[str]:
+    """Yield why numbers are missing, each reason once, unless a note says it."""
+    lacking: dict[str, list[str]] = {}
+    said = {text for one in output.statistics for text in one.notes}
+    for one in output.statistics:
+        if not (one.is_read_by(Reader.TERMINAL) and one.words()):
+            continue
+        both = [one, *([one.otherwise] if one.otherwise and one.otherwise.label else [])]
+        alone = isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise
+        for each in both if len(both) > 1 else both * alone:
+            if each.estimate.reason and each.estimate.reason not in said:
+                lacking.setdefault(each.estimate.reason, []).append(block.label(each))
+    for reason, labels in lacking.items():
+        yield f"{', '.join(labels)}: {reason}"
 
 
 def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:

@@ -4,8 +4,10 @@ Reading order; a module imports only those above it:
 
     sources         how well a number is known
     words           inputs and elements by their names, numbers in a person's units
+    targets         what a number of a result is about, by the name that a person reads
     promises        what can be promised of an output, and its likely range
     contributions   what inputs contribute, with direction and size
+    remedies        what a tighter tolerance would change, and each piece of advice
     parts           what the answer consists of; each part writes its sentence from its numbers
     rankings        which inputs contribute most, with direction and size
     quantities      what can be promised of an output, its range and its probabilities

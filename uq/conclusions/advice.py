@@ -2,22 +2,27 @@
 
 from collections.abc import Iterator, Sequence
 
+import xarray as xr
+
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Advice, Quantity
+from uq.conclusions.parts import Quantity
 from uq.conclusions.quantities import quantities
+from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, Unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened
-from uq.conclusions.words import called_together, rows_in_words
+from uq.conclusions.words import called_together, grouped, rows_in_words
 from uq.rows.elements import analysis_of
+from uq.rows.nesting import is_nested
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 
 
 def advise(
     findings: Findings, answered: Sequence[Quantity], weighed: bool = True
 ) -> Iterator[Advice]:
-    """Yield what to do, the most urgent first.
+    """Yield what to do, the most urgent first; nothing where inspections have weighted the rows.
 
     Parameters
     ----------
@@ -28,6 +33,8 @@ def advise(
         Whether the rows are weighed to say what a tighter tolerance would change; otherwise a
         command says it.
     """
+    if has_weights(findings.ds):
+        return
     tighten = _tighten if weighed else _ask
     found = [
         *_mend(findings),
@@ -124,14 +131,18 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     if not open_ones:
         return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
-        f"Not enough rows: {one.what}; {_needed(one, rows)} rows would settle it."
+        f"Not enough rows: {one.what}; {_needed(one, findings.ds)} would settle it."
         for one in sorted(open_ones, key=lambda one: -one.factor)
     ]
 
 
-def _needed(one: Unsettled, rows: int) -> str:
+def _needed(one: Unsettled, ds: xr.Dataset) -> str:
+    """Return the rows that would settle it, and of how many samples where these have several."""
     many = "more than" if one.factor > MOST else "about"
-    return f"{many} {rows_in_words(min(one.factor, MOST) * rows)}"
+    factor = min(one.factor, MOST)
+    rows = f"{many} {rows_in_words(factor * ds.sizes['sample'])} rows"
+    samples = rows_in_words(factor * int(ds.attrs["samples"]))
+    return f"{rows} ({samples} samples)" if is_nested(ds) else rows
 
 
 def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
@@ -143,6 +154,6 @@ def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advi
     more = f"; {len(open_ones) - 1} more are not settled" if len(open_ones) > 1 else ""
     yield Advice(
         "rows",
-        f"Compute {_needed(worst, rows)} rows instead of {rows}: {worst.what}{more}.",
+        f"Compute {_needed(worst, findings.ds)} instead of {grouped(rows)}: {worst.what}{more}.",
         rows=int(min(worst.factor, MOST) * rows) + 1,
     )

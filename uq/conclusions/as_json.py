@@ -6,8 +6,9 @@ from typing import Any
 from uq import json_form
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Change, Contribution, Ranking
-from uq.conclusions.parts import Advice, Answer, Event, Quantity
+from uq.conclusions.parts import Answer, Event, Quantity
 from uq.conclusions.promises import Promise, Range
+from uq.conclusions.remedies import Advice
 
 
 def answer_json(found: Answer) -> dict[str, Any]:
@@ -71,6 +72,7 @@ def _event(one: Event) -> dict[str, Any]:
     found["share"] = (
         {"sentence": one.sentence} | json_form.whole(one.share) | json_form.failed(one.failed)
     )
+    found["share"] |= {"undefined": one.undefined}
     found["decided_by"] = {"sentence": one.decided_by}
     if one.curve is not None:
         parts = [*_parts(one.curve)]

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
-from uq.conclusions import bars
-from uq.conclusions.contributions import Contribution, Ranking
+from uq.conclusions import bars, keyed
+from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Answer, Quantity
 from uq.conclusions.words import sentence
 from uq.literals import plain
@@ -24,20 +24,20 @@ _STYLE = """
 .answer ul { padding-left: 1.2rem; }
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
 .answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
-.answer-why { opacity: .75; font-size: .875rem; }
+.answer-why { opacity: .75; font-size: .875em; }
 .answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) 8.5rem; gap: 0 .7rem;
   align-items: center; margin: .3rem 0; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
-.answer-size { font-size: .875rem; }
+.answer-size { font-size: .875em; }
+@media (max-width: 40rem) { .answer { font-size: .875rem; line-height: 1.4; } }
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
-  .answer-size { font-size: .8rem; }
 }
 @media print { .answer > * { break-inside: avoid; } }
 """
 STYLE = Markup(_STYLE) + bars.STYLE
 
-_MOST_BARS = 6
+_MOST_BARS = 4
 
 
 def fragment(answer: Answer, picture: str = "") -> Markup:
@@ -62,10 +62,10 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     """Return what is known of some quantities, in sentences."""
     found = []
     for one in quantities:
-        lines = [line for line in one.head if line != sentence(one.words)]
-        lines += [event.with_cause for event in one.events if event.sentence]
-        lines += [one.ranking.with_effect] if one.ranking is not None else []
-        items = Markup("").join(Markup("<li>{}</li>").format(plain(line)) for line in lines if line)
+        why = "" if one.promise is None else plain(one.promise.why)
+        lines = [keyed.promise(one), why, keyed.likely(one)]
+        lines += [*keyed.events(one), keyed.leader(one)]
+        items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
         title = f"{one.words[:1].upper()}{one.words[1:]}"
         found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(title), items))
     return Markup("").join(found)
@@ -73,62 +73,63 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
 
 def regimes(answer: Answer) -> Markup:
     """Return the shares of the regimes, and what decides them."""
-    items = (Markup("<li>{}</li>").format(plain(one.with_cause)) for one in answer.regimes)
+    items = (Markup("<li>{}</li>").format(keyed.regime(one)) for one in answer.regimes)
     return Markup("<ul>{}</ul>").format(Markup("").join(items)) if answer.regimes else Markup()
 
 
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    parts += [_line(line) for line in answer.regime_lines]
+    parts += [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
     if answer.failed or lead is None:
-        parts.insert(0, _line(answer.rows_sentence))
+        parts.insert(0, _line(keyed.rows(answer)))
     return _block("verdict", parts)
 
 
 def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     promise = lead.promise
     if promise is not None and promise.sentence:
-        yield Markup('<p class="answer-promise">{}</p>').format(plain(promise.sentence))
+        yield Markup('<p class="answer-promise">{}</p>').format(keyed.promise(lead))
     yield Markup('<p class="answer-why">{}</p>').format(
         plain(f"{lead.words[:1].upper()}{lead.words[1:]}.")
     )
     if promise is not None and promise.why:
         yield _small(promise.why)
-    if lead.range is not None and lead.range.sentence:
-        yield _line(lead.range.sentence)
-    yield from (_line(one.with_cause) for one in lead.events if one.sentence)
+    if likely := keyed.likely(lead):
+        yield _line(likely)
+    yield from map(_line, keyed.events(lead))
     for other in answer.quantities[1:]:
         if other.output == lead.output and other.promise and other.promise.sentence:
-            yield _small(f"{other.place}: {other.promise.sentence}")
+            yield _small(Markup("{}: {}").format(plain(other.place), keyed.promise(other)))
 
 
 def _ranking(answer: Answer) -> Markup:
-    if answer.lead is None:
+    lead = answer.lead
+    if lead is None or lead.ranking is None:
         return Markup()
-    ranking = answer.lead.ranking
-    if ranking is None:
-        return Markup()
+    ranking = lead.ranking
     title = Markup("<h3>What it depends on</h3>")
     if ranking.leader is None:
-        return _block("ranking", [title, _line(ranking.sentence)])
+        return _block("ranking", [title, _line(keyed.leader(lead))])
     note = _small(sentence(ranking.what))
-    bars = (bar(one, ranking) for one in ranking.contributions[:_MOST_BARS])
-    return _block("ranking", [title, *bars, note])
+    shown = enumerate(ranking.contributions[:_MOST_BARS])
+    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note])
 
 
-def bar(one: Contribution, ranking: Ranking) -> Markup:
+def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
-    most = max(1.0 if one.share_of_variance else 0.0, ranking.contributions[0].value)
+    assert lead.ranking is not None
+    largest = lead.ranking.contributions[0].value
+    most = max(1.0 if one.share_of_variance else 0.0, largest)
     first = one.indices[0]
     track = bars.bar(one.value, first.low, first.high, (0.0, most))
-    effect = Markup('<span class="answer-why">{}</span>').format(plain(one.effect))
+    effect = Markup('<span class="answer-why">{}</span>').format(keyed.effect(lead, number, one))
     return Markup(
         '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>{}</div>'
     ).format(
         plain(f"{one.words[:1].upper()}{one.words[1:]}"),
         track,
-        plain(one.size),
+        keyed.size(lead, number, one),
         effect if one.effect else "",
     )
 
@@ -136,7 +137,7 @@ def bar(one: Contribution, ranking: Ranking) -> Markup:
 def _to_do(answer: Answer) -> Markup:
     if not answer.advice:
         return Markup()
-    items = (Markup("<li>{}</li>").format(plain(one.text)) for one in answer.advice)
+    items = (Markup("<li>{}</li>").format(keyed.advice(one)) for one in answer.advice)
     title = Markup("<h3>What to do</h3>")
     return _block("todo", [title, Markup("<ul>{}</ul>").format(Markup("").join(items))])
 
@@ -146,8 +147,12 @@ def _block(name: str, parts: list[Markup]) -> Markup:
 
 
 def _line(text: str) -> Markup:
-    return Markup("<p>{}</p>").format(plain(text))
+    return Markup("<p>{}</p>").format(_shown(text))
 
 
 def _small(text: str) -> Markup:
-    return Markup('<p class="answer-why">{}</p>').format(plain(text))
+    return Markup('<p class="answer-why">{}</p>').format(_shown(text))
+
+
+def _shown(text: str) -> str:
+    return text if isinstance(text, Markup) else plain(text)

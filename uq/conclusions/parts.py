@@ -6,8 +6,9 @@ from math import isnan
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.promises import Promise, Range
+from uq.conclusions.remedies import Advice
 from uq.conclusions.words import Unit, called_together, sentence, share_text
-from uq.estimate import NOTHING, Estimate
+from uq.estimate import Estimate
 from uq.wording import percent, percent_interval
 
 RARE = 0.01
@@ -34,8 +35,10 @@ class Event:
         The input that decides most; "" if that is not settled.
     curve : EventCurve or None
         The probability over that input.
-    range_unit : Unit
+    over_unit : Unit
         Of that input.
+    undefined : float
+        Share of the rows in which the output is undefined, so that neither side holds.
     """
 
     name: str
@@ -46,16 +49,20 @@ class Event:
     over: str = ""
     curve: EventCurve | None = None
     over_unit: Unit = field(default_factory=Unit)
+    undefined: float = 0.0
 
     @property
     def sentence(self) -> str:
         """Its probability, and what decides it; "" where that is not known."""
         if isnan(self.share.value):
-            return sentence(self.share.reason) if self.share.reason else ""
+            why = self.share.reason
+            return sentence(f"how many {self.said} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_interval(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
+        if self.undefined > 0:
+            text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."
 
     @property
@@ -115,6 +122,14 @@ class Quantity:
     ranking: Ranking | None = None
 
     @property
+    def ranking_sentence(self) -> str:
+        """What contributes most; "" where there is no ranking, and an event said why already."""
+        said = [event.decided_by for event in self.events]
+        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in said):
+            return ""
+        return self.ranking.with_effect
+
+    @property
     def output(self) -> str:
         """The output that it is an element of."""
         return self.name.partition("[")[0]
@@ -132,81 +147,6 @@ class Quantity:
         found += [] if self.promise is None else [self.promise.why]
         found += [] if self.range is None else [self.range.sentence]
         return [*filter(None, found)]
-
-
-@dataclass(frozen=True)
-class Tightened:
-    """What half the scatter of an input would change.
-
-    Attributes
-    ----------
-    inputs : tuple of str
-    what : str
-        The number that changes: ``the 5 % quantile``.
-    before, after : Estimate
-    is_share : bool
-    unit : Unit
-    reason : str
-        Why the rows cannot show it, or "".
-    effective_rows : float
-    """
-
-    inputs: tuple[str, ...]
-    what: str
-    before: Estimate = NOTHING
-    after: Estimate = NOTHING
-    is_share: bool = False
-    unit: Unit = field(default_factory=Unit)
-    reason: str = ""
-    effective_rows: float = float("nan")
-
-    @property
-    def is_seen(self) -> bool:
-        """Whether the number differs to the digits shown."""
-        text = percent if self.is_share else self.unit.text
-        return text(self.before.value) != text(self.after.value)
-
-    @property
-    def lengthens(self) -> bool:
-        """Whether lives are longer: fewer have ended, or a quantile is later."""
-        return (self.after.value < self.before.value) == self.is_share
-
-    @property
-    def sentence(self) -> str:
-        """What would change, or why the rows cannot show it."""
-        words = called_together(self.inputs)
-        if self.reason:
-            return f"Tightening {words}: {self.reason}."
-        text = percent if self.is_share else self.unit.text
-        first, then = text(self.before.value), text(self.after.value)
-        ends = ""
-        if self.after.has_interval:
-            low, high = self.after.low, self.after.high
-            both = percent_interval(low, high) if self.is_share else self.unit.between(low, high)
-            ends = f" ({both})"
-        return f"Half the scatter of {words} would move {self.what} from {first} to {then}{ends}."
-
-
-@dataclass(frozen=True)
-class Advice:
-    """One thing to do.
-
-    Attributes
-    ----------
-    rule : {"rows", "measure", "tighten", "nothing", "failed"}
-    text : str
-        The sentence.
-    inputs : tuple of str
-    rows : int or None
-        To be added to, or reached, where more rows help.
-    tightened : Tightened or None
-    """
-
-    rule: str
-    text: str
-    inputs: tuple[str, ...] = ()
-    rows: int | None = None
-    tightened: Tightened | None = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -258,12 +198,12 @@ class Answer:
         return f"{', '.join(shares)}." if shares else ""
 
     @property
-    def regime_lines(self) -> list[str]:
-        """The shares of the main regimes, and what decides them; that of the first is the rest."""
+    def told_regimes(self) -> list[tuple[Event, bool]]:
+        """The main regimes, and whether to say what decides each; the first is the rest."""
         found = []
         for place, one in enumerate(self.main_regimes):
             known = one.ranking is not None and one.ranking.leader is not None
-            found.append(one.with_cause if known and place else one.sentence)
+            found.append((one, known and place > 0))
         return found
 
     @property
@@ -274,7 +214,7 @@ class Answer:
         found += [] if lead is None else lead.head
         events = (() if lead is None else lead.events) + self.main_regimes
         found += [one.with_cause for one in events]
-        found += [lead.ranking.with_effect] if lead is not None and lead.ranking else []
+        found += [] if lead is None else [lead.ranking_sentence]
         return [*filter(None, found), *(one.text for one in self.advice)]
 
     def __repr__(self) -> str:

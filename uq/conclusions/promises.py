@@ -51,7 +51,7 @@ class Promise:
         ]
         if bounds:
             sure = f"With {100 * self.confidence:g} % confidence"
-            each = ", each" if len(bounds) > 1 else ""
+            each = " each" if len(bounds) > 1 else ""
             return f"{sure}{each}, at least {share} {f', and at least {share} '.join(bounds)}."
         cautious = []
         for i, one in enumerate(self.quantiles):

@@ -25,6 +25,7 @@ from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.targets import lightened, number_of, split_name
 from uq.methods.registry import METHODS
+from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -35,6 +36,7 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -69,7 +71,8 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
         shown_outputs(ds, asked),
         key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
     )
-    context = Context(findings.rows, wanted, replicates_of(findings.rows))
+    part = replicates_of(findings.rows)
+    context = Context(findings.rows, wanted, part, weights_of(findings.rows))
     return [
         _quantity(findings, summary, context, one)
         for one in elements_of(findings.rows, names)  # one at a time in memory
@@ -149,7 +152,10 @@ def _promise(
     ]
     reason = ""
     if not any(map(isfinite, bounds)):
-        reason = _why_no_bound(ds, both, bounds)
+        reason = _why_no_bound(ds, element, both, bounds)
+    elif isfinite(wrong := _contradicted(bounds, ends)):
+        reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
+        bounds = [nan, nan]
     return Promise(
         coverage,
         confidence,
@@ -162,6 +168,17 @@ def _promise(
         element.is_angle,
         _end_of(element),
     )
+
+
+def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
+    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+
+    By chance few rows give one, where the quantile is better known since lives are integrated.
+    """
+    lower, upper = bounds
+    if lower > ends[0].value:
+        return lower
+    return upper if upper < ends[1].value else nan
 
 
 def _end_of(element: Element) -> str:
@@ -184,12 +201,16 @@ def _sides(
     return True, True
 
 
-def _why_no_bound(ds: xr.Dataset, both: list[Statistic | None], bounds: list[float]) -> str:
+def _why_no_bound(
+    ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
+) -> str:
     needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
     if needed:
         return f"it needs {needed} rows"
     if any(not isnan(one) for one in bounds):
-        return "too few lives end"
+        return f"too few {_end_of(element)}"
+    if has_weights(ds):
+        return "inspections have weighted the rows"
     if is_nested(ds):
         return "the rows of one sample are not independent"
     return f"the rows of a '{ds.attrs['design']}' design are not independent"
@@ -235,7 +256,8 @@ def _events(
         said = f"{_end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
-        yield event(findings, target, said, one)
+        undefined = one.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, said, one), undefined=undefined)
 
 
 def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:

@@ -25,6 +25,7 @@ from uq.methods.indices import IndexKind, Null, RefusedError
 from uq.methods.registry import METHODS, fed_by
 from uq.rows.elements import has_independent_samples, replicates_of, study_file_of
 from uq.rows.nesting import one_of_each_sample
+from uq.rows.weights import has_weights
 from uq.study.file import Tied
 
 GOAL = 0.1
@@ -64,7 +65,12 @@ class Measured:
 
 
 def method_for(ds: xr.Dataset, event: bool) -> str | None:
-    """Return the method that ranks: the first that the study asks for, or that its design feeds."""
+    """Return the method that ranks: the first that the study asks for, or that its design feeds.
+
+    None for rows with weights.
+    """
+    if has_weights(ds):
+        return None
     fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
     for name in (*(one for one in methods(ds) if one in fed), *fed):
         if METHODS[name].takes_events if event else METHODS[name].takes_numbers:

@@ -39,7 +39,13 @@ class Unsettled:
 
 
 def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
-    """Yield what is not settled about a quantity."""
+    """Yield what is not settled about a quantity, and how many times the rows would settle it.
+
+    References
+    ----------
+    JCGM 101:2008, "Evaluation of measurement data - Supplement 1 to the GUM", 7.9: the standard
+    deviation of an estimate falls as one over the root of the number of rows.
+    """
     for event in quantity.events:
         yield from _of_share(event)
     if quantity.promise is not None:

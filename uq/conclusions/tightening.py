@@ -6,13 +6,15 @@ from math import isfinite, sqrt
 import xarray as xr
 
 from uq.analysis.what_if import answer as weighted
-from uq.conclusions.parts import Quantity, Tightened
+from uq.conclusions.parts import Quantity
+from uq.conclusions.remedies import Tightened
 from uq.conclusions.words import Unit
 from uq.errors import InputError, RunError
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.inputs.distributions import LogUniform
 from uq.inputs.law import Law
+from uq.keys import key_of
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied
 
@@ -89,7 +91,9 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
         else:
             is_share = key[0] == "thresholds"
             after, rows = one.best.estimate, found.effective_rows
-            yield Tightened(names, what, before, after, is_share, unit, "", rows)
+            given = {name: repr(value) for name, value in changes.items()}
+            path = key_of("outputs", quantity.name, *key, verb="what-if", options=given)
+            yield Tightened(names, what, before, after, is_share, unit, "", rows, path)
 
 
 def _promised(quantity: Quantity) -> Iterator[tuple[tuple[str, ...], str, Estimate, Unit]]:

@@ -53,7 +53,7 @@ class Unit(NamedTuple):
 
 def rounded(value: float, towards: float = 0.0) -> str:
     """Return a number to three digits; `towards` -inf or inf rounds down or up."""
-    if value == 0 or not isfinite(value):
+    if not 1e-300 < abs(value) < 1e300:  # a digit of others may be 0 or infinite
         return f"{value:.3g}"
     digit = 10.0 ** (floor(log10(abs(value))) - 2)
     places = value / digit
@@ -131,7 +131,12 @@ def sentence(text: str) -> str:
 def rows_in_words(rows: float) -> str:
     """Return a number of rows, rounded up to two digits."""
     digit = 10 ** max(floor(log10(rows)) - 1, 0)
-    return f"{ceil(rows / digit) * digit:,}".replace(",", " ")
+    return grouped(ceil(rows / digit) * digit)
+
+
+def grouped(rows: int) -> str:
+    """Return a number of rows with its thousands apart."""
+    return f"{rows:,}".replace(",", " ")
 
 
 def share_text(one: Estimate) -> str:

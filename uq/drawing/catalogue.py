@@ -9,6 +9,7 @@ from typing import Any, Literal
 from matplotlib.figure import Figure
 
 from uq.analysis.findings import Findings
+from uq.conclusions.targets import Target
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,8 @@ class Drawable:
         """What it shows."""
         ds, name = self.findings.ds, self.subject.name
         meaning = ds[name].attrs["long_name"] if name in ds else ""
-        return self.entry.caption.format(name=name, method=self.subject.method, meaning=meaning)
+        shown = name if name in ds or not name else Target(ds, name).name
+        return self.entry.caption.format(name=shown, method=self.subject.method, meaning=meaning)
 
     def draw(self) -> Figure:
         """Return the figure."""

@@ -52,7 +52,7 @@ def convergence(
     if not kind:
         raise InputError(f"{output}: neither its mean nor its median can be estimated")
     chosen = named_elements(independent_rows(ds), output)
-    unit = display_unit(chosen[0].units, own["value"].to_numpy(float))
+    unit = display_unit(chosen[0].units, np.concatenate([one.values for one in chosen]))
     (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)

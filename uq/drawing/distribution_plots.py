@@ -19,6 +19,7 @@ from uq.drawing.elements_plot import (
     entitle,
     mark_thresholds,
     occurring_regimes,
+    shares_in_bins,
 )
 from uq.drawing.figure import Drawing
 from uq.drawing.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
@@ -54,18 +55,17 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     matplotlib.figure.Figure
     """
     chosen = named_elements(independent_rows(ds), output)
-    values = [element.at_least for element in chosen]
     (panel,) = column(axes, 2.1)
-    together = np.concatenate(values)
+    together = np.concatenate([element.at_least for element in chosen])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
-    for i, (element, own) in enumerate(zip(chosen, values, strict=True)):
+    for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
         style: Any = {"color": colour, "ls": line, "lw": 1.2}
         if len(chosen) == 1:
             style = {"color": ROWS, "fill": True, "lw": 0}
-        counts = np.histogram(own / unit.size, edges)[0] / max(len(own), 1)
-        panel.stairs(counts, edges, label=label(ds, element), **style)
+        shares = shares_in_bins(element, element.present, edges, unit)
+        panel.stairs(shares, edges, label=label(ds, element), **style)
     panel.set(ylim=(0, None), ylabel="Share of rows per bin")
     panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     logarithmic(panel) if wide else None
@@ -106,8 +106,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():
-            own = element.values[mask & (codes == code)] / unit.size
-            top = base + np.histogram(own, edges)[0] / max(int(mask.sum()), 1)
+            top = base + shares_in_bins(element, mask, edges, unit, codes == code)
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
             base = top
         panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")

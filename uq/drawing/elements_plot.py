@@ -13,7 +13,7 @@ from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES
 from uq.drawing.symbols import literal
 from uq.drawing.words import labelled, rows_in_words
-from uq.rows.elements import Element, Floats, analysis_of, flags
+from uq.rows.elements import Element, Floats, Mask, analysis_of, flags
 from uq.units import Unit, typical, unit_of
 from uq.wording import threshold
 
@@ -105,6 +105,17 @@ def bins(values: Floats) -> tuple[Floats, bool]:
         return np.arange(low - 0.5, high + 1.0), False  # counts: a bin for each
     edges = np.histogram_bin_edges(scaled, _bin_count(scaled))
     return (10**edges if wide else edges), wide
+
+
+def shares_in_bins(
+    element: Element, kept: Mask, edges: Floats, unit: Unit, part: Mask | None = None
+) -> Floats:
+    """Return the share of the rows kept that lies in each bin, or that a part of them has there."""
+    worth = np.ones(len(kept)) if element.weights is None else element.weights
+    own = kept if part is None else kept & part
+    found = np.histogram(element.values[own] / unit.size, edges, weights=worth[own])[0]
+    total = worth[kept].sum()
+    return np.asarray(found / total if total > 0 else found)
 
 
 def _bin_count(values: Floats) -> int:

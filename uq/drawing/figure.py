@@ -1,8 +1,10 @@
 """A figure: its layout and its files."""
 
+from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
 
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -31,17 +33,31 @@ def lay_out(figure: Figure) -> None:
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     if engine := figure.get_layout_engine():
+        before = _ticks(figure)
         engine.execute(figure)
-        _keep_ticks(figure)  # those of the new size, which may call for longer numbers
-        engine.execute(figure)
+        changed = _ticks(figure) != before  # those of the new size may call for longer numbers
+        _keep_ticks(figure)
+        if changed:
+            engine.execute(figure)
         figure.set_layout_engine("none")  # or else each file would repeat it
+
+
+def _scales(figure: Figure) -> Iterator[Axis]:
+    """Yield both axes of each panel, and of each second scale beside one."""
+    for panel in figure.axes:
+        for axes in (panel, *panel.child_axes):
+            yield from (axes.xaxis, axes.yaxis)
+
+
+def _ticks(figure: Figure) -> list[list[float]]:
+    """Return the places of all ticks."""
+    return [list(axis.get_majorticklocs()) for axis in _scales(figure)]
 
 
 def _keep_ticks(figure: Figure) -> None:
     """Fix the ticks: others at the next size would need other room."""
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
+    for axis in _scales(figure):
+        axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
 
 
 @styled

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
+from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values, weights_of_samples
 from uq.drawing.elements_plot import bins, input_axis
 from uq.drawing.panel import figure_of, grid, logarithmic, roomy
 from uq.drawing.style import INK, ROWS, styled
@@ -38,7 +38,7 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     InputError
         When the rows do not follow the laws.
     """
-    found = laws_and_values(ds)
+    found, weights = laws_and_values(ds), weights_of_samples(ds)
     if not found:
         raise InputError(f"the rows of a '{ds.attrs['design']}' design do not follow the laws")
     columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
@@ -54,16 +54,19 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
         else:
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))
-        _panel(panel, law, values, per, ticks=6 // columns)
-    rows = len(next(iter(found.values()))[1])
-    panels[0].set_title(f"Share of {rows} rows per bin; line: stated law", loc="left")
+        _panel(panel, law, values, weights, per, ticks=6 // columns)
+    rows = f"{len(next(iter(found.values()))[1])}{' weighted' if weights is not None else ''} rows"
+    panels[0].set_title(f"Share of {rows} per bin; line: stated law", loc="left")
     return figure_of(panels[0])
 
 
-def _panel(axes: Axes, law: Law, values: Floats, per: float, ticks: int) -> None:
+def _panel(
+    axes: Axes, law: Law, values: Floats, weights: Floats | None, per: float, ticks: int
+) -> None:
     edges, wide = bins(values)
     edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
-    rows = np.histogram(values, edges)[0] / len(values)
+    worth = np.ones(len(values)) if weights is None else weights
+    rows = np.histogram(values, edges, weights=worth)[0] / worth.sum()
     # As in the histogram: bins include their lower end, the last one also its upper end.
     upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
     lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)

@@ -17,6 +17,7 @@ from uq.errors import InputError
 from uq.rows.elements import Floats
 
 _LAST = 4  # periods of the drive
+_ABOVE = 50  # width of a label above a panel [characters]
 _BESIDE = 32  # width of the label of the vertical axis [characters]
 
 
@@ -113,8 +114,11 @@ def motion(ds: xr.Dataset) -> Figure:
             panel.plot(time[part] * clock.factor, y, color=INK, lw=0.6)
             for stop in filter(np.isfinite, stops):
                 panel.axhline(stop * scale.factor, color=LIMIT, ls="--", lw=0.8)
-        dashed = "; dashed: stops" if np.isfinite(stops).any() else ""
-        above(row[0], labelled(one, scale.unit, width=60) + dashed)
+        text = labelled(one, scale.unit, width=_ABOVE)
+        if count := int(np.isfinite(stops).sum()):
+            dashed = f"dashed: stop{'s' * (count > 1)}"
+            text += (", " if len(text) + len(dashed) < _ABOVE else "\n") + dashed
+        above(row[0], text)
     for panel in panels[-1]:
         panel.set_xlabel(labelled(ds["time"], clock.unit))
         roomy(panel)

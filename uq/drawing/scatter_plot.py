@@ -32,6 +32,7 @@ from uq.rows.elements import (
     named_elements,
     replicates_of,
 )
+from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 from uq.units import unit_of
 
@@ -39,6 +40,8 @@ _MOST_INPUTS = 3
 _MOST_POINTS = 3000
 _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
 _EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
+_RARELY = 3  # times the mean distance of neighbours, which chance leaves empty once in hundreds
+_SHORTEST = 3  # slices that make a line
 _GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
 
 
@@ -63,6 +66,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    refuse_weights(ds, "a scatter plot")
     rows = independent_rows(ds)
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
@@ -148,12 +152,12 @@ def _conditional(
     else:
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]
-    apart = [
-        np.min(np.abs(values[rows] - at)) if np.isfinite(at) else 0.0
-        for rows, at in zip(slices, line, strict=True)
-    ]
-    empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
-    line = np.where(np.isfinite(line) & ~empty, line, np.nan)
+    empty = np.array(
+        [_is_empty(values[rows], at, axes) for rows, at in zip(slices, line, strict=True)]
+    )
+    empty |= _fragments(~empty)
+    seen = np.isfinite(line) & ~empty
+    line = np.where(seen & ~_fragments(seen), line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
     # A gap between neighbouring rows interrupts the line: nothing is known in between.
     inside = np.sort(x)
@@ -169,6 +173,22 @@ def _conditional(
         top = ended.max()  # an infinite end would hide all others
         band: Any = {"facecolor": (colour, 0.25), "edgecolor": (colour, 0.8), "lw": 0.4}
         axes.fill_between(middle, low, np.minimum(high, top), **band)
+
+
+def _is_empty(values: Floats, at: float, axes: Axes) -> bool:
+    """Whether the rows of a slice leave an empty space around their mean or median."""
+    if not np.isfinite(at):
+        return False
+    ended = values[np.isfinite(values)]
+    by_chance = _RARELY * np.ptp(ended) / len(ended)
+    away = np.min(np.abs(ended - at))
+    return bool(away > max(_EMPTY * np.ptp(axes.get_ylim()), by_chance))
+
+
+def _fragments(there: Mask) -> Mask:
+    """Return which places belong to runs too short for a line."""
+    run = np.cumsum(np.diff(there, prepend=False))
+    return there & (np.bincount(run)[run] < _SHORTEST)
 
 
 def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
@@ -207,6 +227,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     InputError
         When there are no regimes, or fewer than two inputs.
     """
+    refuse_weights(ds, "pairs of inputs by regime")
     rows = independent_rows(ds)
     regimes = occurring_regimes(rows)
     inputs = independent_inputs(rows)

@@ -13,6 +13,7 @@ from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import methods
 from uq.rows.elements import analysis_of, shown_outputs
 from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights
 
 
 def the_result(findings: Findings) -> Iterator[Subject]:
@@ -73,6 +74,11 @@ def in_regimes(findings: Findings, name: str) -> bool:
 def in_one_regime(findings: Findings, name: str) -> bool:
     """Whether all rows are in one regime, or the model has none."""
     return not in_regimes(findings, name)
+
+
+def has_plain_rows(findings: Findings, name: str) -> bool:
+    """Whether each row counts once."""
+    return not has_weights(findings.ds)
 
 
 def has_several_inputs(findings: Findings, name: str) -> bool:

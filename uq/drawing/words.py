@@ -71,6 +71,8 @@ def rows_in_words(chosen: Sequence[Element]) -> str:
         most = max(int(getattr(element, state).sum()) for element in chosen)
         if most:
             counts.append(f"{'up to ' if len(chosen) > 1 else ''}{most} {state}")
+    if chosen[0].weights is not None:
+        counts.append("weighted by inspections")
     return ", ".join(counts)
 
 

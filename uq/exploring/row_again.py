@@ -15,7 +15,9 @@ from uq.rows.one_row import Row
 from uq.rows.results import open_result
 from uq.rows.row_choice import Choice, lowest_row, near_quantile_row
 from uq.rows.stored_row import place_of, stored_row
+from uq.rows.weights import refuse_weights
 from uq.running.again import computed_again, differing, other_versions, settings_by_row, study_here
+from uq.study.registry import find_model
 
 PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
 """Variables that give the place of a row in its design."""
@@ -104,7 +106,7 @@ def row(
     Raises
     ------
     InputError
-        When there is no such row or output.
+        When there is no such row, output or model.
 
     Examples
     --------
@@ -134,6 +136,7 @@ def row_again(
     """Find a row of a result and compute it again; see `row`."""
     if sum(given is not None for given in (number, lowest, near_quantile)) != 1:
         raise InputError("give one of: the number of a row, --lowest, --near-quantile")
+    refuse_weights(ds, "a row computed again")
     choice = None
     if lowest is not None:
         choice = lowest_row(ds, lowest)
@@ -150,6 +153,8 @@ def _computed(
     ds: xr.Dataset, found: RowAgain, place: int, model: str | None, source: str
 ) -> RowAgain:
     attrs, status = ds.attrs, int(found.row.status[0])
+    if model is not None and (other := find_model(model).name) != attrs["model"]:
+        raise InputError(f"--model {model}: is '{other}'; the rows are of '{attrs['model']}'")
 
     def without(reason: str) -> RowAgain:
         return replace(found, reason=f"it cannot be computed again: {reason}")

@@ -134,12 +134,17 @@ def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ta
     return Target(f"{form}({element.name})", element, values, refused, notes=notes)
 
 
-def lightened(target: Target) -> Target:
+INDICES_OF = "these are indices of its {form}; ask for {name} for those of the output itself"
+
+
+def lightened(target: Target, said: str = INDICES_OF) -> Target:
     """Return what replaces a value with a heavy tail, for methods that apportion a variance.
 
     Parameters
     ----------
     target : Target
+    said : str
+        What its note says of the ``form`` that replaces it, and of its ``name``.
 
     Returns
     -------
@@ -151,11 +156,8 @@ def lightened(target: Target) -> Target:
         return target
     assert target.element is not None
     form = _lighter_form(target.element)
-    note = (
-        f"{why}: these are indices of its {FORMS[form]}; ask for {target.name} for those of the"
-        " output itself"
-    )
-    return _transformed(target.element, form, (note,))
+    note = said.format(form=FORMS[form], name=target.name)
+    return _transformed(target.element, form, (f"{why}: {note}",))
 
 
 def with_tail_note(target: Target) -> Target:

@@ -1,8 +1,31 @@
 """One fault of a study file, and its line for the user."""
 
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
+from uq.errors import nearest
 from uq.literals import key, shown
+
+MISSING = "is missing"
+
+_REASONS = {
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "dict_type": "must be a table",
+    "float_type": "must be a number",
+    "finite_number": "must be a finite number",
+    "int_type": "must be a whole number, without a decimal point",
+    "bool_type": "must be true or false",
+    "string_type": "must be a text in quotes",
+    "string_too_long": "must have at most {max_length} characters",
+    "string_pattern_mismatch": "must consist of letters, digits, '-' and '_'",
+    "tuple_type": "must be a list",
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le}",
+    "value_error": "{error}",
+}
 
 
 class Fault(NamedTuple):
@@ -42,3 +65,30 @@ class Fault(NamedTuple):
 def _dotted(path: tuple[str | int, ...]) -> str:
     parts = [f"[{part}]" if isinstance(part, int) else f".{key(part)}" for part in path]
     return "".join(parts).removeprefix(".")
+
+
+def unknown(kind: str, name: str, known: Iterable[str]) -> str:
+    """Return what is wrong with a name that does not exist, with the nearest one and all others."""
+    return f"no such {kind}{nearest(name, known)} (allowed: {', '.join(known)})"
+
+
+def fault_of(
+    error: dict[str, Any], known: Callable[[Sequence[Any]], Iterable[str]] | None = None
+) -> Fault:
+    """Return an error of pydantic as a fault.
+
+    Parameters
+    ----------
+    error : dict
+        One of ``ValidationError.errors()``.
+    known : callable, optional
+        Place of an unknown key -> names that it may have.
+    """
+    path, kind = tuple(error["loc"]), error["type"]
+    if kind == "missing":
+        return Fault(path, MISSING)
+    if kind == "extra_forbidden" and known is not None:
+        table = "key" if len(path) > 1 else "table"
+        return Fault(path, unknown(table, str(path[-1]), list(known(path))), error["input"])
+    reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
+    return Fault(path, reason or error["msg"], error["input"])

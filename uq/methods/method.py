@@ -96,7 +96,8 @@ class Method:
         whole = sample.whole
         kept = int(whole.sum())
         if kept < self.least:
-            reason = f"only {kept} of {whole.size} {self.layout.needs}"
+            of_all = f" of {whole.size}" if kept < whole.size else ""
+            reason = f"only {kept}{of_all} {self.layout.needs}"
             raise RefusedError(f"{reason}; {self.least} are needed")
         if self.layout is not PLAIN:
             return self.estimate(sample)

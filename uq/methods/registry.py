@@ -46,6 +46,7 @@ METHODS = {
         kinds=(DELTA,),
         source="Plischke et al. (2013), on normal scores of the output",
         most_rows=10_000,
+        takes_events=False,  # they have no density
         scale_free=True,
     ),
     "pawn": _of_any_inputs(

@@ -4,17 +4,12 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints, overload
+from typing import Any, TypeVar, get_args, get_type_hints, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
-from uq.contract import Floats, Model, Parameter, Status, censored_name
+from uq.contract import Model, Parameter
 from uq.errors import InputError
-from uq.outside.returned import Returned, WrongReturnError, checked, dimensions, read_returns
-
-SEED = "seed"
-"""The argument that gets the seed of its row."""
+from uq.outside.returned import Returned, read_returns
+from uq.outside.row_by_row import SEED, Fields, RowByRow, model_from
 
 _MARK = "_uq_machine"
 
@@ -53,8 +48,9 @@ def machine(
         ``seed`` gets the seed of the row. It returns a dict of numbers and arrays; a life that
         never ends is ``inf``, one that is not followed to its end `uq.censored`.
     returns : dict of str to str or Returned, optional
-        Output -> its unit, or more about it. Without it, the nominal row and the first 64 rows of a
-        study tell.
+        Output -> its unit, or more about it; the function may then return a tuple in this order,
+        as functions compiled by numba do. Without it, the nominal row and the first 64 rows of a
+        study show what is returned.
     title : str
         One line; by default the first line of the docstring.
     version : str
@@ -103,33 +99,16 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     plain = inspect.unwrap(getattr(function, "py_func", function))
     name = plain.__name__
     label = f"machine '{name}'"
-    parameters, wants_seed = _parameters(plain, label)
+    fields, wants_seed = _parameters(plain, label)
     outputs = read_returns(label, declared.returns) or dict(returned or {})
     title = declared.title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
-    axes: dict[str, list[int]] = {}
-    for output, one in outputs.items():
-        axes |= dimensions(output, one.shape)
-    return Model(
-        name,
-        title,
-        declared.version,
-        parameters,
-        _NoSettings,
-        {output: one.output(output) for output, one in outputs.items()},
-        _Batch(function, parameters._fields, outputs, wants_seed),
-        coordinates=lambda settings: axes,
-        random=wants_seed,
-    )
+    batch = RowByRow(function, tuple(fields), outputs, wants_seed)
+    return model_from(name, title, declared.version, fields, outputs, batch, wants_seed)
 
 
-@dataclass(frozen=True)
-class _NoSettings:
-    """A function has no settings."""
-
-
-def _parameters(function: Callable[..., Any], label: str) -> tuple[Any, bool]:
-    """Return the class of its parameters, and whether it wants the seed."""
-    faults, fields, nominal = [], [], {}
+def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]:
+    """Return its parameters with their nominal values, and whether it wants the seed."""
+    faults, fields = [], dict[str, tuple[Parameter, float]]()
     try:
         hints = get_type_hints(function, include_extras=True)
     except NameError as error:
@@ -145,20 +124,17 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Any, bool]:
             was = "no default" if argument.default is argument.empty else f"{argument.default!r}"
             faults.append(f"{label}: argument '{name}' has {was}; its nominal value is needed")
             continue
-        nominal[name] = float(argument.default)
         try:
             parameter = _parameter(name, hints.get(name, float))
         except InputError as error:
             faults += [f"{label}: argument '{name}': {error}"]
             continue
-        fields.append((name, Annotated[float, parameter]))
+        fields[name] = parameter, float(argument.default)
     if not fields and not faults:
         faults.append(f"{label}: has no arguments, so nothing to study")
     if faults:
         raise InputError(*faults)
-    made: Any = NamedTuple("Parameters", fields)  # type: ignore[misc]
-    made._field_defaults.update(nominal)
-    return made, SEED in signature.parameters
+    return fields, SEED in signature.parameters
 
 
 def _parameter(name: str, hint: Any) -> Parameter:
@@ -179,44 +155,3 @@ def _parameter(name: str, hint: Any) -> Parameter:
                 f"annotation {extra!r}: a unit, a pair of bounds or a meaning is expected"
             )
     return Parameter(name, unit, meaning, bounds, "assumed: the default of the function")
-
-
-@dataclass(frozen=True)
-class _Batch:
-    """The batch of a function: its rows one after the other, each with its own end."""
-
-    function: Callable[..., Any]
-    names: tuple[str, ...]
-    returned: Mapping[str, Returned]
-    wants_seed: bool
-
-    def __call__(
-        self, x: Floats, seed: NDArray[np.uint64], settings: object
-    ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
-        n = len(x)
-        columns: dict[str, NDArray[Any]] = {}
-        for name, one in self.returned.items():
-            columns[name] = np.full((n, *one.shape), np.nan)
-            if one.life:
-                columns[censored_name(name)] = np.zeros((n, *one.shape), dtype=bool)
-        status, messages = np.zeros(n, np.int8), dict[int, str]()
-        for i, row in enumerate(x.tolist()):
-            try:
-                for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
-                    columns[name][i] = numbers
-                    if self.returned[name].life:
-                        columns[censored_name(name)][i] = cut
-            except WrongReturnError as error:
-                status[i], messages[i] = Status.BAD_SHAPE, str(error)
-            except Exception as error:
-                text = " ".join(str(error).split())
-                status[i] = Status.RAISED
-                messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
-        return columns, status, messages
-
-    def row(self, row: list[float], seed: int) -> Any:
-        """Return what the function returns on a row."""
-        given: dict[str, Any] = dict(zip(self.names, row, strict=True))
-        if self.wants_seed:
-            given[SEED] = seed
-        return self.function(**given)

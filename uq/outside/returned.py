@@ -98,20 +98,23 @@ class WrongReturnError(Exception):
     """A value that a machine must not return, in a sentence."""
 
 
-def numbers_of(value: Any, name: str) -> NDArray[np.float64]:
-    """Return a value as an array of floats.
+def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return a value as an array of floats, and which of them are `censored`.
 
     Raises
     ------
     WrongReturnError
     """
-    if isinstance(value, Censored):
-        value = value.time
     try:
-        array = np.asarray(value)
-        if array.dtype.kind not in "fiub":
+        given = np.asarray(value)
+        cut = np.zeros(given.shape, dtype=bool)
+        if given.dtype == object:
+            cut = np.asarray([isinstance(one, Censored) for one in given.flat]).reshape(given.shape)
+            plain = [one.time if isinstance(one, Censored) else one for one in given.flat]
+            given = np.asarray(plain).reshape(given.shape)
+        if given.dtype.kind not in "fiub":
             raise TypeError
-        return array.astype(float)
+        return given.astype(float), cut
     except (TypeError, ValueError):
         kind = type(value).__name__
         raise WrongReturnError(f"returned '{name}' as {kind}, not as a number or array") from None
@@ -131,8 +134,8 @@ def seen_in(row: Any) -> dict[str, Returned]:
     for name, value in row.items():
         if not (isinstance(name, str) and name.isidentifier()):
             raise WrongReturnError(f"returned {name!r}, which cannot be the name of an output")
-        numbers = numbers_of(value, name)
-        life = isinstance(value, Censored) or bool(np.isposinf(numbers).any())
+        numbers, cut = numbers_of(value, name)
+        life = bool(cut.any() or np.isposinf(numbers).any())
         found[name] = Returned(life=life, shape=numbers.shape)
     return found
 
@@ -159,14 +162,18 @@ def from_plain(data: Mapping[str, Mapping[str, Any]]) -> dict[str, Returned]:
 
 def checked(
     returned: Any, expected: Mapping[str, Returned]
-) -> Iterator[tuple[str, NDArray[np.float64], bool]]:
-    """Yield name, numbers and whether it is censored, of each output of a row.
+) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.bool_]]]:
+    """Yield name, numbers and which of them are censored, of each output of a row.
+
+    A tuple has the outputs in the order of `expected`, for compiled functions without dicts.
 
     Raises
     ------
     WrongReturnError
         When the row returns anything else than `expected`.
     """
+    if isinstance(returned, tuple) and len(returned) == len(expected):
+        returned = dict(zip(expected, returned, strict=True))
     if not isinstance(returned, Mapping):
         raise WrongReturnError(f"returned {type(returned).__name__}, not a dict")
     for name in expected:
@@ -176,14 +183,13 @@ def checked(
         if name not in expected:
             raise WrongReturnError(f"returned '{name}', which 'returns' does not name")
     for name, one in expected.items():
-        numbers = numbers_of(returned[name], name)
+        numbers, cut = numbers_of(returned[name], name)
         if numbers.shape != one.shape:
             shape = f"shape {numbers.shape}, expected {one.shape}"
             raise WrongReturnError(f"returned '{name}' with {shape}")
-        is_censored = isinstance(returned[name], Censored)
-        if not one.life and (is_censored or bool(np.isposinf(numbers).any())):
+        if not one.life and (cut.any() or np.isposinf(numbers).any()):
             raise WrongReturnError(
                 f"returned '{name}' as a life that has not ended; declare it in the decorator:"
                 f" returns={{'{name}': uq.Returned(life=True)}}"
             )
-        yield name, numbers, is_censored
+        yield name, numbers, cut

@@ -19,7 +19,7 @@ from uq.intervals import Replicates
 from uq.population.counting import more_than, turns
 from uq.population.functionals import Population
 from uq.population.scale_laws import Scale
-from uq.population.scaling import inputs_of, integrated
+from uq.population.scaling import inputs_of, integrated, not_integrated, why_not_integrated
 from uq.rows.element import Element
 from uq.rows.nesting import Nesting, levels_of, nesting_of
 
@@ -30,6 +30,8 @@ causes up to `_WIDE` times the spread of what is integrated inside each unit; el
 _WIDE = 3.0
 _WIDEST = 60.0
 """With a larger ratio, what is integrated once per world would need too many: it is not."""
+
+_TOO_WIDE = f"it scatters lives more than {_WIDEST:g} times as much as {{}}"
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,15 @@ class Units:
     varying : tuple of str
         What differs between the units of a world and is not integrated. With nothing of this kind,
         the probability of a unit's life is known in each world.
+    why_not_more : str
+        A sentence on the inputs that scale lives but are not integrated, or "".
     """
 
     element: Element
     place: Nesting
     shared: Scale | None
     varying: tuple[str, ...]
+    why_not_more: str = ""
 
     @property
     def integrated(self) -> tuple[str, ...]:
@@ -170,7 +175,7 @@ class _MoreThan:
         return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
 
 
-def units_of(rows: xr.Dataset, element: Element) -> Units:
+def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Units:
     """Return the units of the worlds of a result.
 
     Parameters
@@ -179,20 +184,28 @@ def units_of(rows: xr.Dataset, element: Element) -> Units:
         Samples of a result.
     element : Element
         A life of these rows.
+    plain : bool
+        Whether lives are taken as computed.
     """
     place, levels = nesting_of(rows), levels_of(rows)
     own = shared = None
-    inputs = inputs_of(rows)
-    if element.declared.scales and not element.censored.any():
-        own = integrated(rows, element.declared, inputs, {OWN, CHANCE}).law
-        shared = integrated(rows, element.declared, inputs, {SHARED}).law
+    inputs, why = inputs_of(rows), ""
+    scales = element.declared.scales and not plain
+    if scales and element.censored.any():
+        why = why_not_integrated(rows, element)
+    elif scales:
+        inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
+        outside = integrated(rows, element.declared, inputs, {SHARED})
+        own, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
         if own and shared and shared.spread >= _WIDEST * own.spread:
+            kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(own.inputs)))
             shared = None
+        why = not_integrated(kept)
     known = () if own is None else own.inputs
     varying = _unknown(levels, inputs.tied, known)
     if rows.attrs.get("random"):
         varying = (*varying, "the model's own chance")
-    return Units(replace(element, law=own), place, shared, varying)
+    return Units(replace(element, law=own), place, shared, varying, why)
 
 
 def _unknown(

@@ -18,6 +18,7 @@ _FARTHEST = 60  # steps of growing length from a quantile to the end of its inte
 _SHOW_VARIANCE = 30  # independent parts, at least
 _LATEST = 1e300
 _FEW = "too few rows for this end of the interval"
+_CENSORED = "rows were censored before that time"
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,9 @@ class Population:
         return self._share(self.element.above(threshold), ~self.element.failed)
 
     def outliving(self, time: float) -> Estimate:
-        """Estimate P(T > time) among the rows that have a life."""
+        """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
+        if self.element.unknown_sides(time).any():
+            return Estimate(reason=_CENSORED)
         return self._share(self.element.above(time), self.element.present)
 
     def quantile(self, probability: float) -> Estimate:
@@ -70,6 +73,8 @@ class Population:
         NaN where it is exact, or where too few independent parts show it.
         """
         kept = ~self.element.failed
+        if not kept.any():
+            return nan
         part = replicates_of_some(self.part, kept)
         worth = np.ones(int(kept.sum()))
         own, plain = (
@@ -96,7 +101,7 @@ class Population:
             return found
         rarer = numbers if np.average(numbers[kept], weights=weights[kept]) <= 0.5 else 1 - numbers
         part = replicates_of_some(self.part, kept)
-        return trusted(found, rarer[kept], weights[kept], part)
+        return trusted(found, rarer[kept], weights[kept], part, self.element.most)
 
     def _near(self, value: float) -> Callable[[float], Estimate]:
         """Return a function that estimates P(Y < y) among the rows that have a value.
@@ -210,7 +215,7 @@ class Population:
         value = least(lambda y: Estimate(self._average(y)), "value")
         cut = self.element.values[self.element.censored]
         if len(cut) and value >= cut.min():
-            return Estimate(reason="rows were censored before that time")
+            return Estimate(reason=_CENSORED)
         beside = float(after[np.searchsorted(values, value)]) if isfinite(value) else np.inf
         share = self._near(beside)
         return Estimate(value, least(share, "high"), least(share, "low"))

@@ -4,19 +4,23 @@ Rows are independent, or belong to independent parts: the replicates of a design
 several rows (`uq.intervals`).
 """
 
+from math import inf
+
 import numpy as np
 from scipy import special
 
 from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import (
+    ROUNDING,
     Replicates,
     binomial_interval,
     is_constant,
     scatter_interval,
     upper_probability,
+    wilson_interval,
 )
-from uq.population.smoothing import effective_rows, per_sample, refusal, tail_shape
+from uq.population.smoothing import carries_little, effective_rows, per_sample, refusal, tail_shape
 from uq.quantile_functions import student
 
 FEW = 20
@@ -74,19 +78,59 @@ def weighted_share(
     parts = len(found)
     if parts < 2:
         return Estimate(mean)
+    if numbers.min() >= 1 - ROUNDING:  # the complement has no digits
+        mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
-    low = high = mean
+    low, high = _of_logit(mean, found)
     if 0 < mean < 1:
-        error = found.std(ddof=1) / parts**0.5
-        half = student(upper_probability(), parts - 1) * error / (mean * (1 - mean))
-        low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
         outlier = 2 * ((found.max() - mean) - (mean - found.min())) / parts
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
     if cautious or (cautious is None and rests_on_few(numbers, weights, part)):
         of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)))
         low, high = min(low, of_hits[0]), max(high, of_hits[1])
     return Estimate(mean, float(low), float(high))
+
+
+def share_to_compare(
+    numbers: Floats, weights: Floats | None = None, part: Replicates = None
+) -> Estimate:
+    """Estimate the mean of numbers between 0 and 1, with the interval that a difference needs.
+
+    Parameters
+    ----------
+    numbers, weights, part
+        As for `weighted_share`.
+
+    Returns
+    -------
+    Estimate
+        Its interval alone would be too narrow: it has no more than Wilson's where few rows carry
+        the mean, and nothing for outliers. Two estimates are skewed to the same side, so that
+        most of this cancels in their difference, which would be too wide with it.
+    """
+    worth = np.ones(len(numbers)) if weights is None else weights
+    if not worth.sum() > 0:
+        return Estimate()
+    mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
+    found = pulls(numbers, worth, part)
+    if len(found) < 2:
+        return Estimate(mean)
+    low, high = _of_logit(mean, found)
+    if rests_on_few(numbers, weights, part):
+        of_hits = wilson_interval(mean, effective_rows(per_sample(worth, part)))
+        low, high = min(low, of_hits[0]), max(high, of_hits[1])
+    return Estimate(mean, low, high)
+
+
+def _of_logit(mean: float, found: Floats) -> tuple[float, float]:
+    """Return Student's interval of the logit of a mean, from what each part says of it."""
+    if not 0 < mean < 1:
+        return mean, mean
+    error = found.std(ddof=1) / len(found) ** 0.5
+    half = student(upper_probability(), len(found) - 1) * error / (mean * (1 - mean))
+    low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
+    return low, high
 
 
 def rests_on_few(numbers: Floats, weights: Floats | None, part: Replicates) -> bool:
@@ -122,8 +166,22 @@ def weighted_moments(
     return trusted(found, values, weights, part), trusted(spread, squares, weights, part)
 
 
-def trusted(found: Estimate, numbers: Floats, weights: Floats, part: Replicates) -> Estimate:
-    """Return an estimate, or why weights times numbers do not allow one."""
+def trusted(
+    found: Estimate, numbers: Floats, weights: Floats, part: Replicates, most: float = inf
+) -> Estimate:
+    """Return an estimate, or why weights times numbers do not allow one.
+
+    Parameters
+    ----------
+    found : Estimate
+    numbers, weights : ndarray, shape (n,)
+    part : ndarray of int, shape (n,), or None
+    most : float, optional
+        The largest weight that a row can have, where numbers are at most 1.
+    """
     of_samples = per_sample(np.abs(weights * numbers), part)
+    mean = float(np.average(numbers, weights=weights))
+    if mean > 0 and carries_little(most / mean, len(of_samples)):
+        return found
     why = refusal(tail_shape(of_samples), len(of_samples))
     return Estimate(reason=why) if why else found

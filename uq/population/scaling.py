@@ -18,6 +18,7 @@ from uq.population.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.element import Element
 from uq.rows.elements import elements_of, study_file_of
+from uq.rows.weights import has_weights
 from uq.study.file import DependenceTable, StudyFile, Tied
 from uq.study.input_checks import laws_of
 
@@ -131,6 +132,8 @@ def integrated(
         kept = {name: why for name, why in kept.items() if level[name] in levels}
     if DESIGNS[rows.attrs["design"]].imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+    if has_weights(rows):
+        return Integrated(None, dict.fromkeys(exponents, "inspections have changed its law") | kept)
     for name in exponents:
         if problem := _problem(name, inputs) or _sign_problem(name, inputs):
             kept[name] = problem

@@ -4,19 +4,28 @@ from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import Replicates, is_constant
+from uq.rows.elements import replicates_of
+from uq.rows.weights import largest_weight, row_weights
 from uq.tails import generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
 _HOPELESS = 0.7
 _NEGLIGIBLE = 1e-3
+_LITTLE = 0.01
 
 
 def effective_rows(numbers: Floats) -> float:
-    """Return Kish's number of rows of equal weight that are worth as much."""
+    """Return the number of rows of equal weight that are worth as much [1]_.
+
+    References
+    ----------
+    .. [1] L. Kish, Survey Sampling, Wiley, New York, 1965.
+    """
     largest = numbers.max(initial=0.0)
     relative = numbers / largest if largest > 0 else numbers
     return float(relative.sum() ** 2 / (relative**2).sum()) if largest > 0 else 0.0
@@ -35,12 +44,15 @@ class Smoothed(NamedTuple):
         Number of independent rows, or of samples of several rows.
     effective : float
         Kish's number of equal ones that are worth as much.
+    most : float
+        The largest weight that a row can have.
     """
 
     weights: Floats
     k: float
     rows: int
     effective: float
+    most: float = inf
 
     @property
     def refusal(self) -> str:
@@ -48,8 +60,12 @@ class Smoothed(NamedTuple):
         return refusal(self.k, self.rows)
 
 
-def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
-    """Return Pareto-smoothed weights.
+def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
+    """Return Pareto-smoothed weights [1]_.
+
+    Weights that are known to be bounded, so that no row can carry more than a hundredth of all,
+    stay as they are: the variance of their mean is below a hundredth of its square, and their k not
+    above 0, whatever the largest look like.
 
     Parameters
     ----------
@@ -57,6 +73,8 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
         Not all -inf.
     part : ndarray of int, shape (n,), optional
         The independent part of each row (`uq.intervals`).
+    most : float, optional
+        The largest weight that a row can have, of weights of mean 1.
 
     Returns
     -------
@@ -64,25 +82,53 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
 
     References
     ----------
-    A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance sampling", J.
-    Mach. Learn. Res. 25, 72 (2024).
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     raw = np.exp(log_weights - log_weights.max())
     of_samples = per_sample(raw, part)
     k = tail_shape(of_samples)
     weights = raw
-    if np.isfinite(k):
+    if carries_little(most, len(of_samples)):
+        k = min(k, 0.0)
+    elif np.isfinite(k):
         weights = _with_smooth_tail(raw)
-    return Smoothed(
-        weights / weights.mean(), k, len(of_samples), effective_rows(per_sample(weights, part))
-    )
+    effective = effective_rows(per_sample(weights, part))
+    return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
+
+
+def carries_little(most: float, rows: int) -> bool:
+    """Whether no row of so many can carry more than a hundredth of what all carry."""
+    return most <= _LITTLE * rows
+
+
+def weights_of(rows: xr.Dataset) -> Smoothed | None:
+    """Return the weights that inspections have given the rows of a result, None if none have.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    """
+    weights = row_weights(rows)
+    if weights is None:
+        return None
+    of_samples = per_sample(weights, replicates_of(rows))
+    k, most = tail_shape(of_samples), largest_weight(rows)
+    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
+    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)
 
 
 def tail_shape(numbers: Floats) -> float:
-    """Return the shape of the law of the largest of some numbers, not negative.
+    """Return the shape of the law of the largest of some numbers [1]_, not negative.
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
     where all others are equal, infinite where there are too few.
+
+    References
+    ----------
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     ascending = np.sort(numbers)
     counted = ascending[ascending > _NEGLIGIBLE * ascending[-1]]
@@ -104,25 +150,30 @@ def largest_shape(rows: int) -> float:
     return min(_HOPELESS, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
 
 
-def refusal(k: float, rows: int) -> str:
+HOPELESS = (
+    "the rows hardly visit what the other laws would; no moderate number of rows helps, so run it"
+    " as a study of its own"
+)
+
+
+def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     """Return why weights with this shape cannot be trusted, or ""."""
     most = largest_shape(rows)
     if k <= most or k == -inf:
         return ""
+    if most == -inf:
+        return f"weights rest on {rows} independent parts, and more than 10 are needed"
     if k < _HOPELESS:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
-    return (
-        f"Pareto k = {k:.2f}: the rows hardly visit what the other laws would; no moderate number"
-        " of rows helps, so run it as a study of its own"
-    )
+    return f"Pareto k = {k:.2f}: {hopeless}"
 
 
 def per_sample(numbers: Floats, part: Replicates) -> Floats:
-    """Return the sum of each sample of several rows, else the numbers themselves."""
-    if not isinstance(part, Clusters):
+    """Return the sum of each independent sample of several rows, else the numbers themselves."""
+    if not (isinstance(part, Clusters) and part.are_samples):
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
     return np.bincount(place, weights=numbers).astype(float)

@@ -6,6 +6,7 @@ import pandas as pd
 
 from uq.analysis.convergence import enough
 from uq.analysis.findings import Findings
+from uq.errors import InputError
 from uq.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.report.outcomes import Outcome
@@ -47,7 +48,10 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
     """
     if not found:
         return Convergence(None, [], "there is no numeric output", [])
-    errors = enough(findings.ds)
+    try:
+        errors = enough(findings.ds)
+    except InputError as refused:
+        return Convergence(None, [], str(refused), [])
     lines = [
         (one, cast(pd.Series, errors.loc[one.name])) for one in found if one.name in errors.index
     ]

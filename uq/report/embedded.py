@@ -34,6 +34,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -60,8 +61,10 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, or no output has numbers.
+        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
     """
+    if has_weights(findings.ds):
+        return None
     analysis = analysis_of(findings.ds)
     outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
     whole = findings.rows
@@ -205,21 +208,23 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "replicate": None,
         "sample": None,
         "samples": None,
+        "parts": "rows",
     }
+    several = "samples" if has_independent_samples(rows) else "replicates"
+    count = 0 if part is None else len(np.unique(part))
+    if isinstance(part, Clusters):
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
+    elif part is not None and count > 1:
+        found |= {"replicate": encoded(part, "<i4")}
     if part is None:
         words = (
             "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
-            " misses are fewer than 20; the band is Kolmogorov's."
+            " misses are fewer than 20, and those of quantiles come from order statistics; where"
+            " lives are censored, both rest on Greenwood's formula. The band is Kolmogorov's."
         )
-    elif (count := len(np.unique(part))) < 2:
-        several = "samples" if has_independent_samples(rows) else "replicates"
+    elif count < 2:
         words = f"No intervals: they rest on the scatter between {several}, of which there is one."
-    elif isinstance(part, Clusters):
-        several = "samples" if has_independent_samples(rows) else "replicates"
-        words = f"95 % intervals of shares rest on the scatter between {count} {several}."
-        found |= {"sample": encoded(part, "<i4"), "samples": part.samples}
     else:
-        words = f"95 % intervals of shares rest on the scatter between {count} replicates."
-        found |= {"replicate": encoded(part, "<i4")}
+        words = f"95 % intervals rest on the scatter between {count} {several}."
     students = (student(upper_probability(), parts - 1) for parts in range(2, _STUDENTS))
     return found | {"students": [None, None, *students], "intervals": words}

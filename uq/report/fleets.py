@@ -1,15 +1,17 @@
 """What a report says of fleets: as many units as a sample has."""
 
 from collections.abc import Iterator
+from functools import partial
 from math import isfinite
 
 from uq.analysis.findings import Findings
 from uq.analysis.fleet import Fleet
 from uq.analysis.fleet_numbers import Banded
 from uq.estimate import Estimate
+from uq.keys import key_of
 from uq.report.cells import Cell, Table
-from uq.units import TimeUnit, time_unit
-from uq.wording import interval, known, number
+from uq.units import typical, unit_of
+from uq.wording import in_brackets, interval, known, threshold
 
 HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
 
@@ -30,23 +32,25 @@ def fleet_notes(findings: Findings) -> list[str]:
 
 
 def _rows(one: Fleet) -> Iterator[tuple[Cell, ...]]:
+    options = {"size": str(one.size), "output": one.output}
+    traced = partial(key_of, verb="fleet", options=options)
+    unit = unit_of("s", typical(banded.estimate.value for banded in one.first.values()))
     for p, banded in one.first.items():
-        value = banded.estimate.value
-        unit = time_unit(value if isfinite(value) else 0.0)
-        yield _row(one.output, f"{100 * p:g} % quantile of the first [{unit.name}]", banded, unit)
+        words = f"{100 * p:g} % quantile of the first{in_brackets(unit)}"
+        yield _row(one.output, words, banded, traced("first", "quantiles", repr(p)), unit.size)
     for time, (failed, at_most) in one.by.items():
-        unit = time_unit(time)
-        by = f"by {number(time / unit.seconds)} {unit.name}"
-        yield _row(one.output, f"number ended {by}", failed)
-        yield _row(one.output, f"P(none ended {by})", at_most)
+        by = f"{one.ended} by {threshold(time, 's')}"
+        of = ("by", repr(time))
+        yield _row(one.output, f"number {by}", failed, traced(*of, "failed"))
+        yield _row(one.output, f"P(none {by})", at_most, traced(*of, "at_most_allowed"))
 
 
-def _row(name: str, quantity: str, one: Banded, unit: TimeUnit | None = None) -> tuple[Cell, ...]:
-    per = unit.seconds if unit else 1.0
-    cells = (_cell(end, per) for end in (one.estimate, one.low, one.high))
+def _row(name: str, quantity: str, one: Banded, traced: str, per: float = 1.0) -> tuple[Cell, ...]:
+    ends = ((one.estimate, ""), (one.low, "/band_low"), (one.high, "/band_high"))
+    cells = (_cell(end, per, f"{traced}{last}") for end, last in ends)
     return Cell(name), Cell(quantity), *cells
 
 
-def _cell(one: Estimate, per: float) -> Cell:
+def _cell(one: Estimate, per: float, traced: str) -> Cell:
     key = one.value if isfinite(one.value) else None
-    return Cell(known(one, per=per), interval(one, per) or one.reason, key)
+    return Cell(known(one, per=per), interval(one, per) or one.reason, key, traced)

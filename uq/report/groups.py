@@ -11,7 +11,7 @@ from uq.conclusions.parts import Answer
 from uq.greek import readable
 from uq.report.cells import Table
 from uq.report.indices import Method, Subject, of_output, output_of
-from uq.report.outcomes import Outcome, result_tables, words_used
+from uq.report.outcomes import Outcome, category_table, result_tables, words_used
 from uq.report.pictures import Picture
 from uq.rows.elements import analysis_of, shown_outputs
 
@@ -71,10 +71,16 @@ def groups(
             name,
             readable(str(ds[name].attrs["long_name"])),
             sayings([one for one in answer.quantities[1:] if one.output == name]),
-            list(result_tables(own)),
+            [*_shares(findings, name), *result_tables(own)],
             words_used(own),
             [one for one in drawn if name in (one.of.name, output_of(one.of.name))],
             of_output(methods, name),
         )
         if any(group[2:]):
             yield group
+
+
+def _shares(findings: Findings, name: str) -> Iterator[Table]:
+    """Yield the shares of a category."""
+    if shares := findings.summary.categories.get(name):
+        yield category_table(name, shares)

@@ -6,7 +6,7 @@ from uq.conclusions.page import fragment
 from uq.conclusions.parts import Answer
 from uq.report.pictures import Picture
 
-_FIGURE = Markup("<figure>{}<figcaption>{}</figcaption></figure>")
+_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict says of what
 
 
 def headline(found: Answer, drawn: list[Picture]) -> Markup:
@@ -23,4 +23,5 @@ def headline(found: Answer, drawn: list[Picture]) -> Markup:
     if not own:
         return fragment(found)
     drawn.remove(own[0])
-    return fragment(found, _FIGURE.format(own[0].html, own[0].caption))
+    kind = Markup(' class="image"') if own[0].is_image else ""
+    return fragment(found, _FIGURE.format(kind, own[0].html))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.conclusions.targets import Target
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
@@ -37,6 +38,11 @@ class Subject(NamedTuple):
     words: str
     tables: tuple[Table, ...] = ()
     notes: tuple[str, ...] = ()
+
+    @property
+    def columns(self) -> int:
+        """Of its widest table."""
+        return max((len(one.header) for one in self.tables), default=0)
 
     @property
     def output(self) -> str:
@@ -91,7 +97,7 @@ def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     if found.refused:
         return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    of = f"{name} by {method}"
+    of = f"{Target(ds, name).name} by {method}"
     listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
     tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)

@@ -1,16 +1,19 @@
 """The inputs in a report: laws, sources, and how well each number is known."""
 
 from collections.abc import Iterator
+from math import floor, log10
 
+import numpy as np
 import xarray as xr
 
-from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.analysis.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.conclusions.sources import mark
 from uq.conclusions.words import unit_for
 from uq.contract import Floats
 from uq.drawing.words import unbroken
 from uq.greek import readable, symbol
 from uq.inputs.law import Law
+from uq.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied
@@ -63,24 +66,34 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
-    given = laws_and_values(ds)
+    given, weights = laws_and_values(ds), weights_of_samples(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
         quantiles = [Cell("")] * 3
         if name in given:
             law_of, _ = given[name]
-            found = compare(*given[name]).sampled
+            found = compare(*given[name], weights).sampled
             units = "1" if law_of.times is not None else str(ds[name].attrs["units"])
-            quantiles = _quantiles(units, found)
+            quantiles = _quantiles(name, units, found)
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
     return without_empty_columns(Table("Uncertain inputs", header, rows))
 
 
-def _quantiles(units: str, found: Floats) -> list[Cell]:
-    """Return quantiles to three digits, in the unit of the median."""
+def _quantiles(name: str, units: str, found: Floats) -> list[Cell]:
+    """Return quantiles in the unit of the median, to the digits that tell them apart."""
     unit = unit_for(units, abs(found[1]))
-    return [Cell(unit.text(float(one)).replace(" ", "\u00a0"), key=float(one)) for one in found]
+    step = np.ptp(found) / unit.per / 30
+    places = max(0, -floor(log10(step))) if step > 0 else 0
+    texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
+    return [
+        Cell(
+            beside(text, unit.name).replace(" ", "\u00a0"),
+            key=float(one),
+            traced=key_of(name, "sampled", repr(p), verb="inputs"),
+        )
+        for text, one, p in zip(texts, found, PROBABILITIES, strict=True)
+    ]
 
 
 def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:

@@ -4,11 +4,13 @@ from typing import NamedTuple
 
 from uq.analysis.findings import Findings
 from uq.analysis.level_shares import SOURCES
+from uq.conclusions.targets import Target
 from uq.estimate import Estimate
 from uq.keys import key_of
 from uq.methods.indices import S1
 from uq.report.cells import SHARE, Cell, Table
 from uq.rows.nesting import is_nested
+from uq.rows.weights import has_weights
 from uq.wording import percent_with_interval
 
 
@@ -29,14 +31,15 @@ class Levels(NamedTuple):
 
 
 def levels_of(findings: Findings) -> Levels | None:
-    """Return the shares of a result; None where no sample has several rows."""
-    if not is_nested(findings.ds):
+    """Return the shares of a result; None where no sample has several rows, or with weights."""
+    if not is_nested(findings.ds) or has_weights(findings.ds):
         return None
     found = findings.levels
     rows, notes = [], []
     for name, one in found.outputs.items():
-        rows.append((Cell(name), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
-        notes += [f"{sentence} ({name})" for sentence in one.sentences]
+        shown = Target(findings.ds, name).name
+        rows.append((Cell(shown), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
+        notes += [f"{sentence} ({shown})" for sentence in one.sentences]
     if (another := found.another_regime) is not None:
         said = another.reason or percent_with_interval(another)
         notes.append(f"probability that a repeat ends in another regime: {said}")

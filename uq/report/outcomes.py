@@ -8,7 +8,7 @@ import xarray as xr
 
 from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
-from uq.analysis.summary import Described, Summary
+from uq.analysis.summary import Described, Shares, Summary
 from uq.contract import Output, Status
 from uq.drawing.words import place_in_words, unbroken
 from uq.estimate import Estimate
@@ -33,18 +33,18 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
     return without_empty_columns(Table("Status of all rows", header, rows))
 
 
-def regime_table(summary: Summary) -> Table:
-    """Return the share of each regime among the independent rows."""
+def category_table(name: str, shares: Shares) -> Table:
+    """Return the share of each label of a category among the independent rows."""
     rows = [
         (
             Cell(one.label),
             Cell(f"{count}", key=float(count), traced=key_of(*one.key, "count")),
             _share(one.estimate)._replace(traced=key_of(*one.key, "share")),
         )
-        for one in summary.regimes.values()
+        for one in shares.values()
         for count in [one.facts["count"]]
     ]
-    return Table("Regimes, with 95 % intervals", ("regime", "rows", "share"), rows)
+    return Table(f"{name.capitalize()}, with 95 % intervals", (name, "rows", "share"), rows)
 
 
 def _share(one: Estimate) -> Cell:

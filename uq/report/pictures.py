@@ -25,6 +25,19 @@ from uq.report.paths import shortened
 HEAVIEST_SVG = 300_000
 """Longer drawings, of thousands of points, are embedded as images [characters]."""
 
+_INK = {"#000000": "currentColor", "fill: #ffffff": "fill: none"}
+
+
+def _in_ink(style: str) -> str:
+    """Return a style with the colour of the page's text for black, and no white ground."""
+    for colour, shown in _INK.items():
+        style = style.replace(colour, shown)
+    return style
+
+
+_ATTRIBUTES = {"d": shortened, "style": _in_ink}
+"""Name -> what an attribute becomes."""
+
 _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
 
 
@@ -91,7 +104,7 @@ def _embedded(svg: str, caption: str) -> Markup:
         for name in list(element.attrib):
             value = element.attrib.pop(name)
             if name != "id" or value in used:
-                element.set(name.rpartition("}")[2], shortened(value) if name == "d" else value)
+                element.set(name.rpartition("}")[2], _ATTRIBUTES.get(name, str)(value))
     for definitions in root.findall("defs"):
         for style in definitions.findall("style"):
             definitions.remove(style)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any, Protocol
 
 import numpy as np
@@ -47,7 +48,9 @@ class Element:
     law : RowLaw, optional
         Of what scales a life, given all that does not: each row then is the law of a life.
     weights : ndarray, shape (n,), optional
-        Of the rows, where they stand for another study.
+        Of the rows, where they stand for another study or for what inspections left of theirs.
+    most : float
+        The largest weight that a row can have.
     """
 
     name: str
@@ -59,6 +62,7 @@ class Element:
     failed: Mask
     law: RowLaw | None = None
     weights: Floats | None = None
+    most: float = inf
 
     @property
     def units(self) -> str:
@@ -170,6 +174,8 @@ def elements_in(
     censored: Any,
     coordinates: Mapping[str, Any],
     failed: Mask,
+    weights: Floats | None = None,
+    most: float = inf,
 ) -> Iterator[Element]:
     """Yield the elements of one output, in order.
 
@@ -186,6 +192,10 @@ def elements_in(
         Of each dimension.
     failed : ndarray of bool, shape (n,)
         The rows that failed.
+    weights : ndarray, shape (n,), optional
+        Of the rows.
+    most : float
+        The largest weight that a row can have.
 
     Yields
     ------
@@ -205,4 +215,6 @@ def elements_in(
             np.where(absent, np.nan, column),
             cut,
             absent & failed,
+            weights=weights,
+            most=most,
         )

@@ -18,6 +18,7 @@ from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed
 from uq.rows.variables import outputs_of
+from uq.rows.weights import largest_weight, row_weights
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -65,8 +66,9 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
     if not is_nested(rows):
         return None if are_independent(rows) else rows["replicate"].values
     place = nesting_of(rows)
-    of = place.sample if has_independent_samples(rows) else rows["replicate"].values
-    return Clusters(of, place.samples)
+    are_samples = has_independent_samples(rows)
+    of = place.sample if are_samples else rows["replicate"].values
+    return Clusters(of, place.samples, are_samples)
 
 
 def are_independent(ds: xr.Dataset) -> bool:
@@ -144,7 +146,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
     InputError
         When the result has no such output.
     """
-    unsound, known = failed(ds), outputs_of(ds)
+    unsound, known, weights = failed(ds), outputs_of(ds), row_weights(ds)
     for output in outputs:
         if output not in known:
             raise InputError(
@@ -155,7 +157,9 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
             censored = ds.variables[flag] if flag in ds else None
             axes = {dim: ds[dim].values for dim in declared.dims}
             values = ds.variables[output]
-            yield from elements_in(output, declared, values, censored, axes, unsound)
+            yield from elements_in(
+                output, declared, values, censored, axes, unsound, weights, largest_weight(ds)
+            )
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:

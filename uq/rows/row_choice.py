@@ -11,6 +11,9 @@ from uq.errors import InputError
 from uq.order_statistics import quantile, rows_to_reach
 from uq.rows.elements import Element, independent_rows, named_elements, why_no_statistics
 from uq.rows.results import failed
+from uq.rows.weights import refuse_weights
+
+_MANY = 10**9
 
 
 class Choice(NamedTuple):
@@ -83,6 +86,7 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
         raise InputError(
             f"--near-quantile {probability:g}: must lie between 0 and 1; write 0.05 for 5 %"
         )
+    refuse_weights(ds, "--near-quantile")
     if why := why_no_statistics(ds):
         raise InputError(
             f"no quantiles: the rows of a '{ds.attrs['design']}' design {why}; choose a row by its"
@@ -96,7 +100,8 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
     first, last = (quantile(one, probability) for one in (element.at_least, element.at_most))
     if np.isnan(first):
         needed = rows_to_reach(probability)
-        raise InputError(f"{name}: a {100 * probability:g} % quantile needs {needed} rows")
+        least = needed if needed < _MANY else f"more than {_MANY:g}"
+        raise InputError(f"{name}: a {100 * probability:g} % quantile needs {least} rows")
     ended = order[~element.censored[order] & np.isfinite(element.values[order])]
     if len(ended) and np.isfinite(first) and first == last:
         place = ended[np.abs(element.values[ended] - first).argmin()]

@@ -8,6 +8,7 @@ import xarray as xr
 
 from uq.contract import Kind
 from uq.designs.registry import DESIGNS
+from uq.rows.weights import WEIGHT, has_weights
 
 _TEXTS = ("title", "source", "study", "study_identity", "design")
 _NUMBERS = ("samples", "replicates")
@@ -33,6 +34,8 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
         if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
             yield f"'{place}' is not one integer per row"
     yield from _nesting_faults(ds)
+    if fault := _weight_fault(ds):
+        yield fault
     for flag in ("block", "status"):
         if fault := _flag_fault(ds[flag]):
             yield fault
@@ -83,6 +86,16 @@ def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
     for dim in variable.dims[1:]:
         if dim not in variable.coords:
             yield f"'{name}' lacks the coordinate '{dim}'"
+
+
+def _weight_fault(ds: xr.Dataset) -> str:
+    if not has_weights(ds):
+        return ""
+    weight = ds[WEIGHT]
+    if weight.dims != ("sample",) or weight.dtype.kind != "f":
+        return f"'{WEIGHT}' is not one number per row"
+    sound = np.isfinite(weight.values).all() and (weight.values >= 0).all() and weight.values.any()
+    return "" if sound else f"'{WEIGHT}' is negative, infinite or zero throughout"
 
 
 def _flag_fault(variable: xr.DataArray) -> str:

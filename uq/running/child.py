@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from uq.compilation import compilation
 from uq.contract import Model
 from uq.errors import InputError
+from uq.outside.descendants import adopt, end_descendants
 from uq.rows.evaluate import evaluate
 from uq.study.registry import code_of, find_model
 
@@ -96,7 +97,8 @@ def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.T
 
 def main(handle: str) -> None:
     """Answer requests, each the arguments of `evaluate`, until the connection closes."""
-    end_with_parent()
+    adopt()
+    end_with_parent(end_descendants)
     connection = Connection(int(handle))
     spec: ModelSpec = connection.recv()
     try:

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Status
 from uq.errors import RunError
 from uq.interrupts import undone
+from uq.outside.descendants import end_with_descendants
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
 from uq.running.environment import command, inherited
@@ -222,7 +223,7 @@ class Isolated:
         try:
             process.wait(0.0 if at_once else _DYING_SECONDS)
         except subprocess.TimeoutExpired:
-            process.kill()
+            end_with_descendants(process.pid)
         process.communicate()  # closes its standard input, and waits
         code = process.returncode
         return signal.strsignal(-code) or "signal" if code < 0 else f"exit code {code}"

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from multiprocessing import Pipe
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -128,7 +127,7 @@ def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]
             if said == probe.RETURNED:
                 yield from_plain(value)
             elif i == 0:
-                raise InputError(f"model '{Path(reference).name}': its nominal row {value}")
+                raise InputError(f"model '{reference}': its nominal row {value}")
 
 
 def _in_process(reference: str, todo: Iterator[tuple[int, Row]]) -> Iterator[tuple[int, str, Any]]:

@@ -15,6 +15,7 @@ from uq import store
 from uq.errors import InputError
 from uq.rows import results, stopping
 from uq.rows.sampling import rows
+from uq.rows.weights import has_weights
 from uq.rows.workload import Workload, workload_of
 from uq.running.dispatch import Dispatcher
 from uq.running.executor import Executor
@@ -131,6 +132,8 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
         return None
     remedy = "choose another output, or overwrite it with --fresh"
     ds = results.open_result(path, remedy)
+    if has_weights(ds):
+        raise InputError(f"{path}: holds rows that inspections have weighted; {remedy}")
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")

@@ -5,6 +5,7 @@ comes from them (`uq.study.schema`).
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Annotated, Any, NamedTuple, Self
 
 from pydantic import (
@@ -30,7 +31,7 @@ from uq.inputs.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
 from uq.inputs.registry import any_law, law_of
 from uq.literals import shown
 from uq.methods.registry import METHODS
-from uq.written import SHAPE, read_quantity
+from uq.written import EXAMPLE, SHAPE, Written, read_quantity
 
 
 def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
@@ -46,12 +47,17 @@ def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
 def _numbers(value: Any) -> Any:
     if isinstance(value, list):
         return tuple(value)
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError("must be a number, a number with its unit, or a list of them")
+    if isinstance(value, str):
+        with suppress(ValueError):
+            return (read_quantity(value),)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"must be a number or a list of numbers, or have its unit: {EXAMPLE}")
     return (value,)
 
 
 def _quantity(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    if isinstance(value, Written):
+        return value
     return read_quantity(value) if isinstance(value, str) else number(value)
 
 

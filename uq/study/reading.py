@@ -1,13 +1,12 @@
 """From the text of a study file to its tables: syntax and shape, one line per fault."""
 
-from collections.abc import Iterable
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from uq.designs.registry import IMPORTED
 from uq.errors import InputError, nearest
-from uq.inputs.faults import Fault
+from uq.inputs.faults import MISSING, Fault, fault_of, unknown
 from uq.inputs.law import Law
 from uq.inputs.registry import LAWS
 from uq.literals import read_toml
@@ -53,7 +52,7 @@ def shape_faults(data: dict[str, Any]) -> list[Fault]:
     design, faults = data.get("design"), []
     if isinstance(design, dict) and "samples" not in design:
         if design.get("method") not in IMPORTED:  # a file of rows has its own size
-            faults.append(Fault(("design", "samples"), _MISSING))
+            faults.append(Fault(("design", "samples"), MISSING))
     try:
         StudyFile.model_validate(data)
     except ValidationError as invalid:
@@ -64,7 +63,7 @@ def shape_faults(data: dict[str, Any]) -> list[Fault]:
 def _is_meant(missing: Fault, other: Fault) -> bool:
     """Return whether a missing key is the one that another fault suggests."""
     *table, key = missing.path
-    beside = missing.problem.startswith(_MISSING) and other.path[:-1] == tuple(table)
+    beside = missing.problem.startswith(MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
 
 
@@ -115,23 +114,18 @@ def _fault(error: dict[str, Any]) -> Fault:
     match error["type"]:
         case "extra_forbidden":
             kind, known = _allowed(path, law)
-            return Fault(tuple(path), _unknown(kind, str(path[-1]), known), value)
+            return Fault(tuple(path), unknown(kind, str(path[-1]), known), value)
         case "missing":
-            return Fault(tuple(path), _MISSING)
+            return Fault(tuple(path), MISSING)
         case "union_tag_not_found":
             for key, given in value.items():
                 if meant := nearest(key, ["distribution"]):
                     return Fault((*path, key), f"no such key{meant}", given)
-            return Fault((*path, "distribution"), f"{_MISSING} (one of {', '.join(LAWS)})")
+            return Fault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
         case "union_tag_invalid":
             name = error["ctx"]["tag"]
-            return Fault((*path, "distribution"), _unknown("law", name, LAWS), name)
-    template = _REASONS.get(error["type"], "")
-    return Fault(tuple(path), template.format(**error.get("ctx", {})) or error["msg"], value)
-
-
-def _unknown(kind: str, name: str, known: Iterable[str]) -> str:
-    return f"no such {kind}{nearest(name, known)} (allowed: {', '.join(known)})"
+            return Fault((*path, "distribution"), unknown("law", name, LAWS), name)
+    return fault_of({**error, "loc": path})
 
 
 def _allowed(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
@@ -146,24 +140,3 @@ def _allowed(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[st
         return "key", list(Tolerance._fields)
     table: Any = StudyFile.model_fields[path[0]].annotation
     return "key", list((DependenceTable if path[0] == "dependence" else table).model_fields)
-
-
-_MISSING = "is missing"
-_REASONS = {
-    "model_type": "must be a table",
-    "model_attributes_type": "must be a table",
-    "dict_type": "must be a table",
-    "float_type": "must be a number",
-    "finite_number": "must be a finite number",
-    "int_type": "must be a whole number, without a decimal point",
-    "bool_type": "must be true or false",
-    "string_type": "must be a text in quotes",
-    "string_too_long": "must have at most {max_length} characters",
-    "string_pattern_mismatch": "must consist of letters, digits, '-' and '_'",
-    "tuple_type": "must be a list",
-    "greater_than": "must be greater than {gt:g}",
-    "greater_than_equal": "must be at least {ge}",
-    "less_than": "must be less than {lt:g}",
-    "less_than_equal": "must be at most {le}",
-    "value_error": "{error}",
-}

@@ -28,6 +28,8 @@ from uq.study.sources import fingerprint
 
 GROUP = "vibrolife.models"
 
+_PROGRAM = ".toml"
+_SERVERS = ("http://", "https://")
 _FILE = re.compile(r"(.+\.py)(?::(\w+))?")
 _KNOWN_TO_RETURN = "\n"  # what follows it in a reference is what a function returns
 
@@ -44,8 +46,8 @@ def find_model(reference: str) -> Model:
     ----------
     reference : str
         The name of an installed model, ``"package.module:ATTRIBUTE"``, or ``"file.py"`` with a
-        model or a function under `uq.outside.function.machine`; ``"file.py:NAME"`` where there are
-        several.
+        model or a function under `uq.outside.function.machine` (``"file.py:NAME"`` where there are
+        several), ``"file.toml"`` that describes a program, or ``"http://host:port/NAME"``.
 
     Returns
     -------
@@ -57,8 +59,16 @@ def find_model(reference: str) -> Model:
         There is no such model, or its package cannot be imported. A broken model does not affect
         the others.
     """
+    if reference.endswith(_PROGRAM):
+        from uq.outside.program import program_of
+
+        return program_of(Path(reference))
     plain, _, known = reference.partition(_KNOWN_TO_RETURN)
     returned = from_plain(json.loads(known)) if known else None
+    if plain.startswith(_SERVERS):
+        from uq.outside.server import server_model
+
+        return server_model(plain, returned)
     return _load(_point(plain), f"model '{plain}'", returned)
 
 
@@ -70,6 +80,10 @@ def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
 
 def located(reference: str) -> str:
     """Return a reference that holds in any folder of this computer."""
+    if reference.startswith(_SERVERS):
+        return reference
+    if reference.endswith(_PROGRAM):
+        return str(Path(reference).absolute())
     found = _FILE.fullmatch(reference)
     if not found:
         return reference
@@ -227,6 +241,14 @@ def code_of(reference: str) -> str:
     InputError
         No source was found.
     """
+    if reference.endswith(_PROGRAM):
+        from uq.outside.program import code_of_program
+
+        return code_of_program(Path(reference))
+    if reference.startswith(_SERVERS):
+        from uq.outside.server import code_of_server
+
+        return code_of_server(reference.partition(_KNOWN_TO_RETURN)[0])
     module = module_of(reference)
     if not (found := fingerprint(module)):
         raise InputError(

@@ -6,7 +6,7 @@ Its key, the path in JSON, is that of `uq.keys`.
 - `row_sets`: which rows, in few words.
 - `origin`: where a number comes from.
 - `verbs`: the verbs whose numbers have keys; each says its JSON, and the `origin` of a number in it
-  (`of_summary`, `of_answer`, `of_indices`, `of_levels`, `of_fleet`, `of_running`, `of_twin`,
-  `of_what_if`).
+  (`of_summary`, `of_answer`, `of_inputs`, `of_indices`, `of_levels`, `of_fleet`, `of_running`,
+  `of_twin`, `of_what_if`).
 - `tracing`: all of that for one key.
 """

@@ -50,7 +50,7 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         ranking = value_at(said, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
         return Origin((cited(effects) if "effects" in names else index,), ds)
-    if names[-1] in ("parts", "decided_by") or names[-2:-1] in (["parts"], ["decided_by"]):
+    if "parts" in names or "decided_by" in names:
         return Origin((cited(event_curve), cited(share_interval)), ds)
     rows = independent_rows(ds)
     if part == "regimes":

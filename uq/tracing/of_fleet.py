@@ -13,15 +13,18 @@ from uq.rows.elements import independent_rows, named_elements
 from uq.tracing.citations import cited
 from uq.tracing.of_summary import states_of
 from uq.tracing.origin import Origin
+from uq.written import read_threshold
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of fleets of a size."""
     try:
         size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
-        by = [float(options["by"])] if "by" in options else []
     except ValueError:
-        raise InputError("a key of a fleet begins with fleet[size=N,by=T,allow=K]") from None
+        raise InputError(
+            "a key of a fleet begins with fleet[size=N], or with by=T, allow=K, output=LIFE as well"
+        ) from None
+    by = [read_threshold("by", options["by"], "a life", "s")] if "by" in options else []
     return fleet_json(fleet_of(ds, size, by, allow, options.get("output")))
 
 

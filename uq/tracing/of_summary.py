@@ -9,14 +9,18 @@ from uq.analysis.as_json import put, summary_json, written
 from uq.analysis.life_fit import fits_of
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
-from uq.analysis.summary import Described, Summary, status_counts, summarise
+from uq.analysis.summary import REGIME, Described, Summary, status_counts, summarise
 from uq.keys import Json, Options, Path
+from uq.population.smoothing import effective_rows, tail_shape
 from uq.rows.elements import Element, analysis_of, independent_rows, named_elements, output_names
 from uq.rows.in_regime import within_regime
 from uq.tracing.citations import cited
 from uq.tracing.origin import Origin
 
 COUNTED = ("failed", "undefined", "censored", "never")
+
+WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
+"""What is said of weighted rows -> what computes it."""
 
 Functions = tuple[Callable[..., Any], ...]
 
@@ -55,9 +59,12 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     rows = independent_rows(ds)
     if path[0] == "rows_used":
         return Origin((cited(independent_rows),), rows)
+    if path[0] in WEIGHTS:
+        return Origin((cited(WEIGHTS[path[0]]),), rows)
     found = _found(ds, {}, path)
-    if path[0] == "regime":
-        return Origin(tuple(map(cited, found.regimes[path[1]].by)), rows)
+    if path[0] in ("regime", "categories"):
+        name, label = (REGIME, path[1]) if path[0] == REGIME else path[1:3]
+        return Origin(tuple(map(cited, found.shares[name][label].by)), rows)
     states = states_of(named_elements(rows, path[1])[0])
     by = (fits_of,) if path[2] == "fits" else functions_of(found.outputs[path[1]], path[2:])
     return Origin(tuple(map(cited, by)), rows, states)
@@ -72,7 +79,9 @@ def states_of(element: Element) -> dict[str, int]:
 
 def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
     known, output = output_names(ds), _output(path)
-    if path and path[0] != "outputs":
+    if path[:1] == ("categories",):
+        output = path[1] if path[1:] else ""
+    elif path and path[0] != "outputs":
         output = next(iter(known))  # counts and regimes need no output
     analysis = analysis_of(ds, output if output in known else None)
     return summarise(ds, analysis, regime=options.get("regime"), fits="fits" in path)

@@ -110,7 +110,7 @@ def trace(result: xr.Dataset | str | File, key: str, model: str | None = None) -
 
 def traced(ds: xr.Dataset, key: str, model: str | None = None) -> Trace:
     """Return where a number of a result comes from; see `trace`."""
-    parts = taken_apart(key, {name: verb.options for name, verb in VERBS.items()})
+    parts = taken_apart(key.strip(), {name: verb.options for name, verb in VERBS.items()})
     verb, path = VERBS[parts.verb], parts.path
     options = parts.options | ({"model": model} if model else {})
     said, numbers = {}, {}

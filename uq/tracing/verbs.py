@@ -10,6 +10,7 @@ from uq.tracing import (
     of_answer,
     of_fleet,
     of_indices,
+    of_inputs,
     of_levels,
     of_running,
     of_summary,
@@ -48,6 +49,7 @@ class Verb(NamedTuple):
 VERBS: dict[str, Verb] = {
     SUMMARY: Verb(of_summary.says, of_summary.origin, ("regime",)),
     "answer": Verb(of_answer.says, of_answer.origin),
+    "inputs": Verb(of_inputs.says, of_inputs.origin),
     "sensitivity": Verb(of_indices.says, of_indices.origin, ("method", "regime")),
     "levels": Verb(of_levels.says, of_levels.origin),
     "fleet": Verb(of_fleet.says, of_fleet.origin, ("size", "by", "allow", "output")),
@@ -55,4 +57,4 @@ VERBS: dict[str, Verb] = {
     "twin": Verb(of_twin.says, of_twin.origin),
     "what-if": Verb(of_what_if.says, of_what_if.origin, ("uncertain.", "dependence.")),
 }
-"""By name; the answer is a part of the summary."""
+"""By name; the answer is a part of the summary, and a report shows the inputs."""

@@ -13,6 +13,7 @@ import xarray as xr
 from uq import store
 from uq.errors import InputError
 from uq.rows import results
+from uq.rows.weights import refuse_weights
 from uq.rows.workload import workload_of
 from uq.running import runner
 from uq.running.again import changed_settings, study_here
@@ -58,7 +59,9 @@ def _recorded(path: Path) -> tuple[str, str, str, int]:
     if not os.path.isfile(path) and (found := history(folder_of(path))):
         run = found.run
         return run.identity, run.study, run.model_version, run.samples
-    attrs = results.open_result(path).attrs
+    ds = results.open_result(path)
+    refuse_weights(ds, "rows computed again or added")
+    attrs = ds.attrs
     samples = int(attrs["samples"])
     return attrs["study_identity"], attrs["study"], attrs["model_version"], samples
 

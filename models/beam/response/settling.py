@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.parameters import LONGEST_PERIOD
 from models.beam.response.approached_orbits import Approached, approached
 from models.beam.response.averages import time_mean
 from models.beam.response.response import (
@@ -30,7 +31,6 @@ from models.numerics.batch_means import mean_and_bound
 from models.numerics.jit import kernel
 
 SEGMENT = 32  # periods between two checks; also the length of a batch
-LONGEST_PERIOD = 16
 SHORTEST, LONGEST = 32, 512  # segments of a look
 MOST_STEPS = 2**24  # of a look
 RANDOM_ACCURACY = 0.05  # relative standard error of a mean work-rate under a random load

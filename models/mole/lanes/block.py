@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from models.mole.parameters import LONGEST_PERIOD
 from models.numerics.blocks import aligned
 
 LANES = 32
@@ -78,8 +79,6 @@ GROWTH = 78  # logarithm of the factor by which tangents were divided
 SHARE = 79  # of the series whose errors count: the inverse of the error allowed
 ROWS = SHARE + WATCHED
 
-LONGEST_PERIOD = 64
-"""Number of common periods among which a repetition is sought."""
 TO_REPEAT = 2 * LONGEST_PERIOD
 """Number of common periods in which a motion with the longest period is seen to repeat."""
 

@@ -8,8 +8,9 @@ as long as motion is averaged, and the flow has contracted current and voltage.
 
 import numpy as np
 
-from models.mole.lanes.block import CURRENT, LONGEST_PERIOD, MEASURED, TO_REPEAT, P
+from models.mole.lanes.block import CURRENT, MEASURED, TO_REPEAT, P
 from models.mole.lanes.rows import GROWTH, HIGH, LOW, OUTCOME, PROGRESS, REPEATING
+from models.mole.parameters import LONGEST_PERIOD
 from models.mole.response.machines import APERIODIC, Machines
 from models.mole.response.measured import Counts, Response
 from models.mole.response.verdict import SURE

@@ -1,16 +1,29 @@
 """How many rows have no value, or one less accurate than requested."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from uq.analysis.statistics.statistic import COUNT, FACT, Context, Reader, Statistic
+from uq import json_form
+from uq.analysis.statistics.statistic import COUNT, FACT, Context, Kind, Reader, Statistic
 from uq.estimate import Estimate
+from uq.intervals import replicates_of_some
+from uq.population.smoothing import effective_rows, per_sample
 from uq.rows.elements import Element, elements_of, output_names
 from uq.rows.variables import error_name
 from uq.wording import percent
+
+
+def _write(group: Sequence[Statistic]) -> dict[str, Any]:
+    return {one.key[-1]: json_form.number(one.estimate.value) for one in group}
+
+
+_EFFECTIVE = Kind(
+    write=_write, shown=lambda rows: f"{rows:.0f}", has_interval=False, readers=COUNT.readers
+)
 
 
 def counts(element: Element, context: Context) -> Iterator[Statistic]:
@@ -18,6 +31,22 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
+
+
+def effective(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield Kish's number of rows of equal weight, or samples, that are worth as much."""
+    if element.weights is not None:
+        kept = element.present
+        part = replicates_of_some(context.replicate, kept)
+        number = effective_rows(per_sample(element.weights[kept], part))
+        yield Statistic(
+            ("effective_rows",),
+            "effective rows",
+            Estimate(number),
+            kind=_EFFECTIVE,
+            column="effective_rows",
+            by=(effective_rows,),
+        )
 
 
 def accuracy(element: Element, context: Context) -> Iterator[Statistic]:

@@ -14,11 +14,12 @@ from uq.population.functionals import Population
 from uq.rows.elements import Element
 
 _LIVES = Listing("B-lives: B10 is the time by which 10 % have ended", first="lifetime")
+_TIMES = Listing("Times by which a share has succeeded", first="time")
 LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
 _BY = (order_statistics.quantile, order_statistics.quantile_interval)
 _BY_KAPLAN_MEIER = (life_quantiles, kaplan_meier)
 _LAWS = (Population,)
-_ROWS = replace(COUNT, listing=_LIVES, readers=Reader.REPORT)
+_ROWS = replace(COUNT, readers=Reader.REPORT)
 
 
 @bounded()
@@ -51,19 +52,22 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the times by which a share of rows has ended, and how many rows have not."""
     if not element.is_lifetime:
         return
+    success = bool(element.declared.success)
+    listing, verb = (_TIMES, "succeeding") if success else (_LIVES, "ending")
     for name, found in life_quantiles(element, B_LIVES, context.replicate).items():
         p = B_LIVES[name]
         yield Statistic(
             ("b_lives", name),
-            f"{100 * p:g} % by" if element.declared.success else name,
+            f"{100 * p:g} % by" if success else name,
             found,
             element.units,
-            LIFE,
+            replace(LIFE, listing=listing),
             rows_needed=None if found.assumes else rows_needed(element, p),
             column=name,
             estimator=quantile_of(element, p),
             by=(_BY_KAPLAN_MEIER if found.assumes else _BY) if element.is_plain else _LAWS,
         )
+    rows_in = replace(_ROWS, listing=listing)
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
-        label = f"rows {label}"
-        yield Statistic(("b_lives", label), label, Estimate(float(rows.sum())), "rows", _ROWS)
+        key, words = f"rows {label}", f"rows {label.replace('ending', verb)}"
+        yield Statistic(("b_lives", key), words, Estimate(float(rows.sum())), "rows", rows_in)

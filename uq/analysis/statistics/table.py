@@ -3,7 +3,7 @@
 from typing import Any
 
 from uq.analysis.statistics.between_regimes import between_regimes
-from uq.analysis.statistics.counts import accuracy, counts
+from uq.analysis.statistics.counts import accuracy, counts, effective
 from uq.analysis.statistics.integrated import integrated
 from uq.analysis.statistics.moments import moments_of
 from uq.analysis.statistics.quantiles import b_lives, quantiles
@@ -19,6 +19,7 @@ STATISTICS: dict[str, Maker] = {
     "thresholds": thresholds,
     "between_regimes": between_regimes,
     "counts": counts,
+    "effective": effective,
     "accuracy": accuracy,
     "integrated": integrated,
 }

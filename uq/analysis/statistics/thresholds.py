@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,12 @@ from uq.analysis.failed_rows import bounded
 from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import ended_by
 from uq.analysis.lifetime import survival
-from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
+from uq.analysis.statistics.statistic import Context, Kind, Listing, Reader, Statistic, entry
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some, share_interval
 from uq.population.functionals import Population
 from uq.rows.elements import Element, Mask
+from uq.wording import percent
 
 SIDES = {"above": ">", "below": "<"}
 
@@ -74,11 +76,20 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 
 _LISTING = Listing("Probabilities, with 95 % intervals", by="threshold")
 PROBABILITY = Kind(entry=_alone, write=_write, listing=_LISTING)
+UNDEFINED = Kind(
+    write=lambda group: dict(group[0].facts),
+    shown=lambda share: percent(share) if share else "",
+    is_count=True,
+    has_interval=False,
+    listing=_LISTING,
+    readers=Reader.REPORT,
+)
+"""The share of undefined rows beside both probabilities; JSON has it among theirs."""
 
 
 @bounded(of_magnitude=True)
 def thresholds(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield P(above) and P(below) for each threshold of an output."""
+    """Yield P(above), P(below) and the share that is undefined for each threshold of an output."""
     for threshold in context.analysis.thresholds.get(element.output, ()):
         yield from _probabilities(element, threshold, context.replicate)
 
@@ -87,7 +98,8 @@ def _probabilities(
     element: Element, threshold: float, replicate: Replicates
 ) -> Iterator[Statistic]:
     kept = ~element.failed
-    undefined = json_form.number(element.undefined[kept].mean()) if kept.any() else None
+    share_undefined = float(element.undefined[kept].mean()) if kept.any() else nan
+    undefined = {"undefined": json_form.number(share_undefined)}
     sides = event(element, threshold)
     for place, (side, sign) in enumerate(SIDES.items()):
         one = Statistic(
@@ -98,8 +110,12 @@ def _probabilities(
             heading=f"P({side})",
             falls=side == "below",
             at=threshold,
-            facts={"undefined": undefined},
-            estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
+            facts=undefined,
+            estimator=replace(
+                share(_hits(threshold, place)),
+                counts_hits=element.is_plain,
+                averages=not element.is_plain,
+            ),
             by=(share_of, share_interval) if element.is_plain else (Population,),
         )
         if not element.is_plain and sides is None:
@@ -112,6 +128,15 @@ def _probabilities(
         else:
             within = replicates_of_some(replicate, kept)
             yield replace(one, estimate=share_of(sides[place][kept], within))
+    yield Statistic(
+        ("thresholds", repr(threshold), "undefined"),
+        "",
+        Estimate(share_undefined),
+        kind=UNDEFINED,
+        heading="undefined",
+        at=threshold,
+        facts=undefined,
+    )
 
 
 def _by_kaplan_meier(

@@ -114,17 +114,18 @@ def summary(
     from uq.rows.results import open_result
 
     ds = open_result(result)
-    if not (fits or json or plain) and regime is None:
-        tables.show_findings(Findings(ds))
+    findings = Findings(ds)
+    answered = regime is None and not plain  # the answer is that of all rows
+    if answered and not (fits or json):
+        tables.show_findings(findings)
         return
-    found = summarise(ds, regime=regime, fits=fits, plain=plain)
+    asked = regime is not None or fits or plain
+    found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
     if not json:
         tables.show_summary(ds, found)
         return
-    whole = summary_json(found)
-    if regime is None and not plain:
-        whole["answer"] = answer_json(conclude(Findings(ds), weighed=False))
-    print_json(whole)
+    answer = {"answer": answer_json(conclude(findings, weighed=False))} if answered else {}
+    print_json(summary_json(found) | answer)
 
 
 def sensitivity(
@@ -172,12 +173,13 @@ def fleet(
     ] = None,
     allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show when the first of many units ends."""
     from uq.cli import fleet as fleets
 
-    fleets.fleet(result, size, by or [], allow, output, json)
+    fleets.fleet(result, size, by or [], allow, output, plain, json)
 
 
 def convergence(
@@ -214,6 +216,70 @@ def what_if(
     from uq.cli import what_if as question
 
     question.what_if(result, set_, json)
+
+
+def update(
+    source: Annotated[
+        Path, typer.Argument(metavar="STUDY|OUT.nc", help="A study (TOML), or a result.")
+    ],
+    inspections: Annotated[
+        Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
+    ],
+    rows: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Rows of a study, not its own number.")
+    ] = None,
+    model_error: Annotated[
+        float | None,
+        typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
+    ] = None,
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s], such as that of the next outage."),
+    ] = None,
+    workers: given.Workers = None,
+    scheduler: given.Scheduler = None,
+    model: given.ModelReference = None,
+    quiet: given.Quiet = False,
+    json: given.Json = False,
+) -> int:
+    """Learn from inspections: inputs, units, and lives to come."""
+    from uq.cli import learning
+
+    options = RunOptions(workers, scheduler)
+    return learning.update(
+        source,
+        inspections,
+        output,
+        rows,
+        model_error,
+        by or [],
+        model,
+        options,
+        quiet or json,
+        json,
+    )
+
+
+def next_inspection(
+    result: given.ResultFile,
+    inspect: Annotated[
+        str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
+    ],
+    at: Annotated[list[float] | None, typer.Option(metavar="T", help="When [s].")] = None,
+    units: Annotated[
+        list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
+    ] = None,
+    cv: Annotated[float, typer.Option(min=0.0, help="Error of the measurement.")] = 0.1,
+    life: Annotated[str | None, typer.Option(metavar="NAME", help="The life to narrow.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show what inspecting more units would be worth."""
+    from uq.cli import next_inspection as question
+
+    question.next_inspection(result, inspect, at or [], units or [1, 5, 20], cv, life, json)
 
 
 def twin(

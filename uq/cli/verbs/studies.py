@@ -8,6 +8,7 @@ import typer
 
 from uq.cli import options as given
 from uq.cli import say_when_interrupted
+from uq.errors import InputError
 from uq.running.options import RunOptions
 
 
@@ -53,8 +54,25 @@ def simulate(
     return single.simulate(model, set_ or [], setting or [], json, output, plot)
 
 
-def init(model: given.ModelName) -> None:
-    """Print a commented study file to edit."""
+def init(
+    model: Annotated[
+        str | None,
+        typer.Argument(metavar="MODEL", help="A model.", autocompletion=given.complete_model),
+    ] = None,
+    machine: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Write a folder with a machine of your own instead."),
+    ] = None,
+) -> None:
+    """Print a commented study file to edit, or write a machine of your own to start from."""
+    if (model is None) == (machine is None):
+        raise InputError("uq: give one of MODEL and --machine NAME")
+    if machine is not None:
+        from uq.cli.new_machine import write_machine
+
+        write_machine(machine)
+        return
+    assert model is not None
     from uq.running.loading import load_model
     from uq.study.template import template
 
@@ -68,12 +86,37 @@ def check(study: given.StudyFile, model: given.ModelReference = None) -> None:
     show_check(study, model)
 
 
-def schema() -> None:
+def serve(
+    model: given.ModelName,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0: any that is free.")] = 4242,
+    host: Annotated[
+        str, typer.Option(metavar="HOST", help="Who reaches it can have rows computed.")
+    ] = "127.0.0.1",
+) -> None:
+    """Offer a model to other programs, by the protocol of UM-Bridge."""
+    from uq.outside.serving import server_of
+    from uq.running.loading import load_model
+
+    found = load_model(model)
+    try:
+        server = server_of(found, host, port)
+    except OSError as error:
+        raise InputError(f"uq: {host}:{port}: {error.strerror or error}") from None
+    say_when_interrupted("stopped")
+    with server:
+        print(f"http://{host}:{server.server_address[1]}/{found.name}", flush=True)
+        server.serve_forever()
+
+
+def schema(
+    machine: Annotated[bool, typer.Option("--machine", help="Of machine files.")] = False,
+) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
+    from uq.outside.machine_file import machine_schema
     from uq.study.schema import json_schema
 
-    print_json(json_schema())
+    print_json(machine_schema() if machine else json_schema())
 
 
 def plan(

@@ -119,6 +119,8 @@ def inputs(findings: Findings, file: str) -> Iterator[Item]:
     ]
     shared = [Table("Level of each input", ("input", "level"), levels)] if is_nested(ds) else []
     yield Item("Variability between units, and what all units share", tables=shared)
+    learnt = str(ds.attrs.get("inspections", ""))
+    yield Item("Inspections from which the laws were learnt", code=learnt)
     fixed = fixed_inputs(ds)
     yield Item("Fixed inputs", tables=[] if fixed is None else [fixed])
     yield Item("Inputs as drawn", pictures=list(pictures(findings, "inputs")))

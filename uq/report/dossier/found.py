@@ -6,19 +6,21 @@ from math import isfinite
 from uq.analysis.findings import Findings
 from uq.analysis.statistics.statistic import Reader
 from uq.analysis.statistics.table import STATISTICS
+from uq.analysis.summary import REGIME
 from uq.conclusions.advice import verdict
 from uq.conclusions.answer import conclude
 from uq.conclusions.page import fragment
 from uq.conclusions.parts import Quantity
 from uq.designs.registry import DESIGNS
 from uq.keys import key_of
+from uq.methods.registry import METHODS
 from uq.report.cells import Cell, Table
 from uq.report.convergence import convergence_of
 from uq.report.dossier.items import Item
-from uq.report.fleets import fleet_table
-from uq.report.indices import Method, sensitivity_of
+from uq.report.fleets import fleet_notes, fleet_table
+from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.levels import levels_of
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table
 from uq.report.pictures import pictures
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
@@ -72,20 +74,19 @@ def convergence(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield the indices by each method."""
+    """Yield the indices of each output, by all methods."""
     methods = sensitivity_of(findings)
-    yield from map(_indices, methods)
-    if not methods:
-        yield Item("Indices", notes=["The design of this study supports no sensitivity method."])
-
-
-def _indices(method: Method) -> Item:
-    notes = [f"{note} ({one.name})" for one in method.subjects for note in one.notes]
-    return Item(
-        f"Indices by {method.name}",
-        tables=[table for one in method.subjects for table in one.tables],
-        notes=[method.refused or method.used, *notes],
+    yield Item(
+        "Methods",
+        facts=[
+            (one.name, f"{METHODS[one.name].question}; {one.refused or one.used}")
+            for one in methods
+        ],
+        notes=[] if methods else ["The design of this study supports no sensitivity method."],
     )
+    subjects = [subject for one in methods for subject in one.subjects]
+    for name in dict.fromkeys(one.output for one in subjects):
+        yield Item(f"Indices of {name}", subjects=of_output(methods, name))
 
 
 def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
@@ -100,24 +101,30 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
             " % to the 95 % quantile, and cover variability and lack of knowledge together."
         ],
     )
-    yield Item(
-        "Statistics with their intervals",
-        tables=list(result_tables(found)),
-        pictures=list(pictures(findings, "results", without=findings.absent)),
-        notes=findings.summary.notes,
-    )
+    drawn = list(pictures(findings, "results", without=findings.absent))
+    for name in dict.fromkeys(one.output for one in found):
+        yield Item(
+            f"Statistics of {name}",
+            tables=list(result_tables([one for one in found if one.output == name])),
+            pictures=[one for one in drawn if name in (one.of.name, output_of(one.of.name))],
+        )
+    for name, shares in findings.summary.categories.items():
+        yield Item(f"Statistics of {name}", tables=[category_table(name, shares)])
+    if findings.summary.notes:
+        yield Item("What the rows cannot show", text=findings.summary.notes)
     if findings.summary.regimes:
+        about = [one for one in drawn if output_of(one.of.name) == REGIME]
         yield Item(
             "Regimes",
-            tables=[regime_table(findings.summary)],
-            pictures=list(pictures(findings, "rows")),
+            tables=[category_table("regime", findings.summary.regimes)],
+            pictures=[*about, *pictures(findings, "rows")],
         )
     yield Item("Estimators and their sources", tables=_estimators(findings))
     levels, fleets = levels_of(findings), fleet_table(findings)
     yield Item(
         "What is shared, own, or due to chance",
         tables=[*([levels.table] if levels else []), *([fleets] if fleets else [])],
-        notes=levels.notes if levels else ["Each sample has one row."],
+        notes=levels.notes + fleet_notes(findings) if levels else ["Each sample has one row."],
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from uq.report.cells import Table
+from uq.report.indices import Subject
 from uq.report.pictures import Picture
 
 
@@ -22,6 +23,8 @@ class Item:
         Names and values.
     tables : sequence of Table
     pictures : sequence of Picture
+    subjects : sequence of Subject
+        Indices.
     code : str
         Text as it stands in a file.
     html : Markup
@@ -34,6 +37,7 @@ class Item:
     facts: Sequence[tuple[str, str]] = ()
     tables: Sequence[Table] = ()
     pictures: Sequence[Picture] = ()
+    subjects: Sequence[Subject] = ()
     code: str = ""
     html: Markup = Markup()
     notes: Sequence[str] = ()
@@ -41,4 +45,5 @@ class Item:
     @property
     def is_provided(self) -> bool:
         """Whether there is anything but small print."""
-        return any((self.text, self.facts, self.tables, self.pictures, self.code, self.html))
+        held = (self.text, self.facts, self.tables, self.pictures, self.subjects, self.code)
+        return any((*held, self.html))

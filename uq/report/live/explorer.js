@@ -5,7 +5,10 @@ function explorerOf(rows) {
   const {columns} = rows, outputs = columns.filter(one => one.role === "output");
   let x = columns[rows.first[0]], y = columns[rows.first[1]];
   const card = make("div", {"aria-live": "polite"});
-  const scatter = new Scatter(selection, columns, row => card.replaceChildren(cardOf(rows, row)));
+  const scatter = new Scatter(selection, columns, row => {
+    card.replaceChildren(cardOf(rows, row));
+    card.scrollIntoView({block: "nearest"});
+  });
   const ranges = new Map(), shelf = make("div", {class: "ranges"});
 
   const chooser = (label, chosen, choose) => make("label", {}, `${label} `,
@@ -49,10 +52,12 @@ function explorerOf(rows) {
   clear.disabled = true;
   const keys = make("p", {class: "note", id: "keys"}, "Drag over points to choose rows, or move the handles; click"
     + " a point to see its row. On the plot, the arrow keys go from row to row, and Enter opens one.");
-  const element = make("div", {class: "explorer"},
-    make("div", {}, ...chips, chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
-      chooser("Horizontal:", x, one => { x = one; arrange(); }), keys, shelf, clear, card),
-    found.element);
+  const element = make("div", {},
+    make("div", {class: "explorer"},
+      make("div", {}, ...chips, chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
+        chooser("Horizontal:", x, one => { x = one; arrange(); }), keys, shelf, clear),
+      found.element),
+    card);
   new ResizeObserver(() => scatter.resize()).observe(scatter.element);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => scatter.draw());
   return {element, arrange};

@@ -1,5 +1,7 @@
 // What is known of the chosen rows: probabilities, regimes, lives, beside those of all rows.
 
+const PROBABILITIES = [0.1, 0.5];
+
 class Found {
   constructor(selection) {
     this.selection = selection;
@@ -8,6 +10,7 @@ class Found {
     this.one = new Uint8Array(this.rows.count).fill(1);
     this.all = this.numbers(this.one);
     this.curves = new Map(); // of all rows, by column
+    this.later = laterOf();
     this.said = make("p", {class: "said", role: "status"});
     this.table = make("table", {class: "found"});
     this.picture = make("figure");
@@ -36,10 +39,7 @@ class Found {
     return this.events.map(({column, value, hits}) => {
       const isUnknown = (state, row) => mask[row] && state === CENSORED && column.values[row] < value;
       const unknown = column?.life && column.states.some(isUnknown);
-      if (!unknown) return shareOf(this.rows, hits, mask);
-      const curve = outliving(column, mask), before = curve.at.filter(time => time < value).length;
-      return {share: 1 - (before ? curve.share[before - 1] : 1), count: curve.count, low: NaN, high: NaN,
-        more: "by Kaplan\u2013Meier, assuming that censoring is non-informative"};
+      return unknown ? endedBy(this.rows, column, mask, value) : shareOf(this.rows, hits, mask);
     });
   }
 
@@ -47,7 +47,8 @@ class Found {
     this.column = column;
     const {selection, rows} = this, {isAll, mask, count} = selection;
     this.said.replaceChildren(...(isAll
-      ? [rows.count < rows.total ? `All ${rows.count} rows in this page, a random part of ${rows.total}.` : `All ${rows.count} rows.`]
+      ? [rows.count < rows.total ? `All ${rows.count} rows in this page, a random part of ${rows.total}.`
+        : rows.count === 1 ? "The only row." : `All ${rows.count} rows.`]
       : [data(count, `${count}`), ` of ${rows.count} rows, chosen after the fact: the intervals assume that the`
         + " choice was made before the rows were seen, and a difference from all rows need not be an effect of"
         + " what was chosen."]));
@@ -57,37 +58,69 @@ class Found {
       make("th", {scope: "row"}, ...dotOf(colour), words),
       ...(isAll ? [] : [cellOf(chosen[i])]), cellOf(this.all[i])));
     const everything = this.everything(column);
-    const some = isAll ? everything : outliving(column, mask);
-    lines.push(make("tr", {"data-key": "median"}, make("th", {scope: "row"}, `median of ${column.label}`),
-      ...(isAll ? [] : [medianOf(column, some)]), medianOf(column, everything)));
+    const some = isAll ? everything : {curve: outliving(column, mask), quantiles: this.quantiles(column, mask)};
+    PROBABILITIES.forEach((probability, i) => lines.push(make("tr", {"data-key": `quantile/${probability}`},
+      make("th", {scope: "row"}, `${quantileName(probability, column)} of ${column.label}`),
+      ...(isAll ? [] : [quantileCell(column, some.quantiles[i])]), quantileCell(column, everything.quantiles[i]))));
     this.table.replaceChildren(make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...lines));
-    this.drawCurves(column, everything, some, isAll);
+    this.drawCurves(column, everything.curve, some.curve, isAll);
+    this.later(this.withBand(column, everything.curve, some.curve, isAll, mask));
   }
 
   everything(column) {
-    if (!this.curves.has(column)) this.curves.set(column, outliving(column, this.one));
+    if (!this.curves.has(column)) {
+      this.curves.set(column, {curve: outliving(column, this.one), quantiles: this.quantiles(column, this.one)});
+    }
     return this.curves.get(column);
   }
 
-  drawCurves(column, everything, some, isAll) {
+  quantiles(column, mask) {
+    return quantilesAmong(this.rows, column, mask, PROBABILITIES);
+  }
+
+  drawCurves(column, everything, some, isAll, pointwise) {
     const what = column.life ? "Share that outlives each time" : "Share of rows above each value";
-    const lines = [{curve: everything, name: "all", half: isAll ? bandOf(this.rows, everything) : NaN}];
-    if (!isAll) lines.push({curve: some, name: "chosen", half: bandOf(this.rows, some)});
+    const lines = [{curve: everything, name: "all"}];
+    if (!isAll) lines.push({curve: some, name: "chosen"});
+    const half = bandOf(this.rows, some), band = pointwise ?? this.censoredBand(column, some, isAll ? this.one : this.selection.mask);
+    Object.assign(lines.at(-1), {half, band});
     const title = `${what}: ${column.title}`;
-    const band = isFinite(lines.at(-1).half) ? ", 95 % band" : "";
+    const words = isFinite(half) ? ", 95 % band" : band ? ", pointwise 95 % intervals" : "";
     this.picture.replaceChildren(curvesOf(column, lines, title), make("figcaption", {},
-      isAll ? `${title}${band}.` : `${title}: chosen rows (bold${band}) and all rows (thin).`));
+      isAll ? `${title}${words}.` : `${title}: chosen rows (bold${words}) and all rows (thin).`));
+  }
+
+  censoredBand(column, curve, mask) {
+    return curve.censored ? {at: curve.at, ...endsOf(this.rows, column, mask)} : undefined;
+  }
+
+  // The intervals of rows that are not independent take some time.
+  *withBand(column, everything, some, isAll, mask) {
+    if (this.rows.independent || some.censored) return;
+    let band;
+    for (band of bandOfShares(this.rows, column, some, mask)) yield;
+    if (band?.low.some(isFinite)) this.drawCurves(column, everything, some, isAll, band);
   }
 }
 
 function cellOf({share, low, high, more}) {
-  const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to\u00a0${percent(high)}` : "";
-  return make("td", {class: "number", "data-low": low, "data-high": high},
-    isNaN(share) ? "\u2013" : data(share, percent(share)), make("small", {}, [ends, more].filter(Boolean).join("; ")));
+  const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to ${percent(high)}` : "";
+  return intervalCell(isNaN(share) ? "\u2013" : data(share, percent(share)), low, high, ends, more);
 }
 
-function medianOf(column, curve) {
-  const value = quantile(curve, 0.5);
-  const words = value === Infinity ? (curve.never ? "never" : "beyond the horizon") : column.words(value, 3);
-  return make("td", {class: "number"}, data(value, words));
+function quantileName(probability, column) {
+  if (probability === 0.5) return "median";
+  return column.life ? `B${100 * probability}` : `${100 * probability}\u00a0% quantile`;
+}
+
+function quantileCell(column, {value, low, high, more}) {
+  const words = one => one === Infinity && column.life ? "never" : column.words(one, 3);
+  const ends = isNaN(low) && !(high < Infinity) ? "" : isNaN(low) ? `at most ${words(high)}` : isNaN(high)
+    ? `at least ${words(low)}` : `${high < Infinity ? column.digits(low, 3) : words(low)} to ${words(high)}`;
+  return intervalCell(isNaN(value) ? "\u2013" : data(value, words(value)), low, high, ends, more);
+}
+
+function intervalCell(shown, low, high, ends, more) {
+  const parts = [ends && make("span", {class: "ends"}, ends), ends && more && "; ", more].filter(Boolean);
+  return make("td", {class: "number", "data-low": low, "data-high": high}, shown, make("small", {}, ...parts));
 }

@@ -20,8 +20,8 @@ function exact(share, rows) {
   return [low, high];
 }
 
-function areFew(share, rows) {
-  return Number((Math.min(share, 1 - share) * rows).toFixed(6)) < FEW_HITS;
+function areFew(share, rows, below = FEW_HITS) {
+  return Number((Math.min(share, 1 - share) * rows).toFixed(6)) < below;
 }
 
 function binomial(share, rows) {
@@ -37,38 +37,46 @@ function student(students, degrees) {
     + (79 * z9 + 776 * z7 + 1482 * z5 - 1920 * z3 - 945 * z) / (92160 * degrees ** 4);
 }
 
-// From what independent parts estimate: replicates, or samples of several rows, then with their number.
-function scattered(share, count, estimates, students, samples) {
+// From what independent parts estimate: replicates, or samples of several rows, then with their number. The
+// estimates may be those of another share.
+function scattered(share, count, estimates, students, samples, at = share) {
   const parts = estimates.length;
   if (parts < 2) return NONE;
   const mean = estimates.reduce((a, b) => a + b) / parts;
   const scatter = estimates.reduce((sum, one) => sum + (one - mean) ** 2, 0) / (parts - 1) / parts;
-  const known = estimates.some(one => one !== estimates[0]) && share > 0 && share < 1;
-  const worth = known ? share * (1 - share) / scatter : NaN, wide = student(students, parts - 1);
+  const known = estimates.some(one => one !== estimates[0]) && at > 0 && at < 1;
+  const worth = known ? at * (1 - at) / scatter : NaN, wide = student(students, parts - 1);
+  if (count === null) return wilson(share, worth, wide);
   const limit = known || samples === null ? count : Math.min(count, samples);
   const effective = known ? Math.min(worth * (NORMAL / wide) ** 2, limit) : limit;
   return areFew(share, samples === null ? count : effective) ? exact(share, effective) : wilson(share, worth, wide);
 }
 
+// The share of hits, and what each part says of it: replicates their shares; samples, which may have unlike
+// numbers of rows, their pulls.
+function estimatesOf(hits, parts, areReplicates) {
+  const counts = new Map(), sums = new Map();
+  hits.forEach((hit, i) => {
+    counts.set(parts[i], (counts.get(parts[i]) ?? 0) + 1);
+    sums.set(parts[i], (sums.get(parts[i]) ?? 0) + hit);
+  });
+  const share = total(hits) / hits.length;
+  return {share, estimates: [...counts].map(([part, count]) => areReplicates ? sums.get(part) / count
+    : share + counts.size * (sums.get(part) - count * share) / hits.length)};
+}
+
 // Share and interval of hits (0, 1, or NaN where a row does not take part) among chosen rows.
 function shareOf(rows, hits, mask) {
-  const part = rows.replicate ?? rows.sample, counts = new Map(), sums = new Map();
-  let count = 0, sum = 0;
+  const part = rows.replicate ?? rows.sample, kept = [], parts = [];
   for (let row = 0; row < hits.length; row++) {
     if (!mask[row] || isNaN(hits[row])) continue;
-    count++;
-    sum += hits[row];
-    if (!part) continue;
-    counts.set(part[row], (counts.get(part[row]) ?? 0) + 1);
-    sums.set(part[row], (sums.get(part[row]) ?? 0) + hits[row]);
+    kept.push(hits[row]);
+    if (part) parts.push(part[row]);
   }
-  const share = sum / count;
+  const count = kept.length, share = total(kept) / count;
   let ends = NONE;
   if (count && part) {
-    // Of replicates their shares; of samples, which may have unlike numbers of rows, their pulls.
-    const estimates = [...counts.keys()].sort((a, b) => a - b).map(one => rows.replicate
-      ? sums.get(one) / counts.get(one)
-      : share + counts.size * (sums.get(one) - counts.get(one) * share) / count);
+    const {estimates} = estimatesOf(kept, parts, Boolean(rows.replicate));
     ends = scattered(share, count, estimates, rows.students, rows.samples);
   } else if (count && rows.independent) ends = binomial(share, count);
   return {share, count, low: ends[0], high: ends[1]};

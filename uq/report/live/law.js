@@ -39,10 +39,16 @@ class Law {
     return 1 - this.within.kept / this.given([-Infinity, Infinity]).kept;
   }
 
+  // The same of each row. A law is that of one input: it keeps what it has found of all rows.
+  besides(others) {
+    return this.conditions ??= Array.from(others, other => this.beside(other));
+  }
+
   // The logarithm of the density at each value; of a factor, given the other parameter.
   logDensities(values, others) {
-    return values.map((x, row) => {
-      const {low, high, kept} = others ? this.beside(others[row]) : this.within;
+    if (others) this.besides(others);
+    return this.densities ??= values.map((x, row) => {
+      const {low, high, kept} = others ? this.conditions[row] : this.within;
       return x < low || x > high ? -Infinity : this.logDensity(x) - Math.log(kept);
     });
   }
@@ -73,7 +79,7 @@ class Law {
 
   // The standard normal numbers behind values.
   normal(values) {
-    return values.map(x => normalAt(Math.min(Math.max(this.shares(x)[0], 2 ** -54), 1 - 2 ** -53)));
+    return this.scores ??= values.map(x => normalAt(Math.min(Math.max(this.shares(x)[0], 2 ** -54), 1 - 2 ** -53)));
   }
 
   // The law with its spread times a factor, its middle moved.

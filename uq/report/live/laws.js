@@ -36,7 +36,7 @@ const LAWS = {
   "loguniform": {
     bounded: true,
     of({lower, upper}) {
-      const ends = [Math.log(lower), Math.log(upper)], height = -Math.log(Math.log(upper / lower));
+      const ends = [Math.log(lower), Math.log(upper)], height = -Math.log(ends[1] - ends[0]);
       return {
         logDensity: x => height - Math.log(x),
         tails: x => x > 0 ? flat(...ends, Math.log(x)) : [0, 1],

@@ -31,6 +31,7 @@ class ConditionalScale {
     Object.assign(this, {inputs: [name], exponent, deviation, law: laws.get(name)});
     this.drawn = columns.get(name).values;
     this.others = times ? columns.get(times).values : null;
+    if (times) this.conditions = this.law.besides(this.others);
     if (slopes) {
       this.mean = new Float64Array(this.drawn.length);
       for (const [other, slope] of slopes) {
@@ -40,15 +41,16 @@ class ConditionalScale {
   }
 
   below({values}, time) {
-    const {law, others, mean, exponent} = this;
-    return values.map((life, row) => {
-      if (isNaN(life)) return 0;
-      const reached = this.drawn[row] * (time / life) ** (1 / exponent);
-      if (others) return law.shares(reached / others[row], law.beside(others[row]))[exponent > 0 ? 0 : 1];
-      const share = law.shares(reached)[0];
-      const z = share <= 0 ? -Infinity : share >= 1 ? Infinity : normalAt(share);
-      return normalBelow((exponent > 0 ? 1 : -1) * (z - mean[row]) / this.deviation);
-    });
+    return values.map((life, row) => this.belowIn(row, life, time));
+  }
+
+  belowIn(row, life, time) {
+    if (isNaN(life)) return 0;
+    const {law, others, exponent} = this, reached = this.drawn[row] * (time / life) ** (1 / exponent);
+    if (others) return law.shares(reached / others[row], this.conditions[row])[exponent > 0 ? 0 : 1];
+    const share = law.shares(reached)[0];
+    const z = share <= 0 ? -Infinity : share >= 1 ? Infinity : normalAt(share);
+    return normalBelow((exponent > 0 ? 1 : -1) * (z - this.mean[row]) / this.deviation);
   }
 }
 
@@ -56,7 +58,7 @@ class ConditionalScale {
 // the one that depends on others if it alone scatters the lives more.
 function lifeLawOf({free, bound}, laws, columns) {
   const kept = [...free, ...bound].filter(({name, times}) => times || laws.get(name).isPositive);
-  const terms = kept.filter(one => free.includes(one)).map(one => [one, new LogTerm(laws.get(one.name), one.exponent)]);
+  const terms = kept.filter(one => free.includes(one)).map(one => [one, logTermOf(laws.get(one.name), one.exponent)]);
   const others = kept.filter(one => bound.includes(one)).map(one => [one, reachOf(one, columns)]);
   const widest = others.reduce((best, one) => one[1] > best[1] ? one : best, [null, 0]);
   if (terms.length && (!widest[0] || Math.hypot(...terms.map(([, term]) => term.spread)) >= widest[1])) {

@@ -10,7 +10,9 @@ function cardOf(rows, row) {
   const copy = make("button", {type: "button", "on:click": () => copied(command, done)}, "Copy");
   return make("div", {class: "card", "data-row": name},
     make("h3", {}, `Row ${name}`), make("p", {class: "command"}, make("code", {}, command), " ", copy, " ", done),
-    list(facts), make("h4", {}, "Inputs"), list(of("input")), make("h4", {}, "Outputs"), list(of("output")));
+    make("div", {class: "facts"},
+      make("div", {}, make("h4", {}, "Inputs"), list(of("input"))),
+      make("div", {}, make("h4", {}, "Outputs"), list([...facts, ...of("output")]))));
 }
 
 async function copied(text, done) {

@@ -22,10 +22,34 @@ class Column {
     });
   }
 
-  // A value in the unit shown, such as "12.3 kN".
+  // Digits that the values of all rows have in common.
+  get common() {
+    if (this.alike === undefined) {
+      let low = Infinity, high = -Infinity;
+      this.values.forEach((value, row) => {
+        if (!isFinite(value) || this.states[row] > CENSORED) return;
+        low = Math.min(low, value);
+        high = Math.max(high, value);
+      });
+      const alike = high > low ? Math.floor(Math.log10(Math.max(-low, high)) - Math.log10(high - low)) : 0;
+      this.alike = Math.min(Math.max(alike, 0), 13);
+    }
+    return this.alike;
+  }
+
+  // A value in the unit shown, without it.
+  digits(value, digits = 4) {
+    return number(value / this.per, digits + this.common);
+  }
+
+  // The same with it, such as "12.3 kN".
   words(value, digits = 4) {
-    const between = this.unit.startsWith("10") ? "\u00b7" : " "; // a unit such as 10⁻¹⁵ m²
-    return `${number(value / this.per, digits)}${between}${this.unit}`.trim();
+    return this.digits(value, digits) + this.afterNumber;
+  }
+
+  get afterNumber() {
+    if (!this.unit || this.unit === "\u00b0") return this.unit;
+    return `${this.unit.startsWith("10") ? "\u00b7" : " "}${this.unit}`; // a unit such as 10⁻¹⁵ m²
   }
 
   wordsOfRow(row) {

@@ -31,14 +31,10 @@ class Scale {
 
   // About so many round numbers, in the unit shown.
   ticks(count) {
-    const low = this.low / this.per, high = this.high / this.per;
-    const round = (step, of) => {
-      const found = [];
-      for (let i = Math.ceil(low / step); i * step <= high * (1 + 1e-12); i++) found.push(of(i * step));
-      return found;
-    };
+    const least = this.wide ? 1e-300 : -1e300;
+    const [low, high] = [this.low, this.high].map(end => Math.min(Math.max(end / this.per, least), 1e300));
     if (this.wide && high / low > 8) {
-      const found = [], decades = Math.log10(high / low);
+      const found = [], decades = Math.log10(high) - Math.log10(low);
       const steps = decades > count ? [1] : decades * 2 > count ? [1, 3] : [1, 2, 5];
       for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++) {
         for (const step of steps) {
@@ -51,6 +47,7 @@ class Scale {
     }
     const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
     const step = [1, 2, 5, 10].map(one => one * power).find(one => one >= rough);
-    return round(step, value => value * this.per);
+    const first = Math.ceil(low / step), inside = Math.max(Math.floor(high / step + 1e-9) - first, 0);
+    return [...new Set(Array.from({length: Math.min(inside, 20) + 1}, (_, i) => (first + i) * step * this.per))];
   }
 }

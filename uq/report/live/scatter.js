@@ -26,12 +26,13 @@ class Scatter {
     Object.assign(this.canvas, {width: width * ratio, height: height * ratio});
     this.canvas.style.height = `${height}px`;
     Object.assign(this, {width, height, ratio});
-    this.x = new Axis(this.columnX, LEFT, width - EDGE);
     this.y = new Axis(this.columnY, height - BOTTOM, EDGE);
+    this.left = Math.max(LEFT, ...this.y.scale.ticks(5).map(value => LETTER * this.columnY.digits(value).length + 12));
+    this.x = new Axis(this.columnX, this.left, width - EDGE);
     this.px = Float32Array.from(this.rows.numbers, (_, row) => this.x.pixelOf(row));
     this.py = Float32Array.from(this.rows.numbers, (_, row) => this.y.pixelOf(row));
     this.orders = null;
-    this.draw();
+    this.redraw();
   }
 
   redraw() {
@@ -53,13 +54,13 @@ class Scatter {
   }
 
   drawAxes(pen) {
-    const {x, y, width, height} = this;
+    const {x, y, width, height, left} = this;
     const bottom = height - BOTTOM;
     pen.textBaseline = "top";
     pen.textAlign = "center";
     let free = 0;
     for (const value of x.scale.ticks(Math.max(2, width / 110))) {
-      const at = x.pixel(value), label = number(value / x.column.per), half = pen.measureText(label).width / 2;
+      const at = x.pixel(value), label = x.column.digits(value), half = pen.measureText(label).width / 2;
       pen.strokeRect(at, bottom, 0, TICK);
       if (at - half < free) continue;
       pen.fillText(label, Math.min(at, width - half), bottom + TICK + 3);
@@ -79,16 +80,16 @@ class Scatter {
     pen.textAlign = "right";
     for (const value of y.scale.ticks(5)) {
       const at = y.pixel(value);
-      pen.strokeRect(LEFT - TICK, at, TICK, 0);
-      pen.fillText(number(value / y.column.per), LEFT - TICK - 3, at);
+      pen.strokeRect(left - TICK, at, TICK, 0);
+      pen.fillText(y.column.digits(value), left - TICK - 3, at);
     }
     for (const [name, at] of y.strips) {
       const edge = name === "no value" ? at - STRIP : at;
-      pen.strokeRect(LEFT, edge, width - EDGE - LEFT, 0);
-      pen.fillText(name, LEFT - TICK - 3, at - STRIP / 2);
+      pen.strokeRect(left, edge, width - EDGE - left, 0);
+      pen.fillText(name, left - TICK - 3, at - STRIP / 2);
     }
-    pen.strokeRect(LEFT, EDGE, 0, bottom - EDGE);
-    pen.strokeRect(LEFT, bottom, width - EDGE - LEFT, 0);
+    pen.strokeRect(left, EDGE, 0, bottom - EDGE);
+    pen.strokeRect(left, bottom, width - EDGE - left, 0);
   }
 
   // Rows that are not chosen lie behind, faint; chosen ones have the colour of their regime.
@@ -123,14 +124,15 @@ class Scatter {
     this.at = row;
     this.tip.hidden = row < 0;
     if (row >= 0) {
-      const lines = [`Row ${this.rows.numbers[row]}`];
-      if (this.rows.regime) lines[0] += `, ${this.rows.regime.entry(row).label}`;
-      for (const one of [this.columnX, this.columnY]) lines.push(`${one.label}: ${one.wordsOfRow(row)}`);
-      this.tip.replaceChildren(...lines.map(line => make("div", {}, line)));
+      const regime = this.rows.regime ? `, ${this.rows.regime.entry(row).label}` : "";
+      const lines = [this.columnX, this.columnY].flatMap(one => [
+        make("div", {}, `${one.label}:`), make("strong", {}, one.wordsOfRow(row)),
+      ]);
+      this.tip.replaceChildren(make("div", {}, `Row ${this.rows.numbers[row]}${regime}`), ...lines);
       const right = this.px[row] > this.width / 2;
       this.tip.style.left = right ? "" : `${this.px[row] + 12}px`;
       this.tip.style.right = right ? `${this.width - this.px[row] + 12}px` : "";
-      this.tip.style.top = `${Math.max(0, Math.min(this.py[row] - 20, this.height - 80))}px`;
+      this.tip.style.top = `${Math.max(0, Math.min(this.py[row] - 20, this.height - this.tip.offsetHeight))}px`;
     }
     this.draw();
   }

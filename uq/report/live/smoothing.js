@@ -1,13 +1,7 @@
 // Weights of rows, smoothed, and whether they can be trusted: as uq/population/smoothing.py.
 // A. Vehtari et al., "Pareto smoothed importance sampling", J. Mach. Learn. Res. 25, 72 (2024).
 
-const FEWEST = 5, HOPELESS = 0.7, NEGLIGIBLE = 1e-3, ROUNDING = 64 * Number.EPSILON;
-
-function total(numbers) {
-  let sum = 0;
-  for (const one of numbers) sum += one;
-  return sum;
-}
+const FEWEST = 5, HOPELESS = 0.7, NEGLIGIBLE = 1e-3;
 
 // The number of rows of equal weight that are worth as much (L. Kish).
 function effectiveRows(numbers) {
@@ -101,8 +95,9 @@ function withSmoothTail(raw) {
 }
 
 function smoothed(logWeights, sample) {
-  const most = logWeights.reduce((a, b) => Math.max(a, b));
-  const raw = logWeights.map(one => Math.exp(one - most));
+  const most = logWeights.reduce((a, b) => b > a ? b : a, -Infinity);
+  if (most === -Infinity) return {refusal: "No row of this result is possible under these laws"};
+  const raw = logWeights.map(one => isNaN(one) ? 0 : Math.exp(one - most));
   const ofSamples = perSample(raw, sample), k = tailShape(ofSamples);
   const weights = isFinite(k) ? withSmoothTail(raw) : raw, mean = total(weights) / weights.length;
   return {
@@ -115,6 +110,7 @@ function smoothed(logWeights, sample) {
 function refusal(k, rows) {
   const most = rows > 10 ? Math.min(HOPELESS, 1 - 1 / Math.log10(rows)) : -Infinity;
   if (k <= most || k === -Infinity) return "";
+  if (most === -Infinity) return `weights rest on ${rows} independent parts, and more than 10 are needed`;
   if (k === Infinity) return `fewer than ${FEWEST} samples have weight there`;
   if (k < HOPELESS) {
     const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);

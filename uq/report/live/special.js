@@ -1,5 +1,13 @@
 // Special functions, to about twelve digits.
 
+const ROUNDING = 64 * Number.EPSILON;
+
+function total(numbers) {
+  let sum = 0;
+  for (const one of numbers) sum += one;
+  return sum;
+}
+
 // The normal law's probability of less than x (J. F. Hart, Computer Approximations, 1968, as given by
 // G. West, "Better approximations to cumulative normal functions", Wilmott, May 2005).
 function normalBelow(x) {

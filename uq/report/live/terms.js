@@ -64,6 +64,12 @@ class LogTerm extends Term {
   }
 }
 
+// A law keeps its term: most laws stay as they are when one is moved.
+function logTermOf(law, exponent) {
+  if (law.term?.exponent !== exponent) law.term = Object.assign(new LogTerm(law, exponent), {exponent});
+  return law.term;
+}
+
 // The probability that `first` and `second` together are less than a value.
 function together(first, second, value) {
   const kinks = first.breaks.map(one => value - one).reverse();

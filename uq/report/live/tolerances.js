@@ -31,10 +31,10 @@ function tolerancesOf(rows) {
       make("tr", {"data-key": event.key}, make("th", {scope: "row"}, event.words),
         ...(changed ? [cellOf(found[i] ?? {share: NaN})] : []), cellOf(before[i])))));
     table.hidden = !events.length;
-    if (!curves.has(shown)) curves.set(shown, new WeightedCurve(new Reweighting(rows), shown).curve);
-    const now = problem ? null : new WeightedCurve(reweighting, shown), curve = changed ? now?.curve : null;
+    if (!curves.has(shown)) curves.set(shown, asStudied().curve);
+    const now = changed && !problem ? new WeightedCurve(reweighting, shown) : null, curve = now?.curve;
     drawCurves(curve);
-    later(now ? withBand(now, curve) : [].values());
+    later(withBand(now, curve));
   }
 
   function say(changed, problem) {
@@ -43,24 +43,35 @@ function tolerancesOf(rows) {
     const least = used.reduce((a, b) => b.effective < a.effective ? b : a, used[0]);
     const most = used.reduce((a, b) => b.k > a ? b.k : a, -Infinity);
     said.replaceChildren(...(problem ? [problem] : !changed ? ["The laws of the study."] : !least ? [all[0].refusal]
-      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${rows.count} rows`,
+      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${least.rows} ${rows.parts}${rows.count < rows.total ? " in this page" : ""}`,
         isFinite(most) ? ` (Pareto k = ${number(most, 2)}).` : "."]));
   }
 
+  function asStudied() {
+    return new WeightedCurve(new Reweighting(rows), shown);
+  }
+
   function drawCurves(curve, band) {
-    const asStudied = {curve: curves.get(shown), name: "all"}, lines = [asStudied];
+    const before = {curve: curves.get(shown), name: "all"}, lines = [before];
     if (curve) lines.push({curve, name: "chosen", band});
-    else asStudied.band = band;
+    else before.band = band;
     const title = `${shown.life ? "Share that outlives each time" : "Share above each value"}: ${shown.title}`;
     const intervals = band ? ", pointwise 95 % intervals" : "";
     picture.replaceChildren(curvesOf(shown, lines, title), make("figcaption", {},
       curve ? `${title}: these laws (bold${intervals}) and as studied (thin).` : `${title}${intervals}.`));
   }
 
+  // All rows take some time: for intervals, and for what was only sketched.
   function* withBand(now, curve) {
     let band;
+    if (!now || curves.get(shown).isSketch) {
+      for (band of asStudied().band()) yield;
+      if (curves.get(shown).isSketch) curves.set(shown, trusted(null, band));
+      if (!now && band?.low.some(isFinite)) drawCurves(null, band);
+    }
+    if (!curve) return;
     for (band of now.band()) yield;
-    if (band?.low.some(isFinite)) drawCurves(curve, band);
+    if (band) drawCurves(now.weights ? trusted(curve, band) : curve.isSketch ? trusted(null, band) : curve, band);
   }
 
   const notes = [...without, ...Object.entries(refused)].map(([name, why]) => `${name}: ${why}.`);

@@ -20,6 +20,7 @@ class Weighed {
     let mean = 0;
     for (let i = 0; i < worth.length; i++) mean += numbers[i] * worth[i];
     mean = Math.min(1, Math.max(0, mean / sum));
+    if (numbers.every(one => one >= 1 - ROUNDING)) mean = 1; // the complement has no digits
     const side = mean <= 0.5 ? numbers : numbers.map(one => 1 - one);
     const rarer = perSample(this.weights ? side.map((one, i) => worth[i] * one) : side, this.sample);
     if (this.weights) {

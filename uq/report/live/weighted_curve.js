@@ -1,6 +1,6 @@
 // The share of weighted rows above each value, or of lives with laws outliving each time.
 
-const BINS = 500, PLACES = 200, MOST_ENDS = 48;
+const BINS = 500, PLACES = 200, SKETCHED = 1000;
 
 class WeightedCurve {
   constructor(reweighting, column) {
@@ -15,7 +15,7 @@ class WeightedCurve {
   get curve() {
     if (this.refusal) return null;
     if (!this.law) return this.steps();
-    return this.law.term ? this.smooth() : this.averaged();
+    return this.law.term ? this.smooth() : this.sketch();
   }
 
   steps() {
@@ -61,39 +61,47 @@ class WeightedCurve {
       at.push(Math.exp(low + from + place * width));
       share.push(1 - ended / sum);
     }
-    return {at, share};
+    return {isSmooth: true, at, share};
   }
 
-  averaged() {
-    const at = this.places(), {column, weights, law} = this;
-    const worth = column.values.map((life, row) => isNaN(life) ? 0 : weights ? weights[row] : 1), sum = total(worth);
-    return {at, share: at.map(time => 1 - total(law.below(column, time).map((one, row) => one * worth[row])) / sum)};
+  // A first sketch, from some of the rows.
+  sketch() {
+    const at = this.places(), {column: {values}, weights, law} = this, every = Math.ceil(values.length / SKETCHED);
+    const rows = [...values.keys()].filter(row => row % every === 0 && !isNaN(values[row]));
+    const worth = rows.map(row => weights ? weights[row] : 1), sum = total(worth);
+    return {isSmooth: true, isSketch: true, at, share: at.map(time =>
+      1 - total(rows.map((row, i) => worth[i] * law.belowIn(row, values[row], time))) / sum)};
   }
 
   // Where intervals are computed.
   places() {
-    if (this.law) {
-      const scale = new Scale(this.column);
-      return Array.from({length: MOST_ENDS + 1}, (_, i) => scale.value(i / MOST_ENDS));
-    }
-    const {at} = this.steps(), every = Math.max(1, Math.ceil(at.length / MOST_ENDS));
-    return at.filter((_, i) => i % every === 0 || i === at.length - 1);
+    const scale = new Scale(this.column);
+    return Array.from({length: MOST_ENDS + 1}, (_, i) => scale.value(i / MOST_ENDS));
   }
 
-  // Yield the share above each of these values with its interval, as Python has it on the same rows.
+  // Yield the ends of the intervals of the share above each of some values, as Python has them on the same rows.
   *band() {
     if (this.refusal) return;
-    const {rows, column, law, weights} = this, {states, values} = column;
-    const weighed = new Weighed(rows, weights, row => states[row] < UNDEFINED), found = {at: [], low: [], high: []};
-    for (const at of this.places()) {
-      const above = law ? law.below(column, at).map(one => 1 - one)
-        : Float64Array.from(values, (value, row) => Number(value > at || (states[row] === CENSORED && value === at)));
-      const {low, high} = law || weights ? weighed.share(above)
-        : shareOf(rows, above.map((one, row) => states[row] < UNDEFINED ? one : NaN), new Uint8Array(rows.count).fill(1));
-      found.at.push(at);
+    const {rows, column, law, weights} = this, takesPart = row => column.states[row] < UNDEFINED;
+    if (!law && !weights) return yield* bandOfShares(rows, column, this.steps(), new Uint8Array(rows.count).fill(1));
+    const weighed = new Weighed(rows, weights, takesPart);
+    if (!law) return yield* heldBand(column, this.steps(), at => weighed.share(aboveOf(column, at)));
+    const found = {at: this.places(), share: [], low: [], high: []};
+    for (const at of found.at) {
+      const {share, low, high} = weighed.share(law.below(column, at).map(one => 1 - one));
+      found.share.push(share);
       found.low.push(low);
       found.high.push(high);
       yield found;
     }
   }
+}
+
+// A curve where its shares can be trusted, from the ends of their intervals.
+function trusted(curve, {at, share, low}) {
+  const known = at.filter((_, i) => isFinite(low[i]));
+  if (share) return {isSmooth: true, at: known, share: share.filter((_, i) => isFinite(low[i]))};
+  const inside = curve.at.map((_, i) => i).filter(i => curve.at[i] >= known[0] && curve.at[i] <= known.at(-1));
+  const corners = inside.flatMap((i, nth) => nth ? [[i, i - 1], [i, i]] : [[i, i]]);
+  return {isSmooth: true, at: corners.map(([i]) => curve.at[i]), share: corners.map(([, i]) => curve.share[i])};
 }

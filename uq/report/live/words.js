@@ -1,11 +1,12 @@
 // Numbers as words, and elements of the page.
 
+const KAPLAN_MEIER = "by Kaplan\u2013Meier, assuming that censoring is non-informative";
 const RAISED = "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
 function number(value, digits = 4) {
   if (!isFinite(value)) return isNaN(value) ? "\u2013" : value > 0 ? "\u221e" : "\u2212\u221e";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e6)) {
+  if (size !== 0 && (size < 1e-4 || size >= 10 ** Math.max(6, digits))) {
     const [mantissa, power] = value.toExponential(digits - 1).split("e");
     const raised = [...String(Number(power))].map(one => RAISED["-0123456789".indexOf(one)]);
     return `${Number(mantissa)}\u00b710${raised.join("")}`.replace("-", "\u2212");
@@ -14,6 +15,7 @@ function number(value, digits = 4) {
 }
 
 function percent(share) {
+  if (share === 0 || share === 1) return `${100 * share}\u00a0%`;
   if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))}\u00a0%`;
   const rest = Number((1 - share).toFixed(12));
   const digits = rest > 0 && rest < 0.001 ? -Math.floor(Math.log10(100 * rest)) : 1;

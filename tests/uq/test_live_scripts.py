@@ -1,4 +1,4 @@
-"""The laws that a page computes with, against those of Python."""
+"""What the scripts of a page compute, one by one, against Python."""
 
 import json
 
@@ -8,6 +8,7 @@ from report_scripts import scripts
 
 from uq.inputs.conditioning import cdf_within, log_density_between
 from uq.inputs.registry import LAWS, law_of
+from uq.population.smoothing import refusal
 from uq.population.sums import LogTerm, law_of_sum
 from uq.report.tolerances import KNOWN
 
@@ -111,3 +112,48 @@ def test_the_law_of_a_product_is_that_of_python(asked):
             f" return {json.dumps(places.tolist())}.map(t => sum.below(t)) }})()"
         )
         np.testing.assert_allclose(found, python.below(places), atol=1e-9, err_msg=str(terms))
+
+
+COLUMN = """(() => {{
+  const values = {0}, bytes = new Uint8Array(Float64Array.from(values).buffer);
+  const encoded = btoa(String.fromCharCode(...bytes));
+  const column = new Column({{label: "y", unit: "m", per: 1, wide: {1}, values: encoded}}, []);
+  const ticks = new Scale(column).ticks(5);
+  return [ticks.map(value => column.digits(value)), values.map(one => column.words(one))] }})()"""
+
+
+@pytest.mark.parametrize(
+    ("values", "wide"),
+    [([1e6, 1e6 + 4e-4, 1e6 + 1e-3], False), ([1e-200, 1.0, 1e200], True), ([3.0, 3.0], False)]
+    + [([1e16, 1e16 + 4], False), ([0.0, 5e-324], True), ([-1e308, 1e308], False)],
+    ids=str,
+)
+def test_different_values_are_written_differently(asked, values, wide):
+    ticks, words = asked(COLUMN.format(json.dumps(values), json.dumps(wide)))
+    assert len(set(words)) == len(set(values))
+    assert len(ticks) == len(set(ticks)) < 30
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [("\u00b0", "3\u00b0"), ("", "3"), ("kN", "3 kN"), ("10\u00b3 m", "3\u00b710\u00b3 m")],
+)
+def test_units_stand_beside_numbers(asked, unit, words):
+    plain = json.dumps({"unit": unit, "per": 1, "values": ""})
+    assert asked(f"new Column({plain}, []).words(3)") == words
+
+
+def test_arguments_of_laws_keep_the_digits_of_their_change(asked):
+    assert asked("rounded(1e8 + 3.4567891e-4, 1e8)") == 1e8 + 3.456789e-4
+    assert asked("rounded(0.8000000001, 1)") == 0.8
+    found = asked(
+        "new Law({distribution: 'uniform', bounds: [null, null], truncate: null,"
+        " args: {lower: 1e6, upper: 1e6 + 1e-3}}).moved(0.5, 0).args"
+    )
+    assert found["lower"] == pytest.approx(1e6 + 2.5e-4, abs=1e-8)
+    assert found["upper"] == pytest.approx(1e6 + 7.5e-4, abs=1e-8)
+
+
+def test_a_law_that_leaves_no_row_is_refused(asked):
+    assert "No row" in asked("smoothed(Float64Array.of(-Infinity, NaN), null).refusal")
+    assert asked("refusal(0.3, 7)") == refusal(0.3, 7)

@@ -1,0 +1,248 @@
+"""The examples of the gallery: what each figure tells, and the lines that draw it."""
+
+from typing import NamedTuple
+
+
+class Example(NamedTuple):
+    """One kind of figure.
+
+    Attributes
+    ----------
+    name : str
+        Key of `uq.plots.FIGURES`, or else a function of `uq.plots`; of its file, too.
+    heading, title, says : str
+        Under which it stands, what it is called, and how to read it.
+    code : str
+        Python; the last line is the figure.
+    command : str
+        The same on the command line; "" if there is no command.
+    study : str
+        The shipped study whose result it draws.
+    """
+
+    name: str
+    heading: str
+    title: str
+    says: str
+    code: str
+    command: str = ""
+    study: str = ""
+
+
+def _of_result(name: str, heading: str, title: str, says: str, call: str, study: str) -> Example:
+    """Return an example that draws a result, which ``uq plot`` draws with all its other figures."""
+    path = f"results/{study}.nc"
+    code = f'import uq\n\nds = uq.open_result("{path}")\nuq.plots.{call}'
+    return Example(name, heading, title, says, code, f"uq plot {path}", study)
+
+
+LIVES, INPUTS = "Lives and other outputs", "Inputs and regimes"
+ENOUGH, MOTION, RESPONSE = "Enough rows?", "One motion", "Response of a machine"
+LIFE = "first_time_to_depth[depth=0.00025]"
+
+MOVED = """\
+import uq
+
+uq.plots.motion(uq.simulate("beam", {"forcing_frequency": 54.797}))"""
+
+RUN_UP = """\
+import uq
+
+one = uq.simulate("vibrator").sel(time=slice(0, 3))
+uq.plots.history(one, ["disphasing_angle", ["speed_1", "speed_2"]])"""
+
+PORTRAIT = """\
+import uq
+
+one = uq.simulate("beam", {"forcing_frequency": 57.1042})
+last = one.sel(time=slice(float(one.time[-1]) - 0.2, None))
+uq.plots.phase_portrait(last)"""
+
+SECTION = """\
+import uq
+from models.mole.explore import poincare_section
+from models.mole.parameters import Params, Settings
+
+mole, printed = Params(control_frequency=2.5), Settings(formulation="as-printed")
+points = poincare_section(mole, printed, periods=1500, dropped=12)
+uq.plots.section(points)"""
+
+BRANCH = """\
+import uq
+from models.beam.explore import continue_orbit
+from models.beam.parameters import Params
+
+branch = continue_orbit(Params(forcing_frequency=57.1042), stop=58.0)
+uq.plots.curve(branch, "work_rate", against="forcing_frequency")"""
+
+DIAGRAM = """\
+import numpy as np
+
+import uq
+from models.mole.explore import bifurcation_diagram
+from models.mole.parameters import Params, Settings
+
+swept = np.linspace(2.5, 10, 151)
+diagram = bifurcation_diagram(swept, Params(), Settings(), dropped=200, kept=40)
+uq.plots.bifurcation(diagram, "displacement", by="regime")"""
+
+STARTS = """\
+import uq
+
+starts = {
+    "initial_displacement": (-0.05, 0.005, 40),
+    "initial_velocity": (-2.0, 2.0, 40),
+}
+found = uq.basins("mole", starts, fixed={"control_frequency": 8.0}, by=["progression_rate"])
+uq.plots.basins(found, ["progression_rate"])"""
+
+EXAMPLES = (
+    _of_result(
+        "lifetime",
+        LIVES,
+        "The share that has ended, against time",
+        "The line is the estimate; the bands are the pointwise and the simultaneous 95 % interval."
+        " Points mark B1, B10 and B50, with their intervals, and a vertical line the time that the"
+        " study asks about.",
+        'lifetime(ds, "first_time_to_depth")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "quantiles",
+        LIVES,
+        "Quantiles with their intervals",
+        "A table for a journal: each quantile that the study names.",
+        'quantile_table(ds, "first_time_to_depth")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "events",
+        LIVES,
+        "The probability of an event over the input that decides it",
+        "Steps are slices of equally many rows, with 95 % intervals; dashed is the probability over"
+        " all rows.",
+        f'event_probability(ds, "P({LIFE}<86400.0)")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "histogram",
+        LIVES,
+        "The distribution of an output",
+        "Outputs other than lives. Lines mark the thresholds of the study.",
+        'histogram(ds, "disphasing_angle")',
+        "vibrator-tolerances",
+    ),
+    _of_result(
+        "regimes",
+        LIVES,
+        "A distribution by regime",
+        "The same rows, stacked by the kind of motion into which they settled: what looks like one"
+        " distribution may be two.",
+        f'histogram_by_regime(ds, "{LIFE}")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "scatter",
+        INPUTS,
+        "An output against its most influential inputs",
+        "Every row, with the mean within slices of the input and its 95 % band.",
+        f'scatter(ds, "{LIFE}")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "indices",
+        INPUTS,
+        "Sensitivity indices",
+        "How much of the variance each input explains by itself, and with its interactions.",
+        f'index_bars(ds, "log({LIFE})", method="sobol")',
+        "beam-sensitivity",
+    ),
+    _of_result(
+        "pairs",
+        INPUTS,
+        "Regimes over the inputs that separate them",
+        "Each row is a point; its colour is the regime.",
+        "pairs(ds)",
+        "beam-lifetime",
+    ),
+    _of_result(
+        "inputs",
+        INPUTS,
+        "Stated laws and sampled values",
+        "A check of the study: the line is the law as stated, the bars are the rows.",
+        "inputs(ds)",
+        "beam-lifetime",
+    ),
+    _of_result(
+        "convergence",
+        ENOUGH,
+        "An estimate against the number of rows",
+        "Twice as many rows from point to point. Where the band no longer moves beyond its own"
+        " width, there are enough.",
+        f'convergence(ds, "{LIFE}")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "convergence-indices",
+        ENOUGH,
+        "Total indices against the number of rows",
+        "The same for Sobol' indices, which need more rows than a mean.",
+        f'index_convergence(ds, "log({LIFE})")',
+        "beam-sensitivity",
+    ),
+    Example(
+        "motion",
+        MOTION,
+        "One run, and its last periods",
+        "What a row computes: the whole run on the left, the settled motion on the right; stops are"
+        " dashed.",
+        MOVED,
+        "uq simulate beam --set forcing_frequency=54.797 --plot beam.png",
+    ),
+    Example(
+        "history",
+        MOTION,
+        "Chosen quantities against time",
+        "Quantities of one unit may share a panel: the run-up of the vibrator.",
+        RUN_UP,
+    ),
+    Example(
+        "phase_portrait",
+        MOTION,
+        "A phase portrait",
+        "One quantity of a motion against another. With `section=...`, the points of a Poincaré"
+        " section are added.",
+        PORTRAIT,
+    ),
+    Example(
+        "section",
+        MOTION,
+        "A Poincaré section",
+        "The state of the mole each time its relay closes. At 2.5 Hz, with the equations as the"
+        " paper printed them, the motion is chaotic.",
+        SECTION,
+    ),
+    Example(
+        "curve",
+        RESPONSE,
+        "One quantity against another",
+        "Here the work-rates at both stops along a branch of asymmetric orbits, followed over the"
+        " forcing frequency to where it ends.",
+        BRANCH,
+    ),
+    Example(
+        "bifurcation",
+        RESPONSE,
+        "A bifurcation diagram",
+        "All values that a quantity takes at each value of a parameter: one point where the motion"
+        " repeats, many where it does not.",
+        DIAGRAM,
+    ),
+    Example(
+        "basins",
+        RESPONSE,
+        "Basins of attraction",
+        "Which start leads to which motion, and the share of the starts that does.",
+        STARTS,
+    ),
+)

@@ -1,0 +1,48 @@
+"""The gallery shows every kind of figure, and its lines draw what it shows."""
+
+import os
+import re
+import sys
+from inspect import isfunction
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+import uq
+from uq import plots
+
+HOUSE = Path(__file__).parents[1]
+sys.path.insert(0, str(HOUSE / "docs"))
+
+import gallery  # noqa: E402
+
+EXAMPLES = {one.name: one for one in gallery.EXAMPLES}
+FEWER = {"beam-lifetime": 600, "beam-sensitivity": 16, "vibrator-tolerances": 200}
+"""Study -> rows (or rows of a replicate) that draw its figures in a test."""
+
+
+def test_the_gallery_holds_every_kind_of_figure_and_no_file_is_left_over():
+    functions = {
+        name
+        for name, found in vars(plots).items()
+        if isfunction(found) and found.__module__.endswith(("_plot", "_plots"))
+    }
+    drawn = {re.findall(r"uq\.plots\.(\w+)\(", one.code)[-1] for one in EXAMPLES.values()}
+    assert drawn == functions
+    assert set(plots.FIGURES) <= EXAMPLES.keys()
+    assert {path.stem for path in gallery.FOLDER.glob("*.svg")} == EXAMPLES.keys()
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_lines_of_an_example_draw(name, tmp_path_factory, monkeypatch):
+    one = EXAMPLES[name]
+    folder = tmp_path_factory.getbasetemp() / "gallery"
+    folder.mkdir(exist_ok=True)
+    monkeypatch.chdir(folder)
+    if one.study and not os.path.exists(f"results/{one.study}.nc"):
+        study = uq.load_study(HOUSE / f"studies/{one.study}.toml")
+        uq.run(study.with_samples(FEWER[one.study]))
+    assert isinstance(gallery.drawn(one), Figure)

@@ -1,0 +1,185 @@
+"""Sentences of the answer that few studies need, each against the numbers under it."""
+
+import numpy as np
+import pytest
+from computed import (
+    UNIFORM,
+    asking,
+    computed,
+    kinds,
+    linear,
+    study_of,
+    summarised,
+    with_output,
+    with_status,
+)
+from nested_studies import nested_result
+from test_answer import numbers
+
+from uq.analysis.findings import Findings
+from uq.conclusions.advice import advise
+from uq.conclusions.answer import answer
+from uq.conclusions.parts import Answer, Event
+from uq.conclusions.remedies import Tightened
+from uq.contract import Status
+from uq.estimate import Estimate
+
+DAY = 86400.0
+
+
+def days(lives, flags=None, **analysis):
+    """Return a result with these lives."""
+    ds = with_output(linear(samples=len(lives)), "life", np.array(lives) * DAY, "lifetime", flags)
+    return asking(ds, outputs=["life"], **analysis)
+
+
+def test_lives_of_which_some_never_end():
+    ended = np.linspace(1, 10, 150)
+    ds = days(np.r_[ended, np.full(50, np.inf)], quantiles=[0.05, 0.5])
+    found = answer(ds).lead.range.sentence
+    low, median = numbers(r"5 % end within # days; more than 5 % never end; median # days\.", found)
+    known = summarised(ds)["outputs"]["life"]["quantiles"]
+    assert low == pytest.approx(known["0.05"]["value"] / DAY, rel=5e-3)
+    assert median == pytest.approx(known["0.5"]["value"] / DAY, rel=5e-3)
+    assert 1 + 9 * 9 / 149 <= low <= 1 + 9 * 10 / 149  # between the tenth life and the next
+    mostly = answer(days(np.r_[ended[:50], np.full(150, np.inf)])).lead
+    assert mostly.range.sentence.endswith("more than 5 % never end; at least half never end.")
+    assert mostly.promise.sentence.startswith("With 95 % confidence, at least 95 % last longer")
+
+
+def test_lives_of_which_some_exceed_the_horizon():
+    flags = np.arange(200) >= 150
+    ds = days(np.where(flags, 10.0, np.linspace(1, 9, 200)), flags, thresholds={"life": 20 * DAY})
+    found = answer(ds).lead
+    assert "more than 5 % exceed the horizon" in found.range.sentence
+    (event,) = found.events
+    assert np.isnan(event.share.value)
+    assert (
+        event.sentence
+        == "How many end within 20 days is not known: it is after the last observation."
+    )
+
+
+def test_a_success_succeeds():
+    times = np.linspace(1, 9, 200)
+    ds = with_output(linear(samples=200), "locking", times, "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    found = answer(asking(ds, outputs=["locking"], thresholds={"locking": 5.0})).lead
+    (latest,) = numbers(
+        r"With 95 % confidence, at least 95 % succeed within # s\.", found.promise.sentence
+    )
+    assert latest >= np.quantile(times, 0.95)
+    share, *_, at = numbers(r"# % \(# to # %\) succeed within # s\.", found.events[0].sentence)
+    assert (share, at) == (pytest.approx(100 * (times < 5).mean(), abs=0.05), 5)
+    never = np.r_[times[:150], np.full(50, np.inf)]
+    ds = ds.assign(locking=ds["locking"].copy(data=never))
+    said = answer(asking(ds, outputs=["locking"])).lead.range.sentence
+    assert "5 % succeed within" in said and "more than 5 % never succeed" in said
+
+
+def test_failed_rows_widen_a_probability():
+    ds = linear(samples=200)
+    ds = with_status(ds.assign(y=ds["y"].copy()), range(10), Status.RAISED)
+    ds["y"][:10] = np.nan
+    (event,) = answer(asking(ds, outputs=["y"], thresholds={"y": 5.0})).lead.events
+    *_, low, high = numbers(
+        r"# % \(# to # %\) exceed 5; with failed rows # to # %\.", event.sentence
+    )
+    assert [low, high] == pytest.approx([100 * event.failed.low, 100 * event.failed.high], abs=0.05)
+    assert event.failed.low <= event.share.low and event.share.high <= event.failed.high
+    assert event.failed.low <= (ds["y"] > 5.0).mean() <= event.failed.high
+
+
+def test_a_quantile_moves_where_no_probability_is_asked_for():
+    tables = {
+        "study": {"name": "linear", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 1000, "seed": 3},
+        "uncertain": {
+            name: {"distribution": "normal", "mean": 0.5, "sd": 0.05} for name in ("x1", "x4")
+        },
+    }
+    found = answer(computed(study_of(tables)))
+    (one,) = (each for each in found.advice if each.rule == "tighten")
+    before, after, low, high = numbers(
+        r"Half the scatter of x4 would move the 5 % quantile from # to # \(# to #\)\.", one.text
+    )
+    shares = np.hypot(0.05, 4 * 0.05), np.hypot(0.05, 4 * 0.025)  # of sd, as y = x1 + ... + 4 x4
+    middle = 0.5 + 4 * 0.5 + (before - 0.5 - 4 * 0.5 + 1.645 * shares[0])
+    assert low < middle - 1.645 * shares[1] < high and before < after
+
+
+def test_nothing_is_advised_that_changes_no_digit():
+    same = Tightened(("x",), "the share", Estimate(0.0), Estimate(1e-9), is_share=True)
+    assert not Tightened(("x",), "", Estimate(0.5), Estimate(0.5004), is_share=True).is_seen
+    assert not Tightened(("x",), "", Estimate(1.0), Estimate(1.0)).is_seen
+    assert same.is_seen and Tightened(("x",), "", Estimate(0.5), Estimate(0.4)).is_seen
+
+
+def test_without_weighing_a_command_answers():
+    ds = linear(samples=500)
+    findings = Findings(ds)
+    (one,) = (
+        each
+        for each in advise(findings, answer(ds).quantities, weighed=False)
+        if each.rule == "tighten"
+    )
+    assert one.text == (
+        "See what half the scatter of x4 would change: uq what-if OUT"
+        " --set uncertain.x4.lower=0.25 --set uncertain.x4.upper=0.75"
+    )
+
+
+def test_samples_of_several_rows_bound_nothing_and_say_why():
+    found = answer(nested_result(samples=60)).lead
+    assert found.promise.why.startswith(
+        "No tolerance bound: the rows of one sample are not independent."
+    )
+    assert np.isnan(found.promise.lower) and "cautiously" in found.promise.sentence
+
+
+def test_a_ranking_of_lives_says_that_it_integrates_nothing():
+    lognormal = {"distribution": "lognormal", "median": 1.0}
+    tables = {
+        "study": {"name": "scaled", "model": "scaled"},
+        "design": {"method": "monte-carlo", "samples": 400},
+        "uncertain": {"a": lognormal | {"sigma": 0.5}, "z": UNIFORM},
+        "analysis": {"outputs": ["life", "y"]},
+    }
+    life, y = answer(computed(study_of(tables, "sample_models:SCALED"))).quantities
+    assert life.ranking.what.endswith("from lives as computed: nothing is integrated")
+    assert "integrated" not in y.ranking.what
+
+
+def test_no_single_input_explains_much():
+    rng = np.random.default_rng(2)
+    ds = linear(samples=2000)
+    values = 0.12 * (ds["x1"].values - 0.5) * 12**0.5 + rng.normal(size=2000)
+    ds = asking(with_output(ds, "noisy", values), outputs=["noisy"], sensitivity=["rbd-fast"])
+    found = answer(ds).lead.ranking
+    leads = found.leader is not None and found.leads
+    assert not leads
+    assert found.sentence.startswith(("No single input", "Which inputs matter is not settled"))
+
+
+def test_the_rarer_regimes_say_what_decides_them():
+    often, seldom, rare = (
+        Event(f"P(regime={name})", name, Estimate(share, share - 0.005, share + 0.005))
+        for name, share in (("a", 0.8), ("b", 0.195), ("c", 0.005))
+    )
+    found = Answer("", 100, 0, (), (often, seldom, rare), ())
+    assert [one.sentence for one, _ in found.told_regimes] == [
+        "80.0 % (79.5 to 80.5 %) a.",
+        "19.5 % (19.0 to 20.0 %) b.",
+    ]
+    ds = kinds(samples=400)
+    (first, told), (second, told_too) = answer(ds).told_regimes
+    assert (first.said, told, second.said, told_too) == ("slow", False, "fast", True)
+    *_, never, below, always, above = numbers(
+        r"# % \(# to # %\) fast\. Decided most by x1: from # % where it is below # m"
+        r" to # % where it is above # m\.",
+        second.with_cause,
+    )
+    fast = ds["regime"].values == 1
+    x = ds["x1"].values
+    assert (never, always) == (0, 100)
+    assert not fast[x < 0.99 * below].any() and fast[x > 1.01 * above].all()

@@ -1,0 +1,111 @@
+"""Categories are no numbers: shares instead of means, wherever a result is read."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from asked_indices import sensitivities
+from computed import asking, compared, linear, summarised, with_status
+from scipy import stats
+
+from uq import compare, summary
+from uq.contract import Status
+from uq.errors import InputError
+from uq.report import write_report
+from uq.rows.row_choice import lowest_row
+from uq.store.files import write_result
+from uq.study.registry import find_model
+from uq.tracing.tracing import traced
+
+LABELS = ("aperiodic", "1", "2", "3")
+
+
+def with_period(samples=200, seed=0):
+    """Return a result with a period of 0, 1 or 2 in each row."""
+    ds = linear(samples=samples)
+    codes = np.random.default_rng(seed).choice([0, 1, 2], samples, p=[0.2, 0.7, 0.1])
+    attrs = {
+        "role": "output",
+        "kind": "category",
+        "units": "1",
+        "long_name": "period of the response",
+        "may_be_undefined": 0,
+        "flag_values": np.arange(-1, 4, dtype=np.int8),
+        "flag_meanings": " ".join(("none", *LABELS)),
+    }
+    ds = ds.assign({"period": ("sample", codes.astype(np.int8), attrs)})
+    return asking(ds, outputs=["y", "period"]), codes
+
+
+def test_a_period_is_a_category_whose_codes_are_periods():
+    for machine in ("beam", "mole"):
+        period = find_model(machine).outputs["period"]
+        assert period.is_category
+        assert all(int(label) == code for code, label in enumerate(period.categories) if code)
+
+
+def test_a_summary_has_shares_and_no_moments():
+    ds, codes = with_period()
+    found = summarised(ds)
+    assert set(found["outputs"]) == {"y"} and list(summary(ds).index) == ["y"]
+    assert list(found["categories"]["period"]) == ["aperiodic", "1", "2"]  # those that occur
+    one = found["categories"]["period"]["1"]
+    hits = int((codes == 1).sum())
+    assert (one["count"], one["share"]) == (hits, hits / 200)
+    wilson = stats.binomtest(hits, 200).proportion_ci(method="wilson")
+    assert (one["low"], one["high"]) == pytest.approx(tuple(wilson))
+    assert found["regime"] == {} and summarised(linear())["categories"] == {}
+
+
+def test_failed_rows_bound_a_share():
+    ds, codes = with_period()
+    ds["period"][:5] = -1
+    one = summarised(with_status(ds, slice(5), Status.RAISED))["categories"]["period"]["1"]
+    assert one["count"] == (codes[5:] == 1).sum() and one["failed_low"] < one["low"]
+
+
+def test_each_number_has_a_key():
+    ds, codes = with_period()
+    found = traced(ds, "categories/period/1")
+    assert found.equal and found.numbers["share"] == (codes == 1).mean()
+    assert found.estimators[0].does
+
+
+def test_tables_report_and_figures_show_shares(uq, folder):
+    ds, codes = with_period()
+    write_result(ds, folder / "out.nc")
+    shown = uq("summary", "out.nc").out
+    lines = [line.split() for line in shown[shown.index("\nperiod") :].splitlines()]
+    assert lines[1] == ["period", "period", "of", "the", "response"]
+    assert ["1", f"{(codes == 1).mean():.5g}"] in [line[:2] for line in lines]
+    assert list(json.loads(uq("summary", "out.nc", "--json").out)["categories"]) == ["period"]
+    write_report(folder / "out.nc", folder / "out.html")
+    page = (folder / "out.html").read_text()
+    (table,) = re.findall(r"<table>\s*<caption>Period, .*?</table>", page, re.DOTALL)
+    assert [table.count(f'"categories/period/{label}/share"') for label in LABELS] == [1, 1, 1, 0]
+    for verb in ("levels", "convergence"):
+        assert "period" not in uq(verb, "out.nc").out
+
+
+def test_two_studies_compare_shares():
+    pair = [with_period(seed=seed) for seed in (0, 1)]
+    found = compared(*(ds for ds, _ in pair))["categories"]["period"]
+    assert list(found) == ["aperiodic", "1", "2"]
+    shares = [(codes == 1).mean() for _, codes in pair]
+    assert [found["1"][side]["share"] for side in "ab"] == shares
+    assert found["1"]["difference"]["value"] == pytest.approx(shares[1] - shares[0])
+    table = compare(*(ds for ds, _ in pair))
+    assert table.loc[("period", "1"), "first"] == shares[0]
+
+
+def test_indices_are_those_of_each_label():
+    ds, _ = with_period(2000)
+    found = sensitivities(ds, "regional", "period")["outputs"]
+    assert list(found) == ["P(period=aperiodic)", "P(period=1)", "P(period=2)"]
+
+
+def test_it_has_no_thresholds_quantiles_or_lowest_row():
+    ds, _ = with_period()
+    with pytest.raises(InputError, match="'period' is a category, not a number"):
+        lowest_row(ds, "period")

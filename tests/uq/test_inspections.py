@@ -1,0 +1,142 @@
+"""A file of inspections: what it says, and one clear line for each mistake in it."""
+
+from pathlib import Path
+
+import pytest
+
+from uq.errors import InputError
+from uq.learning import ledger
+from uq.learning.inspections import Inspection, Kind, read_inspections
+
+HEAD = "unit,time,output,kind,value,sd,cv,detection_50,detection_90\n"
+FILE = Path("found.csv")
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def read(*lines, head=HEAD):
+    FILE.write_text(head + "\n".join(lines) + "\n")
+    return read_inspections(FILE)
+
+
+def test_all_columns_that_are_needed():
+    found = read(
+        "A1,3.15e7,depth,measured,1e-4,,0.1,,",
+        "A2,3.15e7,depth,below,5e-5,,,,",
+        "A3,3.15e7,depth,below,,,,3e-5,6e-5",
+        "A2,6.3e7,life,survived,,,,,",
+        "",
+        "B 1,,angle,measured,-0.1,0.01,,,",
+    )
+    assert found == [
+        Inspection("A1", "depth", Kind.MEASURED, 3.15e7, 1e-4, cv=0.1),
+        Inspection("A2", "depth", Kind.BELOW, 3.15e7, 5e-5),
+        Inspection("A3", "depth", Kind.BELOW, 3.15e7, detection_50=3e-5, detection_90=6e-5),
+        Inspection("A2", "life", Kind.SURVIVED, 6.3e7),
+        Inspection("B 1", "angle", Kind.MEASURED, value=-0.1, sd=0.01),
+    ]
+
+
+def test_columns_in_any_order_and_names_with_commas():
+    found = read(
+        '"time_to_depth[site=left,depth=0.00025]", survived, A1, 6.3e7',
+        head="output, kind, unit, time\n",
+    )
+    assert found == [
+        Inspection("A1", "time_to_depth[site=left,depth=0.00025]", Kind.SURVIVED, 6.3e7)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    {
+        "A,1,depth,measured,1e-4,,,,": "sd or cv is missing: the error of the measurement",
+        "A,1,depth,measured,,1e-5,,,": "value is missing: what was measured",
+        "A,1,depth,measured,1e-4,1e-5,0.1,,": "sd and cv: give one of them",
+        "A,1,depth,measured,1e-4,0,,,": "sd = 0: must be above 0",
+        "A,1,depth,measured,-1e-4,,0.1,,": (
+            "value = -0.0001: must be above 0 with a cv; or give an sd"
+        ),
+        "A,1,depth,measured,1e-4,1e-5,,1e-5,2e-5": (
+            "detection_50 = 1e-05: only for kinds below and above"
+        ),
+        "A,1,depth,measurd,1e-4,1e-5,,,": (
+            "kind = measurd: no such kind; did you mean 'measured'? (allowed: measured, below,"
+            " above, survived, ended)"
+        ),
+        "A,1,depth,below,,,,,": (
+            "value is missing: the limit; or give detection_50 and detection_90"
+        ),
+        "A,1,depth,below,,,,1e-5,": "detection_90 is missing beside detection_50",
+        "A,1,depth,below,,,,2e-5,1e-5": "detection_90 = 1e-05: must be above detection_50 = 2e-05",
+        "A,1,depth,below,1e-5,,,1e-5,2e-5": (
+            "value = 1e-05: leave it out beside a curve of detection"
+        ),
+        "A,,life,survived,,,,,": "time is missing: a life has survived by a time [s]",
+        "A,1,life,ended,3,,,,": "value = 3: leave it out where a unit has ended",
+        "A,-1,life,ended,,,,,": "time = -1: must not be negative",
+        "A,soon,life,ended,,,,,": "time = soon: must be a finite number",
+        "A,inf,life,ended,,,,,": "time = inf: must be a finite number",
+        ",1,life,ended,,,,,": "unit is missing",
+    }.items(),
+)
+def test_a_mistake_is_named(line, said):
+    with pytest.raises(InputError) as refused:
+        read("A,1,life,survived,,,,,", line)
+    assert str(refused.value) == f"found.csv, line 3: {said}"
+
+
+def test_every_mistake_is_named_at_once():
+    with pytest.raises(InputError) as refused:
+        read("A,1,depth,measured,1e-4,,,,", "A,1,depth,below,,,,,")
+    assert [line.partition(":")[0] for line in refused.value.lines] == [
+        "found.csv, line 2",
+        "found.csv, line 3",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        ("unit,output,kind,valeu\n", "found.csv: no such column 'valeu'; did you mean 'value'?"),
+        ("unit,output\n", "found.csv: has no column 'kind'"),
+        ("unit,unit,output,kind\n", "found.csv: has several columns 'unit'"),
+        ("unit;output;kind\n", "found.csv: separate cells by commas"),
+    ],
+)
+def test_columns_that_do_not_fit(head, said):
+    with pytest.raises(InputError) as refused:
+        read(head=head)
+    assert str(refused.value).startswith(said)
+
+
+def test_files_that_are_none():
+    with pytest.raises(InputError, match="nothing.csv: no such file"):
+        read_inspections(Path("nothing.csv"))
+    with pytest.raises(InputError, match=r"found.csv: has no inspection below its first line"):
+        read()
+    with pytest.raises(InputError, match=r"line 2: has 3 cells, the first line 9; write numbers"):
+        read("A,1,life")
+    FILE.write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match=r"found.csv: not CSV in UTF-8"):
+        read_inspections(FILE)
+
+
+def test_tables_of_a_toml_file():
+    FILE.with_suffix(".toml").write_text(
+        '[[inspection]]\nunit = "A"\noutput = "life"\nkind = "survived"\ntime = 3.15e7\n'
+    )
+    assert ledger.read("found.toml") == [Inspection("A", "life", Kind.SURVIVED, 3.15e7)]
+    FILE.with_suffix(".toml").write_text('[[inspection]]\nunit = "A"\nkind = "lived"\n')
+    with pytest.raises(InputError) as refused:
+        ledger.read("found.toml")
+    assert refused.value.lines[0].startswith("found.toml: [[inspection]] 1: output is missing")
+    for text, why in (("x = 1", "must consist of tables"), ("x = ", "not TOML")):
+        FILE.with_suffix(".toml").write_text(text)
+        with pytest.raises(InputError, match=f"^found.toml: {why}"):
+            ledger.read("found.toml")
+    with pytest.raises(InputError, match="^lost.toml: cannot be read"):
+        ledger.read("lost.toml")

@@ -1,0 +1,132 @@
+"""Posteriors hold the truth as often as they say, and agree with a sampler that runs the model."""
+
+import numpy as np
+import pytest
+from computed import computed, study_of
+from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
+from scipy import stats
+
+from uq.learning.inspections import read_tables
+from uq.learning.posterior import posterior
+
+REPETITIONS = 200
+UNITS = "ABC"
+
+
+def with_threshold(samples, seed):
+    """Return lives in two regimes: rates below a threshold do not wear."""
+    return computed(
+        study_of(
+            {
+                "study": {"name": "regimes", "model": "exponential-wear"},
+                "design": {"method": "monte-carlo", "samples": samples, "seed": seed},
+                "uncertain": {
+                    "rate": lognormal(*RATE),
+                    "threshold": lognormal(2e-10, 0.5),
+                    "depth": lognormal(*DEPTH),
+                },
+            }
+        )
+    )
+
+
+def one_life(truth, rng):
+    """Return a life measured with error, or seen to survive."""
+    life = float(truth["life"][0])
+    if life < 4e6:
+        return measured(life * np.exp(np.log1p(0.3**2) ** 0.5 * rng.standard_normal()), cv=0.3)
+    return [{"unit": "A", "output": "life", "kind": "survived", "time": 4e6}]
+
+
+def censored_lives(truth, rng):
+    """Return units seen running or ended at a time each."""
+    times = (5e5, 8e5, 1.4e6)
+    return [
+        {"unit": unit, "output": "life", "kind": "ended" if life <= t else "survived", "time": t}
+        for unit, life, t in zip(UNITS, truth["life"].values, times, strict=True)
+    ]
+
+
+def shared_lives(truth, rng):
+    """Return the measured lives of three units of a world."""
+    noise = np.exp(np.log1p(0.2**2) ** 0.5 * rng.standard_normal(3))
+    return measured(*(truth["life"].values * noise), cv=0.2)
+
+
+PROBLEMS = {
+    "two regimes": (lambda n, seed: with_threshold(n, seed), one_life, ("rate", "threshold")),
+    "censored": (
+        lambda n, seed: wear(n // 3, seed, rate="shared", units=3),
+        censored_lives,
+        ("rate", "depth"),
+    ),
+    "shared scale": (
+        lambda n, seed: wear(n // 3, seed, depth="shared", units=3),
+        shared_lives,
+        ("rate", "depth"),
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_ranks_of_the_truth_are_uniform(problem):
+    """Simulation-based calibration (Talts et al. 2018): a Kolmogorov-Smirnov test at 1 %."""
+    make, inspect, names = PROBLEMS[problem]
+    rows, truths = make(12_000, 1), make(3 * REPETITIONS, 2)
+    world = truths["world"].values if "world" in truths else np.arange(truths.sizes["sample"])
+    rng = np.random.default_rng(5)
+    ranks = {name: [] for name in names}
+    for number in np.unique(world)[:REPETITIONS]:
+        truth = truths.isel(sample=world == number)
+        found = posterior(rows, read_tables(inspect(truth, rng), "test"))
+        unit = found.units["A"]
+        for name in names:
+            drawn = rows[name].values[unit.rows]
+            if found.scale is not None and found.scale.name == name:
+                drawn = unit.scale
+            below = np.average(drawn < float(truth[name][0]), weights=unit.weights.weights)
+            ranks[name].append(below)
+    for name, found in ranks.items():
+        assert stats.kstest(found, "uniform").pvalue > 0.01, name
+
+
+@pytest.mark.slow
+def test_it_agrees_with_a_random_walk_that_runs_the_model():
+    lives = np.array([6e5, 1e6, 1.2e6])
+    rows = wear(20_000, 4, rate="shared", units=3)
+    found = posterior(rows, read_tables(measured(*lives), "test")).any_unit
+    logs = np.log(rows["rate"].values)
+    mean = np.average(logs, weights=found.weights.weights)
+    sd = np.average((logs - mean) ** 2, weights=found.weights.weights) ** 0.5
+    chain = random_walk(lives, 400_000)[20_000:, 0]
+    assert abs(mean - chain.mean()) < 0.05 * chain.std()
+    assert sd == pytest.approx(chain.std(), rel=0.05)
+    exact, cov = exactly(lives, shared_rate=True)
+    assert abs(chain.mean() - exact[0]) < 0.05 * cov[0, 0] ** 0.5  # the chain itself is right
+
+
+def random_walk(lives, steps):
+    """Return states (log rate, log depths) of a Metropolis chain, the model run at each step."""
+    rng = np.random.default_rng(6)
+    middle = np.log([RATE[0], *[DEPTH[0]] * 3])
+    spread = np.array([RATE[1], *[DEPTH[1]] * 3])
+    error = np.log1p(0.1**2) ** 0.5
+
+    def log_density(state):
+        life = state[1:] - state[0]
+        seen = ((np.log(lives) - life) / error) ** 2
+        return -0.5 * ((((state - middle) / spread) ** 2).sum() + seen.sum())
+
+    state = middle.copy()
+    here = log_density(state)
+    found = np.empty((steps, 4))
+    _, cov = exactly(lives, shared_rate=True)
+    moves = rng.multivariate_normal(np.zeros(4), 1.2**2 * cov, steps)
+    chances = np.log(rng.random(steps))
+    for step in range(steps):
+        there = log_density(state + moves[step])
+        if chances[step] < there - here:
+            state, here = state + moves[step], there
+        found[step] = state
+    return found

@@ -1,0 +1,220 @@
+"""The posterior of a result: in closed form where that is known, and each measurement used once."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import everything, strict_json
+from learnt_studies import exactly, measured, wear
+from scipy.stats import lognorm, norm
+
+from uq.errors import InputError, RunError
+from uq.exploring.updating import update
+from uq.learning.answer import learnt, learnt_json
+from uq.learning.next_inspection import worth
+from uq.learning.result import as_unit, prior_of
+from uq.population.smoothing import smoothed
+from uq.rows.results import open_result
+from uq.store.files import write_result
+
+SHARED = {"rate": "shared", "samples": 2000, "units": 3}
+
+
+@pytest.fixture(scope="module")
+def result():
+    return wear()
+
+
+@pytest.fixture(scope="module")
+def three_units():
+    return wear(**SHARED)
+
+
+def inputs_of(ds):
+    return learnt_json(learnt(ds))["inputs"]
+
+
+def assert_close(found, mean, sd):
+    """Compare with a lognormal law: mean within 1 %, deviation and quantiles within 3 %."""
+    law = lognorm(sd, scale=np.exp(mean))
+    assert found["mean"] == pytest.approx(law.mean(), rel=0.01)
+    assert found["sd"] == pytest.approx(law.std(), rel=0.03)
+    for p, value in found["quantiles"].items():
+        assert value == pytest.approx(law.ppf(float(p)), rel=0.03)
+
+
+def test_one_unit_agrees_with_the_closed_form(result):
+    found = inputs_of(update(result, measured(5e5)))
+    mean, cov = exactly([5e5])
+    assert set(found) == {"rate[unit=A]", "depth[unit=A]"}  # nothing is shared
+    for i, name in enumerate(found):
+        assert_close(found[name]["posterior"], mean[i], cov[i, i] ** 0.5)
+
+
+def test_what_is_shared_is_learnt_from_all_units(three_units):
+    lives = [6e5, 1e6, 1.2e6]
+    found = inputs_of(update(three_units, measured(*lives)))
+    mean, cov = exactly(lives, shared_rate=True)
+    law = lognorm(cov[0, 0] ** 0.5, scale=np.exp(mean[0]))
+    assert found["rate"]["posterior"]["mean"] == pytest.approx(law.mean(), rel=0.02)
+    assert found["rate"]["posterior"]["sd"] == pytest.approx(law.std(), rel=0.06)
+    for i, unit in enumerate("ABC", start=1):
+        of_unit = found[f"depth[unit={unit}]"]["posterior"]
+        law = lognorm(cov[i, i] ** 0.5, scale=np.exp(mean[i]))
+        assert of_unit["mean"] == pytest.approx(law.mean(), rel=0.02)
+
+
+def test_an_integrated_input_that_all_share_is_exact():
+    lives = [6e5, 1e6, 1.2e6]
+    ds = wear(rate="own", depth="shared", samples=2000, units=3)
+    found = inputs_of(update(ds, measured(*lives)))["depth"]["posterior"]
+    of_logs = 0.5**2 + np.log1p(0.1**2)
+    precision = 1 / 0.3**2 + 3 / of_logs
+    seen = np.log(np.array(lives) * 2.5e-10).sum() / of_logs
+    mean = (np.log(2.5e-4) / 0.3**2 + seen) / precision
+    assert_close(found, mean, precision**-0.5)
+
+
+def test_units_of_a_sample_keep_one_value_of_what_they_share():
+    ds = wear(rate="own", depth="shared", samples=100, units=3)
+    found = update(ds, measured(6e5))
+    by_sample = found["depth"].values.reshape(100, 3)
+    assert (by_sample == by_sample[:, :1]).all()
+    np.testing.assert_allclose(found["life"], found["depth"] / found["rate"], rtol=1e-12)
+
+
+def test_two_updates_are_one(result):
+    first, second = (
+        measured(5e5),
+        [{"unit": "A", "output": "life", "kind": "survived", "time": 4e5}],
+    )
+    at_once = update(result, first + second)
+    assert update(update(result, first), second).identical(at_once)
+    assert prior_of(at_once).identical(result)
+
+
+def test_a_measurement_counts_once(result):
+    once = update(result, measured(5e5))
+    with pytest.raises(InputError, match=r"^inspection 1 \(unit A, life, measured\): already used"):
+        update(once, measured(5e5))
+    with pytest.raises(InputError, match="in these inspections; a measurement counts once"):
+        update(result, measured(5e5) * 2)
+
+
+def test_it_is_written_as_it_is(result, tmp_path):
+    made = update(result, measured(5e5), tmp_path / "posterior.nc")
+    assert open_result(tmp_path / "posterior.nc").identical(made)
+    assert made["weight"].sizes == {"sample": 6000} and "ledger" in made.attrs
+
+
+def test_more_units_than_a_sample_has_are_refused(result):
+    with pytest.raises(InputError, match=r"2 units are inspected, .* has 1: set \[design\] units"):
+        update(result, measured(5e5, 6e5))
+
+
+def test_what_contradicts_the_rows_is_refused(result, tmp_path):
+    target = tmp_path / "posterior.nc"
+    with pytest.raises(RunError, match="unit A: .*(Pareto k|fewer than 5 samples)"):
+        update(result, measured(1e8, cv=0.01), target)
+    with pytest.raises(InputError, match="no row of this result agrees with the inspections"):
+        update(result, [{"unit": "A", "output": "life", "kind": "ended", "time": 1.0}], target)
+    assert everything(tmp_path) == []
+
+
+def test_a_model_error_widens(result):
+    without, with_error = (
+        inputs_of(update(result, measured(5e5), model_error=cv))["rate[unit=A]"]["posterior"]["sd"]
+        for cv in (0.0, 0.5)
+    )
+    assert with_error > 1.05 * without
+
+
+def test_the_life_left_is_that_of_a_unit_that_runs(result):
+    lived = [{"unit": "A", "output": "life", "kind": "survived", "time": 1e6}]
+    found = learnt_json(learnt(update(result, lived), [2e6]))["units"]["A"]["life"]
+    lives = lognorm((0.5**2 + 0.3**2) ** 0.5, scale=1e6)
+    gone = (lives.cdf(2e6) - lives.cdf(1e6)) / lives.sf(1e6)
+    assert found["by"]["2000000.0"]["value"] == pytest.approx(gone, abs=0.02)
+    median = lives.isf(lives.sf(1e6) / 2) - 1e6
+    assert found["remaining"]["0.5"]["value"] == pytest.approx(median, rel=0.06)
+
+
+def test_the_command(uq, folder, result):
+    write_result(result, folder / "prior.nc")
+    (folder / "found.csv").write_text("unit,output,kind,value,cv\nA,life,measured,5e5,0.1\n")
+    ended = uq("update", "prior.nc", "found.csv", "-o", "posterior.nc", "--by", "1e6", "--json")
+    assert (ended.code, ended.err) == (0, "")
+    found = strict_json(ended.out)
+    assert found["effective_rows"] > 1000 and found["pareto_k"] < 0.7
+    rate = found["inputs"]["rate[unit=A]"]
+    assert {"mean", "sd"} <= set(rate["prior"]) and "0.05" in rate["posterior"]["quantiles"]
+    again = uq("update", "posterior.nc", "found.csv", "-o", "twice.nc")
+    assert again.code == 2 and "already used" in again.err and again.err.count("\n") == 1
+    assert not (folder / "twice.nc").exists()
+    shown = uq("update", "prior.nc", "found.csv", "-o", "posterior.nc")
+    assert shown.code == 0 and max(map(len, shown.out.splitlines())) <= 80
+    assert uq("summary", "posterior.nc").code == 0
+
+
+def test_a_study_is_run_first(uq, folder):
+    study = Path(__file__).parents[2] / "studies" / "exponential-wear.toml"
+    (folder / "found.csv").write_text("unit,output,kind,time\nA,life,survived,1\n")
+    ended = uq("update", study, "found.csv", "-o", "posterior.nc", "--rows", "200", "--json")
+    assert ended.code == 0, ended.err
+    assert open_result(folder / "posterior.nc").sizes["sample"] == 200
+    assert json.loads(ended.out)["effective_rows"] == pytest.approx(200)
+
+
+def test_what_the_next_inspection_is_worth(uq, folder):
+    ds = wear(rate="shared", samples=2000, units=5)
+    found = worth(ds, "life", units=(1, 20), cv=0.1)
+    for units in (1, 20):
+        noise = (0.3**2 + np.log1p(0.1**2)) / units
+        exact = 1 - (1 - 0.5**2 / (0.5**2 + noise)) ** 0.5
+        assert found.narrowing[None, units] == pytest.approx(exact, abs=0.015)
+    posterior = update(ds, measured(6e5, 1e6, 1.2e6))
+    assert worth(posterior, "life").narrowing[None, 1] < found.narrowing[None, 1]
+    write_result(posterior, folder / "posterior.nc")
+    ended = uq("next-inspection", "posterior.nc", "--inspect", "life", "--json")
+    assert [one["units"] for one in strict_json(ended.out)["narrowing"]] == [1, 5, 20]
+    assert uq("next-inspection", "posterior.nc", "--inspect", "lif").err.count("\n") == 1
+
+
+def test_rows_as_those_of_one_unit(result):
+    unit = as_unit(update(result, measured(5e5)), "A")
+    lives = np.average(unit["life"], weights=unit["weight"])
+    assert lives == pytest.approx(5e5, rel=0.05)
+    with pytest.raises(InputError, match="unit 'B' was not inspected.*allowed: A"):
+        as_unit(update(result, measured(5e5)), "B")
+
+
+def test_what_an_inspection_taught_and_how_strange_it_was(result):
+    found = learnt(update(result, measured(5e5)))
+    mean, cov = exactly([5e5])
+    before, start = np.diag([0.5**2, 0.3**2]), np.log([2.5e-10, 2.5e-4])
+    far = (mean - start) @ np.linalg.solve(before, mean - start)
+    volume = np.log(np.linalg.det(before) / np.linalg.det(cov))
+    bits = (np.trace(np.linalg.solve(before, cov)) + far - 2 + volume) / 2 / np.log(2)
+    assert [one.bits for one in found.taught] == [pytest.approx(bits, rel=0.03)]
+    deviation = (0.5**2 + 0.3**2 + np.log1p(0.1**2)) ** 0.5
+    assert found.strangeness == pytest.approx(2 * norm.sf(np.log(2) / deviation), abs=0.03)
+    assert found.notes == []
+
+
+def test_strange_inspections_come_with_a_warning():
+    ds = wear(rate="own", depth="shared", samples=2000, units=3)
+    found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
+    assert found.strangeness < 0.01
+    assert any(note.startswith("Warning: inspections as strange as these") for note in found.notes)
+
+
+def test_bounded_weights_need_no_light_tail():
+    rng = np.random.default_rng(0)
+    above = np.abs(0.003 * rng.standard_cauchy(300)).clip(0, 0.9)
+    weights = 0.44 + np.concatenate([0.001 * rng.random(5700), above])
+    assert smoothed(np.log(weights)).k > 0.6  # although none is much larger than the others
+    known = smoothed(np.log(weights), most=2.5)
+    assert (known.k, known.refusal) == (0.0, "")
+    np.testing.assert_allclose(known.weights, weights / weights.mean())
+    assert smoothed(np.log(weights), most=100.0).k > 0.6  # a single row may carry too much

@@ -1,0 +1,124 @@
+"""What ``uq update`` shows."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from math import isfinite
+from pathlib import Path
+
+import xarray as xr
+
+from uq.cli import say_when_interrupted
+from uq.cli.printing import console, grid, heading, note, paragraph, print_json
+from uq.cli.run import carried_out, loaded
+from uq.estimate import Estimate
+from uq.exploring.updating import check_rows, is_study, learn, samples_for
+from uq.learning.answer import Learnt, learnt, learnt_json
+from uq.learning.inputs_learnt import InputLearnt
+from uq.learning.inspections import Inspection
+from uq.learning.ledger import read
+from uq.learning.remaining import ANY, Remaining
+from uq.rows.results import open_result
+from uq.running.options import RunOptions
+from uq.running.runner import output_path, run_study
+from uq.store.files import check_target
+from uq.units import time_unit
+from uq.wording import known, number, percent
+
+MOST_UNITS = 12
+"""Inspected units whose own inputs are listed."""
+
+
+def update(
+    source: Path,
+    inspections: Path,
+    output: Path,
+    rows: int | None,
+    model_error: float | None,
+    by: Sequence[float],
+    model: str | None,
+    options: RunOptions,
+    quiet: bool,
+    json: bool,
+) -> int:
+    """Update a study or a result with inspections, write the posterior, and show it."""
+    new = read(inspections)
+    check_target(output, 0)
+    if is_study(source):
+        study = loaded(str(source), model, None)
+        study = study if rows is None else study.with_samples(samples_for(study, rows))
+        target = output_path(study)
+        ds, _ = carried_out(target, quiet, options, partial(run_study, study, target))
+    else:
+        ds = open_result(source)
+        check_rows(ds, rows)
+    say_when_interrupted("interrupted; nothing was written")
+    found = learn(ds, new, output, model_error)
+    answer = learnt(found, by)
+    if json:
+        print_json(learnt_json(answer))
+    elif not quiet:
+        _show(found, answer)
+        console.print()
+        console.print(f"{output}: written. Next: uq summary {output}", soft_wrap=True)
+    return 0
+
+
+def _show(ds: xr.Dataset, found: Learnt) -> None:
+    heading(str(ds.attrs["title"]), str(ds.attrs["source"]))
+    of_unit: dict[str, list[InputLearnt]] = {}
+    for one in found.inputs:
+        of_unit.setdefault(one.unit, []).append(one)
+    for unit, inputs in of_unit.items():
+        if not unit or len(of_unit) <= MOST_UNITS:
+            heading(f"\nInputs of unit {unit}" if unit else "\nInputs that units share")
+            grid(_inputs(inputs), header=("", "before", "sd", "after", "sd", ""))
+    if found.confounded:
+        heading("\nConfounded by the inspections", "rank correlation")
+        grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])
+    if found.taught:
+        heading("\nTaught most", "beyond all other inspections [bit]")
+        most = sorted(found.taught, key=lambda one: -one.bits)[:5]
+        grid([(_what(one.inspection), f"{one.bits:.2f}") for one in most])
+    for output in dict.fromkeys(one.output for one in found.lives):
+        _show_lives([one for one in found.lives if one.output == output])
+    for text in found.notes:
+        note(text)
+    worst = found.worst
+    text = f"The rows are worth {worst.effective:.0f} of equal weight, or more"
+    note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
+
+
+def _what(one: Inspection) -> str:
+    when = f" at {number(one.time)} s" if one.time is not None else ""
+    value = f" {number(one.value)}" if one.value is not None else ""
+    return f"{one.unit}: {one.output} {one.kind}{value}{when}"
+
+
+def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
+    for one in shown:
+        moments = (x for spread in (one.prior, one.posterior) for x in (spread.mean, spread.sd))
+        unit = "" if one.units == "1" else one.units
+        yield one.name.partition("[")[0], *(f"{x:.4g}" for x in moments), unit
+
+
+def _show_lives(lives: Sequence[Remaining]) -> None:
+    longest = max((x.value for one in lives for x in one.life.values()), default=0.0)
+    unit = time_unit(longest if isfinite(longest) else 0.0)
+    heading(f"\n{lives[0].output}", f"remaining life [{unit.name}] of units that run")
+    times = list(dict.fromkeys(time for one in lives for time in one.by))
+    ends = (f"P(by {number(time / unit.seconds)})" for time in times)
+    header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
+    grid([_line(one, unit.seconds, times) for one in lives if one.life], header=header)
+    if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
+        paragraph(f"hardly a row in which it still runs: {', '.join(gone)}", indent=2)
+
+
+def _line(one: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]:
+    shares = (one.by.get(time, Estimate()) for time in times)
+    return (
+        "not inspected" if one.unit == ANY else one.unit,
+        number(one.seen / per),
+        *(known(one.life[p], per=per) for p in (0.5, 0.05)),
+        f"{one.effective_rows:.0f}",
+        *(percent(one.value) if isfinite(one.value) else "-" for one in shares),
+    )

@@ -1,0 +1,104 @@
+"""Sentences of the answer as HTML, each with the keys of its numbers for ``uq trace``."""
+
+from markupsafe import Markup, escape
+
+from uq.conclusions.contributions import Contribution
+from uq.conclusions.parts import Answer, Event, Quantity
+from uq.conclusions.remedies import Advice
+from uq.conclusions.words import sentence
+from uq.keys import key_of
+from uq.literals import plain
+
+Path = tuple[str, ...]
+
+
+def keyed(text: str, *keys: str) -> Markup:
+    """Return text that shows the keys of its numbers; "" if it is empty."""
+    if not text:
+        return Markup()
+    found = "\n".join(keys)
+    return Markup('<span data-trace="{0}" title="uq trace: {0}">{1}</span>').format(
+        plain(found), plain(text)
+    )
+
+
+def rows(one: Answer) -> Markup:
+    """Return how many rows were computed."""
+    return keyed(one.rows_sentence, _answer("rows"), _answer("failed"))
+
+
+def promise(one: Quantity) -> Markup:
+    """Return what can be promised; "" where nothing can."""
+    return keyed("" if one.promise is None else one.promise.sentence, _key(one, "promise"))
+
+
+def likely(one: Quantity) -> Markup:
+    """Return the likely range; "" where it is not known."""
+    return keyed("" if one.range is None else one.range.sentence, _key(one, "range"))
+
+
+def events(one: Quantity) -> list[Markup]:
+    """Return the probabilities that are known, and what decides them."""
+    of = ("quantities", one.name, "events")
+    return [_event(each, (*of, each.name)) for each in one.events if each.sentence]
+
+
+def regime(one: Event, with_cause: bool = True) -> Markup:
+    """Return the share of a regime, and what decides it."""
+    return _event(one, ("regimes", one.said), with_cause)
+
+
+def _event(one: Event, path: Path, with_cause: bool = True) -> Markup:
+    known = [keyed(one.sentence, _answer(*path, "share"))]
+    if with_cause:
+        settled = one.curve is not None
+        key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
+        known.append(keyed(one.decided_by, _answer(*key)))
+    return Markup(" ").join(filter(None, known))
+
+
+def leader(one: Quantity) -> Markup:
+    """Return what contributes most, with direction and size, or why that is not known."""
+    ranking = one.ranking
+    if ranking is None:
+        return Markup()
+    if ranking.leader is None:
+        return keyed(ranking.sentence, _key(one, "ranking", "rows_factor"))
+    known = [keyed(ranking.sentence, *_keys(one, 0, "inputs", ranking.leader))]
+    if ranking.leads and ranking.leader.effect:
+        text = sentence(ranking.leader.effect)
+        known.append(keyed(text, *_keys(one, 0, "effects", ranking.leader)))
+    return Markup(" ").join(known)
+
+
+def size(one: Quantity, number: int, of: Contribution) -> Markup:
+    """Return the indices of a contribution, which has this number."""
+    return keyed(of.size, *_keys(one, number, "inputs", of))
+
+
+def effect(one: Quantity, number: int, of: Contribution) -> Markup:
+    """Return directions and sizes of a contribution, which has this number."""
+    return keyed(of.effect, *_keys(one, number, "effects", of))
+
+
+def advice(one: Advice) -> Markup:
+    """Return one thing to do."""
+    if one.tightened is not None and one.tightened.key:
+        return keyed(one.text, one.tightened.key)
+    if one.rows is not None:
+        return keyed(one.text, _answer("advice", one.rule, "rows"))
+    return escape(plain(one.text))
+
+
+def _key(one: Quantity, *path: str) -> str:
+    return _answer("quantities", one.name, *path)
+
+
+def _keys(one: Quantity, number: int, part: str, of: Contribution) -> list[str]:
+    """Return the keys of the inputs of a contribution."""
+    path = ("ranking", "contributions", str(number), part)
+    return [_key(one, *path, name) for name in of.inputs]
+
+
+def _answer(*path: str) -> str:
+    return key_of(*path, verb="answer")

@@ -1,0 +1,159 @@
+"""What the inspections say, as one answer."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq import json_form
+from uq.analysis.as_json import quality_json
+from uq.errors import InputError
+from uq.learning.inputs_learnt import Confounded, InputLearnt, Spread, confounded, inputs_learnt
+from uq.learning.inspections import Inspection
+from uq.learning.posterior import Posterior, posterior
+from uq.learning.remaining import ANY, Remaining, remaining
+from uq.learning.result import MODEL_ERROR, as_table, inspections_of, prior_of, unit_quality
+from uq.learning.strangeness import STRANGE, strangeness
+from uq.learning.taught import Taught, taught
+from uq.population.smoothing import Smoothed
+from uq.rows.elements import independent_rows
+from uq.rows.weights import has_weights
+from uq.wording import percent
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """What inspections say.
+
+    Attributes
+    ----------
+    inspections : list of Inspection
+    worst : Smoothed
+        The worst weights: of rows as inspected units, or as units never inspected.
+    inputs : list of InputLearnt
+    confounded : list of Confounded
+    lives : list of Remaining
+    taught : list of Taught
+    strangeness : float
+        Probability, before the inspections, of inspections at least as strange.
+    notes : list of str
+        Warnings.
+    """
+
+    inspections: list[Inspection]
+    worst: Smoothed
+    inputs: list[InputLearnt]
+    confounded: list[Confounded]
+    lives: list[Remaining]
+    taught: list[Taught]
+    strangeness: float
+    notes: list[str]
+
+
+def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
+    """Return what the inspections in a result of `uq.update` say.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    by : sequence of float
+        Times from the beginning of a life [s]: the probability that it has ended by each.
+
+    Raises
+    ------
+    InputError
+        When the result has not been updated.
+    """
+    if not has_weights(ds):
+        raise InputError("this result has not been updated with inspections: see 'uq update'")
+    quality, inspections = unit_quality(ds), inspections_of(ds)
+    cv = float(ds.attrs[MODEL_ERROR])
+    found = posterior(independent_rows(prior_of(ds)), inspections, cv)
+    strange = strangeness(found, int(ds.attrs["seed"]), cv)
+    return Learnt(
+        inspections,
+        min(quality, key=lambda one: one.effective),
+        list(inputs_learnt(ds)),
+        confounded(ds),
+        list(remaining(ds, by)),
+        list(taught(found)),
+        strange,
+        [*_warnings(strange), *_interpolated(found)],
+    )
+
+
+def _warnings(strange: float) -> Iterator[str]:
+    if strange < STRANGE:
+        yield (
+            f"Warning: inspections as strange as these had a probability of {percent(strange)}"
+            " before; a law, the model (--model-error) or an inspection may be wrong."
+        )
+
+
+def _interpolated(found: Posterior) -> Iterator[str]:
+    """Yield how well depths are known between those whose lives the result has."""
+    for look in {look.name: look for look in found.looks.values()}.values():
+        errors = look.depths.error() if look.depths is not None else np.empty(0)
+        if np.isfinite(errors).any():
+            most = percent(float(np.nanquantile(errors, 0.9)))
+            yield (
+                f"{look.name} at a time is interpolated; with a declared depth left out it is"
+                f" wrong by up to {most} in nine of ten rows."
+            )
+
+
+def learnt_json(found: Learnt) -> dict[str, Any]:
+    """Return the answer in plain data.
+
+    Returns
+    -------
+    dict
+        ``effective_rows``, ``pareto_k``; ``inputs``: name -> ``prior`` and ``posterior``, each with
+        ``mean``, ``sd`` and ``quantiles``, those of a unit as ``NAME[unit=LABEL]``; ``confounded``:
+        pairs with their rank correlation; ``taught``: of each inspection the ``bits`` that it adds
+        to all others; ``strangeness``: the probability, before them, of inspections at least as
+        strange; ``notes``; ``units``: label -> life -> ``seen`` (when it was last
+        seen running), ``runs``, ``remaining`` (quantiles from then on), ``by`` (probability to have
+        ended by a time), ``effective_rows``; ``uninspected``: the same of units never inspected.
+    """
+    units: dict[str, dict[str, Any]] = {}
+    for one in found.lives:
+        units.setdefault(one.unit, {})[one.output] = _life(one)
+    return {
+        **quality_json(found.worst),
+        "inspections": len(found.inspections),
+        "inputs": {
+            one.name: {
+                "units": one.units,
+                "prior": _spread(one.prior),
+                "posterior": _spread(one.posterior),
+            }
+            for one in found.inputs
+        },
+        "confounded": [
+            {"inputs": [one.first, one.second], "correlation": one.correlation}
+            for one in found.confounded
+        ],
+        "taught": [as_table(one.inspection) | {"bits": one.bits} for one in found.taught],
+        "strangeness": found.strangeness,
+        "notes": found.notes,
+        "uninspected": units.pop(ANY, {}),
+        "units": units,
+    }
+
+
+def _spread(one: Spread) -> dict[str, Any]:
+    quantiles = {repr(p): value for p, value in one.quantiles.items()}
+    return {"mean": one.mean, "sd": one.sd, "quantiles": quantiles}
+
+
+def _life(one: Remaining) -> dict[str, Any]:
+    return {
+        "seen": one.seen,
+        "runs": json_form.whole(one.runs),
+        "remaining": {repr(p): json_form.whole(found) for p, found in one.life.items()},
+        "by": {repr(time): json_form.whole(found) for time, found in one.by.items()},
+        "effective_rows": one.effective_rows,
+    }

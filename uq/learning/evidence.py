@@ -1,0 +1,207 @@
+"""What inspections say of worlds, of an input that scales lives in them, and of their units.
+
+A world is what all units share: a sample, or all rows where nothing is shared but the integrated
+input. Each inspected unit takes rows of its own in each world, so that the product over units of
+the means of their likelihoods estimates the evidence of a world without bias.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats
+
+Likelihood = Callable[[Floats], Floats]
+"""``likelihood(values)``: logarithm of the likelihood of all inspections of a unit, of shape
+(m, g), were it each of its m rows with each of the g values of the integrated input."""
+
+Quantiles = Callable[[Floats], Floats]
+
+FINEST = 1e-9
+"""Share of the posterior that the grid of the integrated input may leave out on each side."""
+
+_NODES = 64
+_PASSES = 6
+
+
+class Grid(NamedTuple):
+    """Values of an integrated input.
+
+    Attributes
+    ----------
+    low, high : float
+        Its probabilities at the ends.
+    values : ndarray, shape (g,)
+    log_share : ndarray, shape (g,)
+        Logarithm of the prior probability of each value.
+    """
+
+    low: float
+    high: float
+    values: Floats
+    log_share: Floats
+
+    @property
+    def edges(self) -> Floats:
+        """The prior probabilities between which each value lies, shape (g + 1,)."""
+        return self.low + np.append(0.0, np.cumsum(np.exp(self.log_share)))
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What is learnt of worlds, and of the integrated input in them.
+
+    Attributes
+    ----------
+    log_worlds : ndarray, shape (w, g)
+        Logarithm of the posterior probability of each world, and of each value of an integrated
+        input that all its units share (else g is 1); the sum of the probabilities is 1.
+    rest : tuple of ndarray, shape (w, g)
+        For each inspected unit the same without its own likelihood, not normalised.
+    log_evidence : float
+        Logarithm of the probability of all inspections.
+    grids : tuple of Grid
+        Of each inspected unit.
+    """
+
+    log_worlds: Floats
+    rest: tuple[Floats, ...]
+    log_evidence: float
+    grids: tuple[Grid, ...]
+
+
+def weigh(
+    likelihoods: Sequence[Likelihood],
+    world_of: Sequence[NDArray[np.intp]],
+    worlds: int,
+    quantiles: Quantiles | None,
+    own: bool,
+) -> Evidence:
+    """Return what inspections say.
+
+    Parameters
+    ----------
+    likelihoods : sequence of callable
+        Of each inspected unit.
+    world_of : sequence of ndarray of int, shape (m,)
+        The world of each row that stands for each inspected unit.
+    worlds : int
+    quantiles : callable, optional
+        Values of the integrated input at given probabilities; None if there is none.
+    own : bool
+        Whether each unit has an integrated input of its own.
+
+    Returns
+    -------
+    Evidence
+    """
+    grids = [_grid(0.0, 1.0, quantiles)] * len(likelihoods)
+    for _ in range(_PASSES):
+        units, found = weigh_on(grids, likelihoods, world_of, worlds, own)
+        if quantiles is None or not np.isfinite(found.log_evidence):
+            break
+        narrower = [_narrower(*one) for one in zip(grids, units, found.rest, strict=True)]
+        if not own:
+            narrower = narrower[:1] * len(grids)
+        if not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
+            break
+        grids = [_grid(low, high, quantiles) for low, high in narrower]
+    return found
+
+
+def weigh_on(
+    grids: Sequence[Grid],
+    likelihoods: Sequence[Likelihood],
+    world_of: Sequence[NDArray[np.intp]],
+    worlds: int,
+    own: bool,
+) -> tuple[list[Floats], Evidence]:
+    """Return the mean likelihoods of units on given grids, and what they say; see `weigh`."""
+    units = [
+        _mean_likelihood(one(grid.values), world, worlds)
+        for one, world, grid in zip(likelihoods, world_of, grids, strict=True)
+    ]
+    return units, (_own if own else _shared)(units, grids, worlds)
+
+
+def _grid(low: float, high: float, quantiles: Quantiles | None) -> Grid:
+    if quantiles is None:
+        return Grid(0.0, 1.0, np.ones(1), np.zeros(1))
+    return _joined([np.linspace(low, high, _NODES + 1)], quantiles)
+
+
+def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> Grid:
+    """Return the grid whose values lie in the middle between some probabilities."""
+    edges = np.unique(np.concatenate(parts))
+    middle = (edges[1:] + edges[:-1]) / 2
+    return Grid(edges[0], edges[-1], quantiles(middle), np.log(np.diff(edges)))
+
+
+def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
+    """Return a grid from end to end of the prior that is as fine as another where that is."""
+    if quantiles is None:
+        return grid
+    outside = np.linspace(0.0, grid.low, _NODES // 2), np.linspace(grid.high, 1.0, _NODES // 2)
+    return _joined([outside[0], grid.edges, outside[1]], quantiles)
+
+
+def _shared(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
+    log_worlds = np.sum(units, axis=0) + grids[0].log_share - np.log(worlds)
+    return _evidence(log_worlds, [log_worlds - one for one in _finite(units)], grids)
+
+
+def _own(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
+    of_unit = [
+        special.logsumexp(one + grid.log_share, axis=1, keepdims=True)
+        for one, grid in zip(units, grids, strict=True)
+    ]
+    log_worlds = np.sum(of_unit, axis=0) - np.log(worlds)
+    rest = [
+        log_worlds - one + grid.log_share for one, grid in zip(_finite(of_unit), grids, strict=True)
+    ]
+    return _evidence(log_worlds, rest, grids)
+
+
+def _finite(units: Sequence[Floats]) -> list[Floats]:
+    """Return logarithms with 0 for -inf: what is impossible for a unit is so with the rest."""
+    return [np.where(np.isneginf(one), 0.0, one) for one in units]
+
+
+def _evidence(log_worlds: Floats, rest: Sequence[Floats], grids: Sequence[Grid]) -> Evidence:
+    total = float(special.logsumexp(log_worlds))
+    if np.isfinite(total):
+        log_worlds = log_worlds - total
+    return Evidence(log_worlds, tuple(rest), total, tuple(grids))
+
+
+def _narrower(grid: Grid, log_unit: Floats, rest: Floats) -> tuple[float, float]:
+    """Return the part of the grid, one node wider on each side, with nearly all probability."""
+    share = special.logsumexp(log_unit + rest, axis=0)
+    share = np.exp(share - special.logsumexp(share))
+    below, above = np.cumsum(share), np.cumsum(share[::-1])
+    first = max(int(np.searchsorted(below, FINEST)) - 1, 0)
+    last = len(share) - max(int(np.searchsorted(above, FINEST)) - 1, 0)
+    return float(grid.edges[first]), float(grid.edges[last])
+
+
+def _is_much(ends: tuple[float, float], grid: Grid) -> bool:
+    return ends[1] - ends[0] <= 0.5 * (grid.high - grid.low)
+
+
+def _mean_likelihood(log_likelihood: Floats, world: NDArray[np.intp], worlds: int) -> Floats:
+    """Return the logarithm of the mean over the rows of each world, shape (worlds, g)."""
+    order = np.argsort(world, kind="stable")
+    there, first = np.unique(world[order], return_index=True)
+    sorted_rows = log_likelihood[order]
+    top = np.maximum.reduceat(sorted_rows, first, axis=0)
+    level = np.where(np.isfinite(top), top, 0.0)
+    count = np.diff(np.append(first, len(world)))
+    sums = np.add.reduceat(np.exp(sorted_rows - np.repeat(level, count, axis=0)), first, axis=0)
+    found = np.full((worlds, log_likelihood.shape[1]), -np.inf)
+    with np.errstate(divide="ignore"):
+        found[there] = np.log(sums / count[:, None]) + level
+    return found

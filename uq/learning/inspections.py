@@ -1,0 +1,251 @@
+"""What was measured: the lines of an inspections file."""
+
+import csv
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from enum import StrEnum
+from math import isfinite
+from pathlib import Path
+
+from uq.errors import InputError, nearest
+from uq.literals import read_number
+from uq.places import node
+
+
+class Kind(StrEnum):
+    """What an inspection says."""
+
+    MEASURED = "measured"
+    BELOW = "below"
+    ABOVE = "above"
+    SURVIVED = "survived"
+    ENDED = "ended"
+
+
+LIMITS = (Kind.BELOW, Kind.ABOVE)
+OUTCOMES = (Kind.SURVIVED, Kind.ENDED)
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """One thing learnt about one unit.
+
+    Attributes
+    ----------
+    unit : str
+        The label of the unit.
+    output : str
+        What was looked at: the name of an element, or such as ``depth[site=right]``.
+    kind : Kind
+        ``measured``: the value; ``below``, ``above``: on which side of the value it lies, or
+        whether it was not or was detected; ``survived``, ``ended``: whether the life had ended.
+    time : float or None
+        [s], from the beginning of the life.
+    value : float or None
+        In the unit of the output.
+    sd : float or None
+        Standard deviation of a normal error.
+    cv : float or None
+        Coefficient of variation of a lognormal error, whose median is 1.
+    detection_50, detection_90 : float or None
+        What is detected with these probabilities; in between, and beyond, by a lognormal curve.
+    """
+
+    unit: str
+    output: str
+    kind: Kind
+    time: float | None = None
+    value: float | None = None
+    sd: float | None = None
+    cv: float | None = None
+    detection_50: float | None = None
+    detection_90: float | None = None
+
+
+COLUMNS = tuple(field.name for field in fields(Inspection))
+"""Columns of a file of inspections."""
+
+_REQUIRED = ("unit", "output", "kind")
+_NUMBERS = COLUMNS[3:]
+_DETECTION = ("detection_50", "detection_90")
+
+
+def read_inspections(path: Path) -> list[Inspection]:
+    """Read inspections from a CSV file.
+
+    Parameters
+    ----------
+    path : Path
+        Its first line names the columns: ``unit``, ``output``, ``kind``, and those of ``time``,
+        ``value``, ``sd``, ``cv``, ``detection_50`` and ``detection_90`` that are needed.
+
+    Returns
+    -------
+    list of Inspection
+        In the order of the lines, at least one.
+
+    Raises
+    ------
+    InputError
+        One line for each mistake.
+    """
+    faults: list[str] = []
+    found = []
+    for line, cells in _lines(path):
+        inspection, problems = _read(cells)
+        faults += [f"{path}, line {line}: {problem}" for problem in problems]
+        if inspection is not None:
+            found.append(inspection)
+    if faults:
+        raise InputError(*faults)
+    if not found:
+        raise InputError(f"{path}: has no inspection below its first line")
+    return found
+
+
+def read_tables(tables: Sequence[Mapping[str, object]], label: str) -> list[Inspection]:
+    """Read inspections from tables, as `read_inspections` from lines.
+
+    Parameters
+    ----------
+    tables : sequence of dict
+        Column -> value.
+    label : str
+        Where they are from, for messages.
+    """
+    faults: list[str] = []
+    found = []
+    for number, table in enumerate(tables, start=1):
+        if unknown := [name for name in table if name not in COLUMNS]:
+            faults += [f"{label} {number}: {_no_column(name)}" for name in unknown]
+            continue
+        cells = {name: str(value) for name, value in table.items() if value is not None}
+        inspection, problems = _read(cells)
+        faults += [f"{label} {number}: {problem}" for problem in problems]
+        if inspection is not None:
+            found.append(inspection)
+    if faults:
+        raise InputError(*faults)
+    return found
+
+
+def _lines(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    """Yield the number and the cells of each line below the first."""
+    if what := node(path):
+        raise InputError(f"{path}: is {what}, not a file")
+    if not path.is_file():
+        names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
+        raise InputError(f"{path}: no such file{nearest(path.name, names)}")
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as text:
+            rows = csv.reader(text, skipinitialspace=True, strict=True)
+            names = [name.strip() for name in next(rows, [])]
+            _check_columns(path, names)
+            for row in rows:
+                cells = [cell.strip() for cell in row]
+                if not any(cells):
+                    continue
+                if len(cells) != len(names):
+                    raise InputError(
+                        f"{path}, line {rows.line_num}: has {len(cells)} cells, the first line"
+                        f" {len(names)}; write numbers with a decimal point, not a comma"
+                    )
+                yield rows.line_num, {n: c for n, c in zip(names, cells, strict=True) if c}
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (csv.Error, UnicodeDecodeError):
+        raise InputError(f"{path}: not CSV in UTF-8") from None
+
+
+def _check_columns(path: Path, names: Sequence[str]) -> None:
+    if len(names) == 1 and (";" in names[0] or "\t" in names[0]):
+        raise InputError(f"{path}: separate cells by commas, and write a decimal point in numbers")
+    faults = [f"{path}: {_no_column(name)}" for name in names if name not in COLUMNS]
+    faults += [f"{path}: has several columns '{n}'" for n in COLUMNS if names.count(n) > 1]
+    faults += [f"{path}: has no column '{name}'" for name in _REQUIRED if name not in names]
+    if faults:
+        raise InputError(*faults)
+
+
+def _no_column(name: str) -> str:
+    return f"no such column '{name}'{nearest(name, COLUMNS)} (allowed: {', '.join(COLUMNS)})"
+
+
+def _read(cells: Mapping[str, str]) -> tuple[Inspection | None, list[str]]:
+    """Return an inspection, or what is wrong with its cells."""
+    faults = [f"{name} is missing" for name in _REQUIRED if name not in cells]
+    numbers: dict[str, float] = {}
+    for name in _NUMBERS:
+        if name in cells:
+            try:
+                numbers[name] = _number(cells[name])
+            except (ValueError, OverflowError):
+                faults.append(f"{name} = {cells[name]}: must be a finite number")
+    if "kind" in cells and cells["kind"] not in list(Kind):
+        allowed = f"(allowed: {', '.join(Kind)})"
+        like = nearest(cells["kind"], list(Kind))
+        faults.append(f"kind = {cells['kind']}: no such kind{like} {allowed}")
+    if faults:
+        return None, faults
+    kind = Kind(cells["kind"])
+    faults = list(_conflicts(kind, numbers))
+    if faults:
+        return None, faults
+    return Inspection(cells["unit"], cells["output"], kind, **numbers), []
+
+
+def _number(text: str) -> float:
+    number = read_number(text)
+    if not isfinite(number):
+        raise ValueError
+    return number
+
+
+def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
+    """Yield what is wrong with the numbers of an inspection of a kind."""
+    given = [name for name in _NUMBERS if name in numbers]
+    positive: Callable[[float], bool] = lambda number: number > 0  # noqa: E731
+    for name in ("sd", "cv", *_DETECTION):
+        if name in numbers and not positive(numbers[name]):
+            yield f"{name} = {numbers[name]:g}: must be above 0"
+    if numbers.get("time", 0.0) < 0:
+        yield f"time = {numbers['time']:g}: must not be negative"
+    if kind in OUTCOMES:
+        if "time" not in given:
+            yield f"time is missing: a life has {kind} by a time [s]"
+        for name in given:
+            if name != "time":
+                yield f"{name} = {numbers[name]:g}: leave it out where a unit has {kind}"
+        return
+    if "sd" in given and "cv" in given:
+        yield "sd and cv: give one of them"
+    if "cv" in given and not numbers.get("value", 1.0) > 0:
+        yield f"value = {numbers['value']:g}: must be above 0 with a cv; or give an sd"
+    curve = [name for name in _DETECTION if name in given]
+    if kind is Kind.MEASURED:
+        if "value" not in given:
+            yield "value is missing: what was measured"
+        if "sd" not in given and "cv" not in given:
+            yield "sd or cv is missing: the error of the measurement"
+        if curve:
+            yield f"{curve[0]} = {numbers[curve[0]]:g}: only for kinds below and above"
+        return
+    if curve:
+        yield from _curve(curve, numbers)
+    elif "value" not in given:
+        yield f"value is missing: the limit; or give {' and '.join(_DETECTION)}"
+
+
+def _curve(curve: Sequence[str], numbers: Mapping[str, float]) -> Iterator[str]:
+    """Yield what is wrong with a curve of detection."""
+    for name in _DETECTION:
+        if name not in curve:
+            yield f"{name} is missing beside {curve[0]}"
+    for name in ("value", "sd", "cv"):
+        if name in numbers:
+            yield f"{name} = {numbers[name]:g}: leave it out beside a curve of detection"
+    if len(curve) == 2 and not numbers["detection_50"] < numbers["detection_90"]:
+        yield (
+            f"detection_90 = {numbers['detection_90']:g}: must be above detection_50 ="
+            f" {numbers['detection_50']:g}"
+        )

@@ -1,0 +1,85 @@
+"""The input that only scales lives and is integrated on a grid, not drawn."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Output
+from uq.designs.levels import OWN, SHARED
+from uq.inputs.conditioning import ppf_within
+from uq.learning.looks import Look
+from uq.population.scaling import Inputs, inputs_of, scalers
+from uq.rows.nesting import levels_of
+
+
+@dataclass(frozen=True)
+class Scale:
+    """An input that only scales lives, and is integrated on a grid.
+
+    Attributes
+    ----------
+    name : str
+    level : str
+    exponents : dict of str to float
+        What was inspected -> its exponent.
+    drawn : ndarray, shape (n,)
+        The values of the rows.
+    inputs : Inputs
+    """
+
+    name: str
+    level: str
+    exponents: Mapping[str, float]
+    drawn: Floats
+    inputs: Inputs
+
+    @property
+    def is_own(self) -> bool:
+        """Whether each unit has its own."""
+        return self.level == OWN
+
+    def quantiles(self, probability: Floats) -> Floats:
+        """Return quantiles of its prior."""
+        return ppf_within(self.inputs.laws[self.name], probability, self.inputs.bounds[self.name])
+
+    def longer(self, look: Look, rows: NDArray[np.intp], values: Floats) -> Floats:
+        """Return by which factor lives of some rows are longer with other values, shape (m, g)."""
+        if look.name not in self.exponents:
+            return np.ones((len(rows), len(values)))
+        return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
+
+
+def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> Scale | None:
+    """Return the input to integrate: a shared one first, of these the one that scatters lives most.
+
+    One that scales all lives and depths that were inspected; outputs that it has no effect on say
+    nothing of it.
+    """
+    inputs, levels = inputs_of(rows), levels_of(rows)
+    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
+    if not scaled:
+        return None
+    common = [free_scales(inputs, look.declared) for look in scaled]
+    names = [name for name in common[0] if all(name in one for one in common)]
+    names = [name for name in names if levels[name] in (SHARED, OWN)]
+    if not names:
+        return None
+
+    def spread(name: str) -> float:
+        return float(abs(common[0][name]) * np.log(inputs.values[name]).std())
+
+    best = max(names, key=lambda name: (levels[name] == SHARED, spread(name)))
+    exponents = {look.name: one[best] for look, one in zip(scaled, common, strict=True)}
+    return Scale(best, levels[best], exponents, inputs.values[best], inputs)
+
+
+def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:
+    """Return the exponent of each input that only scales lives and is independent of all others."""
+    return {
+        name: exponent
+        for name, exponent in scalers(inputs, output).items()
+        if inputs.laws[name].times is None and name not in inputs.correlated
+    }

@@ -1,0 +1,117 @@
+"""How probable an inspection is, given the true value of what was looked at."""
+
+from math import log, sqrt
+
+import numpy as np
+from scipy import special
+
+from uq.contract import Floats
+from uq.learning.inspections import Inspection, Kind
+
+_NINETY = float(special.ndtri(0.9))
+
+
+def log_likelihood(inspection: Inspection, truth: Floats, model_cv: float = 0.0) -> Floats:
+    """Return the logarithm of the likelihood of an inspection of a quantity.
+
+    Parameters
+    ----------
+    inspection : Inspection
+        Of kind ``measured``, ``below`` or ``above``.
+    truth : ndarray
+        Values of the quantity, in the unit of the inspection; NaN where there is none.
+    model_cv : float
+        Coefficient of variation of a lognormal discrepancy between model and reality, whose median
+        is 1.
+
+    Returns
+    -------
+    ndarray
+        Of the same shape; -inf where the inspection is impossible, or the row has no value.
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        found = _of_kind(inspection, np.asarray(truth, dtype=float), model_cv)
+    return np.where(np.isnan(found), -np.inf, found)
+
+
+def _of_kind(inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
+    value = inspection.value
+    if inspection.detection_50 is not None and inspection.detection_90 is not None:
+        half, ninety = log(inspection.detection_50), log(inspection.detection_90)
+        scale = np.hypot((ninety - half) / _NINETY, _sigma(model_cv))
+        seen = (np.log(truth) - half) / scale
+        return _log_side(inspection.kind, -seen)
+    assert value is not None
+    if inspection.cv is not None:
+        scale = np.hypot(_sigma(inspection.cv), _sigma(model_cv))
+        z = (log(value) - np.log(truth)) / scale
+        spread = value * scale
+    else:
+        spread = np.hypot(inspection.sd or 0.0, np.abs(truth) * model_cv)
+        if inspection.sd is None and not model_cv:  # a limit without error
+            inside = truth < value if inspection.kind is Kind.BELOW else truth > value
+            return np.where(np.isnan(truth), -np.inf, np.where(inside, 0.0, -np.inf))
+        z = (value - truth) / spread
+    if inspection.kind is Kind.MEASURED:
+        return np.asarray(-(z**2) / 2 - np.log(spread) - log(2 * np.pi) / 2)
+    return _log_side(inspection.kind, z)
+
+
+def _log_side(kind: Kind, z: Floats) -> Floats:
+    """Return the logarithm of the probability of lying on a side of a limit, z errors above."""
+    return np.asarray(special.log_ndtr(z if kind is Kind.BELOW else -z))
+
+
+def _sigma(cv: float) -> float:
+    return sqrt(np.log1p(cv**2))
+
+
+def log_outcome(kind: Kind, life: Floats, time: Floats) -> Floats:
+    """Return the logarithm of the likelihood that a life has ``survived`` or ``ended`` by a time.
+
+    Parameters
+    ----------
+    kind : Kind
+    life, time : ndarray
+        [s], of one shape; NaN where a row has no life.
+    """
+    with np.errstate(invalid="ignore"):
+        inside = life > time if kind is Kind.SURVIVED else life <= time
+    return np.where(inside, 0.0, -np.inf)
+
+
+def drawn_measurement(
+    inspection: Inspection, truth: Floats, rng: np.random.Generator, model_cv: float = 0.0
+) -> Floats:
+    """Draw what a measurement finds.
+
+    Parameters
+    ----------
+    inspection : Inspection
+        Of kind ``measured``.
+    truth : ndarray
+    rng : numpy.random.Generator
+    model_cv : float
+        As for `log_likelihood`.
+
+    Returns
+    -------
+    ndarray
+        Of the same shape, NaN where there is no truth.
+    """
+    noise = rng.standard_normal(truth.shape)
+    if inspection.cv is not None:
+        return np.asarray(truth * np.exp(np.hypot(_sigma(inspection.cv), _sigma(model_cv)) * noise))
+    return np.asarray(truth + np.hypot(inspection.sd or 0.0, np.abs(truth) * model_cv) * noise)
+
+
+def log_most(inspection: Inspection, model_cv: float = 0.0) -> float:
+    """Return a bound of the logarithm of the likelihood of an inspection, whatever the truth."""
+    if inspection.kind is not Kind.MEASURED:
+        return 0.0
+    assert inspection.value is not None
+    if inspection.cv is not None:
+        spread = inspection.value * np.hypot(_sigma(inspection.cv), _sigma(model_cv))
+    else:
+        spread = inspection.sd or 0.0
+    return float(-np.log(spread) - log(2 * np.pi) / 2)

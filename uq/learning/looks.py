@@ -1,0 +1,210 @@
+"""What inspections looked at, in the rows of a result."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Mask, Output
+from uq.errors import InputError, choices, nearest
+from uq.learning.inspections import OUTCOMES, Inspection, Kind
+from uq.learning.likelihood import log_likelihood, log_outcome
+from uq.learning.worn_depth import WornDepths
+from uq.rows.element import Element, places
+from uq.rows.elements import elements_of
+from uq.rows.variables import outputs_of
+
+_REACH = 3.0  # standard errors of a measurement
+
+
+@dataclass(frozen=True)
+class Look:
+    """One quantity that can be inspected, in all rows of a result.
+
+    Attributes
+    ----------
+    name : str
+    declared : Output
+        The output, or the lives until the depths worn.
+    values : ndarray, shape (n,)
+        Of an output; of a censored life its lower bound. Empty for a depth.
+    depths : WornDepths or None
+        Of a depth, with censored lives as infinite.
+    censored : ndarray of bool, shape (n,)
+        Where a life is only bounded; of a depth, where one of the lives is.
+    """
+
+    name: str
+    declared: Output
+    values: Floats
+    depths: WornDepths | None
+    censored: Mask
+
+    @property
+    def unit(self) -> str:
+        """Of its values."""
+        return self.declared.unit
+
+    def truth(self, time: float | None, rows: NDArray[np.intp], longer: Floats) -> Floats:
+        """Return what an inspection would have found without error.
+
+        Parameters
+        ----------
+        time : float or None
+            Of the inspection [s].
+        rows : ndarray of int, shape (n,)
+        longer : ndarray, shape (n, g)
+            Factors by which lives of these rows are longer than computed.
+
+        Returns
+        -------
+        ndarray, shape (n, g)
+        """
+        if self.depths is not None:
+            assert time is not None
+            chosen = WornDepths(self.depths.depths, self.depths.lives[rows])
+            return chosen.at(time / longer)
+        values = self.values[rows, None]
+        return (
+            values * longer if self.declared.is_lifetime else np.broadcast_to(values, longer.shape)
+        )
+
+    def log_likelihood(self, one: Inspection, truth: Floats, model_cv: float) -> Floats:
+        """Return the logarithm of the likelihood of an inspection, given `truth`."""
+        if one.kind in OUTCOMES:
+            return log_outcome(one.kind, truth, np.full(truth.shape, one.time))
+        if self.declared.is_angle:
+            truth = self._angle(one, truth)
+        return log_likelihood(one, truth, model_cv)
+
+    def _angle(self, one: Inspection, truth: Floats) -> Floats:
+        """Return an angle on the turn of the value measured; of a limit, its magnitude."""
+        if one.kind is not Kind.MEASURED or one.value is None:
+            return np.abs(truth)
+        turn = 2 * np.pi if self.unit == "rad" else 360.0
+        return one.value + (truth - one.value + turn / 2) % turn - turn / 2
+
+    def bounded(self, one: Inspection, rows: NDArray[np.intp], longer: Floats) -> Mask:
+        """Return where only a bound of the truth is known, shape (n, g)."""
+        if self.depths is not None:
+            assert one.time is not None
+            last = np.where(np.isfinite(self.depths.lives[rows]), self.depths.lives[rows], 0.0)
+            beyond = one.time / longer > last.max(axis=1, keepdims=True)
+            return beyond & self._stops(rows)[:, None]
+        most = (one.time or 0.0) if one.kind in OUTCOMES else reach(one)
+        return self.censored[rows, None] & (self.values[rows, None] * longer < most)
+
+    def _stops(self, rows: NDArray[np.intp]) -> Mask:
+        assert self.depths is not None
+        return self.depths.settled[rows]
+
+
+def look_at(ds: xr.Dataset, one: Inspection) -> Look:
+    """Return what an inspection looked at.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    one : Inspection
+
+    Returns
+    -------
+    Look
+
+    Raises
+    ------
+    InputError
+        When the result has no such quantity, or it cannot be inspected in this way.
+    """
+    known = {element.name: element for element in elements_of(ds, _numbers(ds))}
+    depths = dict(_depths(ds))
+    if one.output in known:
+        element = known[one.output]
+        _check_output(element, one)
+        return Look(one.output, element.declared, element.values, None, element.censored)
+    if one.output in depths:
+        if one.kind in OUTCOMES:
+            raise InputError(
+                f"output = {one.output}: a depth does not end; name a life (allowed:"
+                f" {choices(n for n, e in known.items() if e.is_lifetime)})"
+            )
+        if one.time is None:
+            raise InputError(f"time is missing: when {one.output} was inspected [s]")
+        found = depths[one.output]
+        _check_reach(found, one)
+        return found
+    names = [*known, *depths]
+    raise InputError(
+        f"output = {one.output}: no such output{nearest(one.output, names)} (allowed:"
+        f" {choices(names)})"
+    )
+
+
+def _numbers(ds: xr.Dataset) -> list[str]:
+    return [name for name, output in outputs_of(ds).items() if not output.is_category]
+
+
+def _check_output(element: Element, one: Inspection) -> None:
+    if one.kind in OUTCOMES and not element.is_lifetime:
+        raise InputError(
+            f"kind = {one.kind}: {one.output} is not a life; write measured, below or above"
+        )
+
+
+def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
+    """Yield the depths that the lives of a result are declared for, such as ``depth[site=left]``.
+
+    A dimension with a unit, along which an output is a life, is a depth. Of several outputs with
+    the same dimensions the first counts.
+    """
+    seen = set()
+    for output, declared in outputs_of(ds).items():
+        if not declared.is_lifetime or not declared.dims:
+            continue
+        depth = declared.dims[-1]
+        axis = ds[depth]
+        if "units" not in axis.attrs or not np.issubdtype(axis.dtype, np.number):
+            continue
+        elements = list(elements_of(ds, [output]))
+        others = {dim: ds[dim].values for dim in declared.dims[:-1]}
+        size = axis.size
+        for number, (name, _, _) in enumerate(places(depth, others)):
+            if name in seen:
+                continue
+            seen.add(name)
+            lives = elements[number * size : (number + 1) * size]
+            cut = np.stack([one.censored for one in lives], axis=1)
+            times = np.stack([one.values for one in lives], axis=1)
+            order = np.argsort(axis.values)
+            worn = WornDepths(
+                axis.values[order].astype(float), np.where(cut, np.inf, times)[:, order]
+            )
+            shown = Output(str(axis.attrs["units"]), declared.meaning, scales=declared.scales)
+            yield name, Look(name, shown, np.empty(0), worn, np.asarray(cut.any(axis=1)))
+
+
+def reach(one: Inspection) -> float:
+    """Return the largest value that an inspection can tell from larger ones."""
+    if one.detection_90 is not None:
+        return one.detection_90
+    assert one.value is not None
+    if one.kind is not Kind.MEASURED:
+        return one.value
+    if one.cv is not None:
+        return one.value * float(np.exp(_REACH * one.cv))
+    return one.value + _REACH * (one.sd or 0.0)
+
+
+def _check_reach(look: Look, one: Inspection) -> None:
+    """Refuse a depth beyond the last one that the result knows of."""
+    assert look.depths is not None
+    most, last = reach(one), float(look.depths.depths[-1])
+    if most > last:
+        raise InputError(
+            f"value = {one.value or most:g}: with its error it reaches {most:.3g} {look.unit},"
+            f" beyond the last depth of the result, {last:g} {look.unit}; add a deeper one to the"
+            " study's depths"
+        )

@@ -1,0 +1,162 @@
+"""What the next inspection is worth: how far it narrows what units share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Floats
+from uq.errors import InputError, choices
+from uq.learning.inspections import Inspection, Kind
+from uq.learning.looks import look_at
+from uq.population.smoothing import weights_of
+from uq.rows.elements import (
+    Element,
+    analysis_of,
+    elements_of,
+    independent_rows,
+    lifetimes,
+    shown_outputs,
+    why_no_statistics,
+)
+from uq.rows.nesting import Nesting, nesting_of
+
+
+@dataclass(frozen=True)
+class Worth:
+    """What inspections of some units at some times are worth.
+
+    Attributes
+    ----------
+    life : str
+        The life that they are to narrow.
+    output : str
+        What is inspected.
+    spread : float
+        Standard deviation of the logarithm of the life that units share, before.
+    narrowing : dict of (float or None, int) to float
+        Time, number of units -> the share by which `spread` is expected to fall; NaN where rows
+        do not show it.
+    """
+
+    life: str
+    output: str
+    spread: float
+    narrowing: dict[tuple[float | None, int], float]
+
+
+def worth(
+    ds: xr.Dataset,
+    output: str,
+    times: Sequence[float] = (),
+    units: Sequence[int] = (1,),
+    cv: float = 0.1,
+    life: str | None = None,
+) -> Worth:
+    """Estimate what it is worth to inspect more units.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or a posterior, with several units in each sample.
+    output : str
+        What to inspect, as in the inspections of `uq.update`: ``depth[site=left]``, a life.
+    times : sequence of float, optional
+        When [s]; needed for a depth.
+    units : sequence of int
+        How many that were not inspected before.
+    cv : float
+        Coefficient of variation of the measurement.
+    life : str, optional
+        The life that matters; needed where the study shows several.
+
+    Returns
+    -------
+    Worth
+
+    Raises
+    ------
+    InputError
+        When samples have a single unit, or there is no such output or life.
+
+    Notes
+    -----
+    The expected fall of the standard deviation of what samples share of the logarithm of the life,
+    by the best linear estimate from the mean of the logarithms measured [1]_: 1 - sqrt(1 - R^2).
+    Variances and covariances between samples are those of their means less what the scatter of
+    units adds.
+
+    References
+    ----------
+    .. [1] M. Goldstein, D. Wooff, "Bayes Linear Statistics" (2007).
+    """
+    if why := why_no_statistics(ds):
+        raise InputError(f"uq next-inspection: the rows of a '{ds.attrs['design']}' design {why}")
+    rows = independent_rows(ds)
+    place = nesting_of(rows)
+    if place.units < 2:
+        raise InputError(
+            "uq next-inspection: samples have a single unit: set [design] units = 2 or more"
+        )
+    element = _the_life(rows, life)
+    weights = weights_of(rows)
+    worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
+    target = _logarithm(np.where(element.censored, np.nan, element.values))
+    found = {}
+    for time in times or (None,):
+        look = look_at(rows, Inspection("", output, Kind.MEASURED, time, 1e-300, cv=cv))
+        seen = _logarithm(look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0])
+        between = _Between(target, seen, worth_of_rows, place)
+        for count in units:
+            found[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
+    spread = _Between(target, target, worth_of_rows, place).of_life
+    return Worth(element.name, output, max(spread, 0.0) ** 0.5, found)
+
+
+class _Between:
+    """What two logarithms share within samples: variances and the covariance between samples."""
+
+    def __init__(self, life: Floats, seen: Floats, weights: Floats, place: Nesting):
+        kept = np.isfinite(life) & np.isfinite(seen)
+        both = [np.where(kept, one, np.nan) for one in (life, seen)]
+        means = [place.means(one) for one in both]
+        whole = np.isfinite(means[0])
+        size = np.bincount(place.sample[kept], minlength=place.samples)[whole]
+        worth = place.means(weights)[whole]
+        inside = [
+            one[kept] - mean[place.sample[kept]] for one, mean in zip(both, means, strict=True)
+        ]
+        spare = max(int(kept.sum()) - int(whole.sum()), 1)
+        within = np.array([[a @ b for b in inside] for a in inside]) / spare
+        if whole.sum() > 2:
+            of_means = np.cov(np.stack([mean[whole] for mean in means]), aweights=worth)
+            of_means = of_means - within * np.average(1 / size, weights=worth)
+        else:
+            of_means = np.full((2, 2), nan)
+        self.of_life, self._both, self._seen = of_means[0, 0], of_means[0, 1], of_means[1, 1]
+        self._within = within[1, 1]
+
+    def narrowing(self, units: int, error: float) -> float:
+        """Return the share by which the standard deviation of the life is expected to fall."""
+        variance = self._seen + (self._within + error) / units
+        if not (self.of_life > 0 and variance > 0):
+            return nan
+        explained = min(self._both**2 / (self.of_life * variance), 1.0)
+        return float(1 - (1 - explained) ** 0.5)
+
+
+def _logarithm(values: Floats) -> Floats:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.log(values)
+    return np.where(np.isfinite(found), found, np.nan)
+
+
+def _the_life(rows: xr.Dataset, life: str | None) -> Element:
+    shown = elements_of(rows, shown_outputs(rows, analysis_of(rows)))
+    lives = lifetimes(rows, life) if life else [one for one in shown if one.is_lifetime]
+    if len(lives) != 1:
+        names = choices([one.name for one in lives])
+        raise InputError(f"uq next-inspection: name one life with --life ({names})")
+    return lives[0]

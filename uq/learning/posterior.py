@@ -1,0 +1,236 @@
+"""The rows of a result as the inspections leave them: weighted, each with a scale of its lives."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats
+from uq.designs.levels import SHARED
+from uq.errors import InputError
+from uq.intervals import Replicates, replicates_of_some
+from uq.learning.evidence import Evidence, Grid, weigh
+from uq.learning.inspections import Inspection
+from uq.learning.integrated import Scale, scale_of
+from uq.learning.looks import Look, look_at
+from uq.learning.unit_likelihood import UnitLikelihoods
+from uq.population.smoothing import Smoothed, smoothed
+from uq.rows.elements import replicates_of
+from uq.rows.nesting import Nesting, levels_of, nesting_of
+
+Rows = NDArray[np.intp]
+
+_GOLDEN = (5**0.5 - 1) / 2
+_HUGE = 700.0
+
+
+@dataclass(frozen=True)
+class Weighted:
+    """Rows that stand for a unit.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (m,)
+    weights : Smoothed
+    scale : ndarray, shape (m,), or None
+        What the integrated input is in each row.
+    """
+
+    rows: Rows
+    weights: Smoothed
+    scale: Floats | None
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What inspections leave of a result.
+
+    Attributes
+    ----------
+    any_unit : Weighted
+        Units that were not inspected.
+    units : dict of str to Weighted
+        Each inspected one, by label.
+    scale : Scale or None
+    evidence : Evidence
+    likelihoods : UnitLikelihoods
+        Of the inspected units, in their order.
+    world : ndarray of int, shape (n,)
+        Of each row.
+    looks : dict of Inspection to Look
+    """
+
+    any_unit: Weighted
+    units: Mapping[str, Weighted]
+    scale: Scale | None
+    evidence: Evidence
+    likelihoods: UnitLikelihoods
+    looks: Mapping[Inspection, Look]
+    world: Rows
+
+    @property
+    def weights(self) -> list[Smoothed]:
+        """Of all units."""
+        return [self.any_unit.weights, *(one.weights for one in self.units.values())]
+
+
+def posterior(
+    rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float = 0.0
+) -> Posterior:
+    """Return what inspections leave of a result.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    inspections : sequence of Inspection
+    model_cv : float
+        Of a lognormal discrepancy between model and reality, whose median is 1.
+
+    Returns
+    -------
+    Posterior
+
+    Raises
+    ------
+    InputError
+        When an inspection does not fit the result, or more units are inspected than samples have.
+    """
+    looks = _looks(rows, inspections)
+    place = nesting_of(rows)
+    labels = list(dict.fromkeys(one.unit for one in inspections))
+    if len(labels) > place.units:
+        raise InputError(
+            f"{len(labels)} units are inspected, but a sample of this result has {place.units}:"
+            f" set [design] units = {len(labels)}"
+        )
+    scale = scale_of(rows, [looks[one] for one in inspections])
+    world, worlds = _worlds(rows, place, scale)
+    blocks = _blocks(place, len(labels), worlds)
+    likelihoods = UnitLikelihoods(inspections, looks, labels, blocks, scale, model_cv)
+    found = weigh(
+        [partial(likelihoods.of, unit) for unit in range(len(labels))],
+        [world[block] for block in blocks],
+        worlds,
+        scale.quantiles if scale else None,
+        bool(scale and scale.is_own),
+    )
+    if not np.isfinite(found.log_evidence):
+        raise InputError("no row of this result agrees with the inspections")
+    part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
+    units = {
+        label: _inspected(found, unit, likelihoods, world, scale, part)
+        for unit, label in enumerate(labels)
+    }
+    everyone = _uninspected(found, world, place, scale, replicates_of(rows))
+    return Posterior(everyone, units, scale, found, likelihoods, looks, world)
+
+
+def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
+    faults = []
+    found = {}
+    known = cache(lambda one: look_at(rows, one))
+    for one in inspections:
+        try:
+            found[one] = known(one)
+        except InputError as error:
+            faults += [f"unit {one.unit}: {line}" for line in error.lines]
+    if faults:
+        raise InputError(*faults)
+    return found
+
+
+def _worlds(rows: xr.Dataset, place: Nesting, scale: Scale | None) -> tuple[Rows, int]:
+    """Return the world of each row, and how many there are.
+
+    All rows are of one world where nothing is shared but what is integrated.
+    """
+    shared = {name for name, level in levels_of(rows).items() if level == SHARED}
+    if scale is not None and not scale.is_own:
+        shared -= {scale.name, *(a for a, b in scale.inputs.tied.items() if b == scale.name)}
+    if not shared:
+        return np.zeros(len(place.sample), np.intp), 1
+    return place.sample, place.samples
+
+
+def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
+    """Return the rows that stand for each inspected unit."""
+    everything = np.arange(len(place.sample))
+    if worlds == 1:
+        return [everything] * inspected
+    turn = place.unit % inspected
+    return [everything[turn == i] for i in range(inspected)]
+
+
+def _uninspected(
+    found: Evidence, world: Rows, place: Nesting, scale: Scale | None, part: Replicates
+) -> Weighted:
+    """Return all rows, as units that share their world with the inspected ones."""
+    worth = np.exp(found.log_worlds)
+    rows = np.arange(len(world))
+    size = np.bincount(world, minlength=len(worth))
+    with np.errstate(divide="ignore"):
+        weights = smoothed(np.log(worth.sum(axis=1)[world] / size[world]), part)
+    if scale is None or scale.is_own:
+        return Weighted(rows, weights, None if scale is None else scale.drawn)
+    _, first = np.unique(place.sample, return_index=True)
+    of_samples = _drawn(found.grids[0], worth[world[first]], scale)
+    return Weighted(rows, weights, of_samples[place.sample])
+
+
+def _inspected(
+    found: Evidence,
+    unit: int,
+    likelihoods: UnitLikelihoods,
+    world: Rows,
+    scale: Scale | None,
+    part: Replicates,
+) -> Weighted:
+    """Return the rows that stand for an inspected unit.
+
+    Where units have no world in common but all rows, the likelihood bounds their weights: no value
+    of the integrated input that the grid leaves out makes all else more probable than it does.
+    """
+    rows, grid = likelihoods.blocks[unit], found.grids[unit]
+    size = np.bincount(world[rows], minlength=len(found.rest[unit]))
+    joint = found.rest[unit][world[rows]] + likelihoods.of(unit, grid.values)
+    joint -= np.log(size[world[rows]])[:, None]
+    top = joint.max()
+    worth = np.exp(joint - top)
+    of_rows = worth.sum(axis=1)
+    most = np.inf
+    if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
+        all_else = special.logsumexp(found.rest[unit]) - np.log((grid.high - grid.low) * size[0])
+        log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
+        most = float(np.exp(min(log_most, _HUGE)))
+    kept = np.isin(np.arange(len(world)), rows)
+    with np.errstate(divide="ignore"):
+        weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
+    return Weighted(rows, weights, _drawn(grid, worth, scale) if scale else None)
+
+
+def _drawn(grid: Grid, worth: Floats, scale: Scale) -> Floats:
+    """Draw the integrated input of each row or sample from its law given the inspections.
+
+    The numbers drawn with are evenly spread over the rows, in their order.
+
+    Parameters
+    ----------
+    grid : Grid
+    worth : ndarray, shape (n, g)
+    scale : Scale
+    """
+    at = np.modf((np.arange(len(worth)) + 1) * _GOLDEN)[0]
+    above = np.cumsum(worth, axis=1)
+    wanted = at * above[:, -1]
+    node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)
+    here = np.arange(len(worth)), node
+    with np.errstate(divide="ignore", invalid="ignore"):
+        within = (wanted - (above[here] - worth[here])) / worth[here]
+    edges = grid.edges
+    places = edges[node] + np.clip(within, 0.0, 1.0) * (edges[node + 1] - edges[node])
+    return scale.quantiles(np.where(above[:, -1] > 0, places, at))

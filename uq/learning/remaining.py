@@ -1,0 +1,113 @@
+"""The lives to come: of each unit still running, and of units never inspected."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from uq.estimate import Estimate
+from uq.intervals import Replicates, replicates_of_some
+from uq.learning.inspections import Inspection, Kind
+from uq.learning.result import as_unit, inspections_of
+from uq.population.functionals import Population
+from uq.population.smoothing import effective_rows, per_sample
+from uq.rows.elements import Element, analysis_of, elements_of, replicates_of, shown_outputs
+from uq.rows.weights import WEIGHT
+
+PROBABILITIES = (0.05, 0.5, 0.95)
+ANY = ""
+"""A unit that was never inspected."""
+
+_GONE = "its inspections leave hardly a row in which it still runs"
+_LEAST = 1e-3
+
+
+@dataclass(frozen=True)
+class Remaining:
+    """How long a unit still runs, given that it does.
+
+    Attributes
+    ----------
+    unit : str
+        Its label; `ANY` for units never inspected.
+    output : str
+        Which life.
+    seen : float
+        When it was last seen running; for units never inspected, the latest inspection [s].
+    runs : Estimate
+        Probability that this life has not ended by then, given the inspections.
+    life : dict of float to Estimate
+        Probability -> quantile of the remaining life, from then on [s].
+    by : dict of float to Estimate
+        Time from the beginning of the life [s] -> probability that it has ended by then.
+    effective_rows : float
+    """
+
+    unit: str
+    output: str
+    seen: float
+    runs: Estimate
+    life: dict[float, Estimate]
+    by: dict[float, Estimate]
+    effective_rows: float
+
+
+def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
+    """Yield the remaining lives of units that no inspection has found ended.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of `uq.update`.
+    by : sequence of float
+        Times from the beginning of the life [s]; by default the thresholds of the study.
+    """
+    inspections = inspections_of(ds)
+    latest = _last_seen(inspections)
+    yield from _of_unit(ds, ANY, latest, by)
+    for label in map(str, ds["inspected"].values):
+        own = [one for one in inspections if one.unit == label]
+        if not any(one.kind is Kind.ENDED for one in own):
+            yield from _of_unit(as_unit(ds, label), label, _last_seen(own), by)
+
+
+def _last_seen(inspections: Sequence[Inspection]) -> float:
+    return max((one.time for one in inspections if one.time is not None), default=0.0)
+
+
+def _of_unit(rows: xr.Dataset, label: str, seen: float, by: Sequence[float]) -> Iterator[Remaining]:
+    analysis = analysis_of(rows)
+    rows = rows.isel(sample=rows[WEIGHT].values > 0)
+    part = replicates_of(rows)
+    for element in elements_of(rows, shown_outputs(rows, analysis)):
+        if element.is_lifetime and not element.declared.success:
+            times = [*by] or [t for t in analysis.thresholds.get(element.output, ()) if t > seen]
+            yield _of_life(element, part, label, seen, times)
+
+
+def _of_life(
+    element: Element, part: Replicates, label: str, seen: float, times: Sequence[float]
+) -> Remaining:
+    runs = Population(element, part).outliving(seen) if seen > 0 else Estimate(1.0)
+    assert element.weights is not None
+    still = element.present & (element.values > seen)
+    nothing = Remaining(label, element.name, seen, runs, {}, {}, 0.0)
+    if not element.weights[still].sum() > _LEAST * element.weights.sum():
+        return replace(nothing, runs=Estimate(runs.value, reason=_GONE))
+    left = replace(
+        element,
+        values=np.where(still, element.values - seen, np.nan),
+        censored=element.censored & still,
+        failed=~still,
+        weights=np.where(still, element.weights, 0.0),
+    )
+    of = Population(left, part)
+    return replace(
+        nothing,
+        life={p: of.quantile(p) for p in PROBABILITIES},
+        by={time: of.below(time - seen) if time > seen else Estimate(0.0) for time in times},
+        effective_rows=effective_rows(
+            per_sample(element.weights[still], replicates_of_some(part, still))
+        ),
+    )

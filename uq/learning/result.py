@@ -1,0 +1,202 @@
+"""The posterior as a result: its rows weighted, with the inspections inside."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from hashlib import sha256
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Floats
+from uq.errors import InputError, choices, nearest
+from uq.learning.inspections import Inspection, read_tables
+from uq.learning.integrated import free_scales
+from uq.learning.posterior import Posterior, Weighted
+from uq.population.scaling import inputs_of
+from uq.population.smoothing import Smoothed, weights_of
+from uq.rows.variables import error_name, outputs_of
+from uq.rows.weights import MOST, WEIGHT, has_weights
+
+PRIOR = "prior_"
+UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST)
+INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
+MODEL_ERROR = "model_error"
+
+
+def as_result(
+    rows: xr.Dataset, found: Posterior, inspections: Sequence[Inspection], model_cv: float
+) -> xr.Dataset:
+    """Return a result with what inspections leave of its rows.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    found : Posterior
+        What the inspections leave of them.
+    inspections : sequence of Inspection
+    model_cv : float
+
+    Returns
+    -------
+    xarray.Dataset
+        ``weight`` of each row, as a unit that was not inspected; ``unit_weight`` (inspected,
+        sample), as each inspected one. An integrated input has the values that the inspections
+        leave, and the lives that it scales are those for these values; as computed they are kept
+        with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
+        of each inspected unit. Attributes: ``inspections``, and ``ledger``, a digest of each.
+    """
+    if taken := [name for name in _WEIGHTS if name in rows.variables]:
+        raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
+    ds = rows
+    if found.scale is not None:
+        assert found.any_unit.scale is not None
+        replaced = _rescaled(rows, found.scale.name, found.any_unit.scale)
+        kept = {f"{PRIOR}{name}": _as_prior(rows[name]) for name in replaced}
+        ds = rows.assign(replaced | kept)
+    n = rows.sizes["sample"]
+    meaning = "how much the row counts, given the inspections"
+    attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
+    both = ("inspected", "sample")
+    most = [one.weights.most for one in _units(found)]
+    of_units = np.stack([_spread_out(one, one.weights.weights, n, 0.0) for one in _units(found)])
+    variables = {
+        WEIGHT: ("sample", found.any_unit.weights.weights, attrs),
+        UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
+        UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
+    }
+    if found.scale is not None:
+        scales = [_spread_out(one, one.scale, n, np.nan) for one in _units(found)]
+        of_scale = {"role": WEIGHT, "units": rows[found.scale.name].attrs["units"]}
+        of_scale["long_name"] = f"{found.scale.name} of the inspected unit"
+        variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
+    ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
+    units, count = len(found.units), len(inspections)
+    given = f"given {count} inspection{'s' * (count > 1)} of {units} unit{'s' * (units > 1)}"
+    found_attrs = {
+        "title": f"{_prior_title(rows)}, {given}",
+        INTEGRATED: found.scale.name if found.scale else "",
+        INSPECTIONS: json.dumps([as_table(one) for one in inspections]),
+        LEDGER: json.dumps([digest(one) for one in inspections]),
+        MODEL_ERROR: float(model_cv),
+        "prior_title": _prior_title(rows),
+    }
+    for variable in ds.variables.values():
+        variable.encoding["_FillValue"] = None
+    return ds.assign_attrs(found_attrs)
+
+
+def prior_of(ds: xr.Dataset) -> xr.Dataset:
+    """Return the rows of a posterior as they were before the inspections."""
+    if not has_weights(ds):
+        return ds
+    kept = [str(name) for name in ds.data_vars if ds[name].attrs.get("role") == "prior"]
+    back = {}
+    for name in kept:
+        own = name.removeprefix(PRIOR)
+        back[own] = ds[own].copy(data=ds[name].values)
+    gone = [*kept, *(one for one in (*_WEIGHTS, "inspected") if one in ds)]
+    found = ds.assign(back).drop_vars(gone)
+    attrs = {name: value for name, value in ds.attrs.items() if name not in _OF_POSTERIOR}
+    found.attrs = attrs | {"title": _prior_title(ds)}
+    return found
+
+
+_OF_POSTERIOR = (INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, "prior_title")
+
+
+def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
+    """Return the rows of a posterior as those of one inspected unit.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of `uq.update`.
+    label : str
+        Of the unit, as in the inspections.
+
+    Returns
+    -------
+    xarray.Dataset
+        A result with weights, which every reader of results takes.
+
+    Raises
+    ------
+    InputError
+        When the rows have no weights, or no such unit was inspected.
+    """
+    if not has_weights(ds):
+        raise InputError("a unit can be named only of a result of 'uq update'")
+    known = [str(one) for one in ds["inspected"].values]
+    if label not in known:
+        raise InputError(
+            f"unit '{label}' was not inspected{nearest(label, known)} (allowed: {choices(known)})"
+        )
+    place = known.index(label)
+    rows, name = prior_of(ds), ds.attrs[INTEGRATED]
+    if name:
+        scale = ds[UNIT_SCALE].values[place]
+        drawn = rows[name].values
+        rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
+    weight = ds[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
+    weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
+    return rows.assign({WEIGHT: weight}).assign_attrs(title=f"{_prior_title(ds)}, unit {label}")
+
+
+def inspections_of(ds: xr.Dataset) -> list[Inspection]:
+    """Return the inspections that a posterior rests on."""
+    return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")), "inspection")
+
+
+def as_table(one: Inspection) -> dict[str, object]:
+    """Return what is known of an inspection: column -> value."""
+    return {name: value for name, value in asdict(one).items() if value is not None}
+
+
+def digest(one: Inspection) -> str:
+    """Return what identifies a measurement in a ledger."""
+    return sha256(json.dumps(as_table(one), sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _prior_title(ds: xr.Dataset) -> str:
+    return str(ds.attrs.get("prior_title", ds.attrs["title"]))
+
+
+def _units(found: Posterior) -> list[Weighted]:
+    return list(found.units.values())
+
+
+def _spread_out(one: Weighted, values: Floats | None, n: int, other: float) -> Floats:
+    """Return values of the rows of a unit among all rows."""
+    found = np.full(n, other)
+    found[one.rows] = other if values is None else values
+    return found
+
+
+def _as_prior(variable: xr.DataArray) -> xr.DataArray:
+    about = {"role": "prior", "long_name": f"before the inspections: {variable.attrs['long_name']}"}
+    return variable.assign_attrs(variable.attrs | about)
+
+
+def _rescaled(rows: xr.Dataset, name: str, values: Floats) -> dict[str, xr.DataArray]:
+    """Return an input with other values, those equal to it, and the lives that they scale."""
+    inputs, known = inputs_of(rows), outputs_of(rows)
+    members = (name, *(one for one, leader in inputs.tied.items() if leader == name))
+    found = {one: rows[one].copy(data=values) for one in members}
+    ratio = values / rows[name].values
+    for output, declared in known.items():
+        exponent = free_scales(inputs, declared).get(name)
+        for one in (output, error_name(output)) if exponent else ():
+            if one in known:
+                of = rows[one]
+                factor = (ratio**exponent).reshape(-1, *[1] * (of.ndim - 1))
+                found[one] = of.copy(data=of.values * factor)
+    return found
+
+
+def unit_quality(ds: xr.Dataset) -> list[Smoothed]:
+    """Return the weights of the rows of a posterior, as any unit and as each inspected one."""
+    units = [as_unit(ds, str(label)) for label in ds["inspected"].values]
+    return [found for one in (ds, *units) if (found := weights_of(one)) is not None]

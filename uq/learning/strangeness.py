@@ -1,0 +1,88 @@
+"""How strange the inspections are before anything is learnt from them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats
+from uq.learning.inspections import Inspection, Kind
+from uq.learning.likelihood import drawn_measurement
+from uq.learning.posterior import Posterior
+
+CAMPAIGNS = 2000
+"""Campaigns drawn from the rows."""
+
+STRANGE = 0.01
+"""Probability below which a warning is due."""
+
+
+def strangeness(found: Posterior, seed: int, model_cv: float) -> float:
+    """Return the probability, before the inspections, of inspections at least as strange.
+
+    Campaigns with the same inspections are drawn from the rows and the laws of errors. How strange
+    a campaign is: the product over inspections of the two-sided probabilities of each value, and
+    of the probabilities of each outcome, among all campaigns [1]_.
+
+    Parameters
+    ----------
+    found : Posterior
+    seed : int
+    model_cv : float
+
+    References
+    ----------
+    .. [1] G. E. P. Box, "Sampling and Bayes' inference in scientific modelling and robustness", J.
+       R. Stat. Soc. A 143, 383-430 (1980).
+    """
+    rng = np.random.default_rng((seed, 22))
+    world = found.world[rng.integers(len(found.world), size=CAMPAIGNS)]
+    common = rng.random(CAMPAIGNS)
+    score = np.zeros(CAMPAIGNS + 1)  # the last is what was really found
+    for unit, inspections in enumerate(found.likelihoods.of_unit):
+        rows = _rows(found.likelihoods.blocks[unit], found.world, world, rng)
+        own = rng.random(CAMPAIGNS)
+        for one in inspections:
+            truth = _truth(found, one, rows, common, own)
+            score += _log_probability(found, one, truth, rng, model_cv)
+    return float((score[:-1] <= score[-1] + 1e-9).mean())
+
+
+def _rows(
+    block: NDArray[np.intp],
+    world_of: NDArray[np.intp],
+    world: NDArray[np.intp],
+    rng: np.random.Generator,
+) -> NDArray[np.intp]:
+    """Return a row of a block at random in each of some worlds."""
+    order = block[np.argsort(world_of[block], kind="stable")]
+    first, after = (np.searchsorted(world_of[order], world, side=s) for s in ("left", "right"))
+    return np.asarray(order[first + np.floor(rng.random(len(world)) * (after - first)).astype(int)])
+
+
+def _truth(
+    found: Posterior, one: Inspection, rows: NDArray[np.intp], common: Floats, own: Floats
+) -> Floats:
+    """Return what the inspection would find without error in each campaign."""
+    look, longer = found.looks[one], np.ones((len(rows), 1))
+    scale = found.scale
+    if scale is not None and look.name in scale.exponents:
+        values = scale.quantiles(own if scale.is_own else common)
+        longer = (values / scale.drawn[rows])[:, None] ** scale.exponents[look.name]
+    return look.truth(one.time, rows, longer)[:, 0]
+
+
+def _log_probability(
+    found: Posterior, one: Inspection, truth: Floats, rng: np.random.Generator, model_cv: float
+) -> Floats:
+    """Return how probable the inspection is in each campaign, and last as it really was."""
+    n = len(truth)
+    if one.kind is not Kind.MEASURED:
+        log_chance = found.looks[one].log_likelihood(one, truth[:, None], model_cv)[:, 0]
+        chance = np.exp(log_chance)
+        so = rng.random(n) < chance
+        share = (chance.sum() + 0.5) / (n + 1)
+        return np.append(np.where(so, np.log(share), np.log1p(-share)), np.log(share))
+    assert one.value is not None
+    values = np.append(drawn_measurement(one, truth, rng, model_cv), one.value)
+    known = np.sort(values[~np.isnan(values)])
+    below = np.searchsorted(known, values, side="right") / (len(known) + 1)
+    return np.where(np.isnan(values), 0.0, np.log(2 * np.minimum(below, 1 - below)))

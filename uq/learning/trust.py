@@ -1,0 +1,43 @@
+"""Whether the rows of a result can represent what inspections leave of it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from uq.learning.posterior import Posterior, Weighted
+from uq.population.smoothing import refusal
+
+HOPELESS = (
+    "the rows hardly visit what the inspections leave, and no moderate number of rows helps; the"
+    " laws, the model (--model-error) or an inspection may be wrong"
+)
+
+_OPEN = 0.01
+"""Share of rows in which a censored life may leave open what an inspection saw."""
+
+
+def distrust(found: Posterior) -> str:
+    """Return why the weights of a posterior cannot be trusted, or ""."""
+    return next(_reasons(found), "")
+
+
+def _reasons(found: Posterior) -> Iterator[str]:
+    for unit, (label, one) in enumerate(found.units.items()):
+        scale = None if found.scale is None else found.scale.drawn[one.rows]
+        before = found.likelihoods.bounded(unit, scale)
+        after = found.likelihoods.bounded(unit, one.scale)
+        share = max(before.mean(), np.average(after, weights=one.weights.weights))
+        if share > _OPEN:
+            yield (
+                f"unit {label}: {100 * share:.2g} % of the rows were censored before what its"
+                " inspections saw; run the study with a longer horizon"
+            )
+    if why := _why(found.any_unit):
+        yield f"what all units share: {why}"
+    for label, one in found.units.items():
+        if why := _why(one):
+            yield f"unit {label}: {why}"
+
+
+def _why(one: Weighted) -> str:
+    return refusal(one.weights.k, one.weights.rows, HOPELESS)

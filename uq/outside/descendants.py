@@ -1,0 +1,64 @@
+"""Processes that a program leaves behind, ended with it."""
+
+import ctypes
+import os
+import resource
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+_PR_SET_CHILD_SUBREAPER = 36
+_SECONDS = 5.0
+
+LARGEST = 10_000_000_000
+"""Bytes of a file that a program may write."""
+
+_adopting = False
+
+
+def adopt() -> None:
+    """Become, on Linux, the parent of all descendants whose own parent ends.
+
+    For a process whose descendants all belong to rows, so that `end_descendants` may end them.
+    Neither it nor they can write files larger than `LARGEST`.
+    """
+    global _adopting
+    _adopting = True
+    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    own = LARGEST if most == resource.RLIM_INFINITY else min(LARGEST, most)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (own, most))
+    if sys.platform == "linux":
+        with suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def end_descendants() -> None:
+    """End what descends from this process, where it adopts; else do nothing."""
+    if not _adopting or not _has_children():
+        return
+    import psutil
+
+    left = psutil.Process().children(recursive=True)
+    for one in left:
+        with suppress(psutil.NoSuchProcess):
+            one.kill()
+    psutil.wait_procs(left, timeout=_SECONDS)
+
+
+def end_with_descendants(pid: int) -> None:
+    """End a child of this process and all that descends from it."""
+    import psutil
+
+    with suppress(psutil.NoSuchProcess):
+        process = psutil.Process(pid)
+        for one in (process, *process.children(recursive=True)):
+            with suppress(psutil.NoSuchProcess):
+                one.kill()
+
+
+def _has_children() -> bool:
+    try:
+        files = [task / "children" for task in Path(f"/proc/{os.getpid()}/task").iterdir()]
+        return any(file.read_bytes() for file in files)
+    except OSError:
+        return True

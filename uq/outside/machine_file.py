@@ -1,0 +1,191 @@
+"""A machine file: a program, its input and its results, described in TOML."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf, isfinite
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from uq.errors import InputError, nearest
+from uq.inputs.faults import Fault, fault_of
+from uq.literals import read_toml
+from uq.outside.row_by_row import SEED
+from uq.places import node
+
+_LONGEST = 1_000_000  # bytes of a machine file
+_NAME = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=100)]
+_PLACE = r"\{(%s)(:[^{}]*)?\}"
+
+STDOUT = "stdout"
+
+FOLDER = "machine_folder"
+"""The place of the folder of the machine file, in a command or template."""
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class MachineTable(_Table):
+    """``[machine]``: the program, and how it is called."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+    command: Annotated[list[str], Field(min_length=1, description="program and arguments")]
+    title: str = ""
+    version: str = "1"
+    template: Annotated[str, Field(description="file whose {places} are filled")] = ""
+    input: Annotated[str, Field(description="name of the filled template")] = "input.txt"
+    files: Annotated[list[str], Field(description="what else counts as its code")] = []
+    environment: dict[str, str] = {}
+    exit_codes: Annotated[dict[str, str], Field(description="what exit codes mean")] = {}
+
+
+class ParameterTable(_Table):
+    """``[parameters.NAME]``: an input with its nominal value."""
+
+    nominal: float
+    unit: str = "1"
+    bounds: Annotated[list[float], Field(min_length=2, max_length=2)] = [-inf, inf]
+    meaning: str = ""
+    source: str = "assumed: of the machine file"
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The bounds."""
+        return self.bounds[0], self.bounds[1]
+
+
+class OutputTable(_Table):
+    """``[outputs.NAME]``: a result, and where it stands: by json, csv, netcdf or pattern."""
+
+    unit: str = "1"
+    meaning: str = ""
+    life: bool = False
+    shape: list[int] = []
+    may_be_undefined: bool = False
+    file: Annotated[str, Field(description="file that the program writes")] = STDOUT
+    json_path: Annotated[str, Field(alias="json", description="keys and numbers: a.b.0")] = ""
+    csv: Annotated[str, Field(description="column; its last row counts")] = ""
+    netcdf: Annotated[str, Field(description="variable")] = ""
+    pattern: Annotated[str, Field(description="regular expression with one group")] = ""
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "OutputTable":
+        ways = [self.json_path, self.csv, self.netcdf, self.pattern]
+        if sum(map(bool, ways)) != 1:
+            raise ValueError("give one of json, csv, netcdf and pattern")
+        if self.netcdf and self.file == STDOUT:
+            raise ValueError("netcdf needs a file")
+        if self.pattern:
+            try:
+                groups = re.compile(self.pattern).groups
+            except re.error as error:
+                raise ValueError(f"pattern: {error}") from None
+            if groups != 1:
+                raise ValueError(f"pattern must have one group in parentheses, not {groups}")
+        return self
+
+
+class MachineFile(_Table):
+    """A machine file."""
+
+    machine: MachineTable
+    parameters: Annotated[dict[_NAME, ParameterTable], Field(min_length=1)]
+    outputs: Annotated[dict[_NAME, OutputTable], Field(min_length=1)]
+
+
+def machine_schema() -> dict[str, Any]:
+    """Return the JSON Schema of machine files (draft 7)."""
+    schema = MachineFile.model_json_schema(ref_template="#/definitions/{model}")
+    schema["definitions"] = schema.pop("$defs")
+    head = {"$schema": "http://json-schema.org/draft-07/schema#"}
+    return head | schema | {"title": "Program as a machine of vibrolife"}
+
+
+def read_machine(path: Path) -> MachineFile:
+    """Read a machine file.
+
+    Raises
+    ------
+    InputError
+        One line for each mistake.
+    """
+    if what := node(path):
+        raise InputError(f"{path}: is {what}, not a machine file")
+    if not path.is_file():
+        there = [one.name for one in path.parent.glob("*.toml")] if path.parent.is_dir() else []
+        raise InputError(f"{path}: no such file{nearest(path.name, there)}")
+    if path.stat().st_size > _LONGEST:
+        raise InputError(f"{path}: larger than a machine file can be")
+    try:
+        data = read_toml(path.read_text(encoding="utf-8"))
+    except (ValueError, OverflowError, RecursionError) as error:
+        raise InputError(f"{path}: not valid TOML: {' '.join(str(error).split())}") from None
+    if "study" in data and "machine" not in data:
+        raise InputError(f"{path}: is a study, not a machine file; it needs a table [machine]")
+    try:
+        found = MachineFile.model_validate(data)
+    except ValidationError as invalid:
+        faults = [fault_of(dict(one), _known) for one in invalid.errors(include_url=False)]
+        raise InputError(*(f"{path}: {fault.line}" for fault in faults)) from None
+    faults = list(_faults(found, path.parent))
+    if faults:
+        raise InputError(*(f"{path}: {fault.line}" for fault in faults))
+    return found
+
+
+def _known(path: Sequence[Any]) -> list[str]:
+    """Return what may stand in the place of an unknown key."""
+    if len(path) == 1:
+        return list(MachineFile.model_fields)
+    table: Any = {"machine": MachineTable, "parameters": ParameterTable, "outputs": OutputTable}[
+        path[0]
+    ]
+    return [field.alias or name for name, field in table.model_fields.items()]
+
+
+def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
+    machine = found.machine
+    texts = list(machine.command)
+    if machine.template:
+        template = folder / machine.template
+        if not template.is_file():
+            yield Fault(("machine", "template"), "no such file", machine.template)
+            return
+        texts.append(template.read_text(encoding="utf-8", errors="replace"))
+    for name in found.parameters:
+        if name in (SEED, FOLDER):
+            yield Fault(("parameters", name), "is the name of another place; choose another")
+        if not any(re.search(_PLACE % name, text) for text in texts):
+            problem = f"has no place {{{name}}} in command{' or template' * bool(machine.template)}"
+            yield Fault(("parameters", name), problem)
+    for name, one in found.parameters.items():
+        low, high = one.bounds
+        if not (isfinite(one.nominal) and low <= one.nominal <= high):
+            yield Fault(("parameters", name, "nominal"), "must lie within the bounds", one.nominal)
+    for file in machine.files:
+        if not (folder / file).exists():
+            yield Fault(("machine", "files"), "no such file", file)
+    for code in machine.exit_codes:
+        if not re.fullmatch(r"\d{1,3}", code):
+            yield Fault(("machine", "exit_codes", code), "must be a number between 1 and 255")
+
+
+def filled(text: str, values: Mapping[str, float | int | str]) -> str:
+    """Return a text with values in its places: ``{load}``, or ``{load:.6e}`` in a format.
+
+    Other braces stay as they are. Without a format a number has all its digits.
+
+    Raises
+    ------
+    ValueError
+        When a format does not suit a number.
+    """
+
+    def value(found: re.Match[str]) -> str:
+        one = values[found[1]]
+        return format(one, found[2][1:] if found[2] else "")
+
+    return re.sub(_PLACE % "|".join(map(re.escape, values)), value, text)

@@ -1,0 +1,171 @@
+"""A program as a machine: each row runs it once, in a folder of its own."""
+
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from uq.contract import Model, Parameter
+from uq.outside.descendants import LARGEST, end_descendants
+from uq.outside.folders import Folders
+from uq.outside.machine_file import FOLDER, MachineFile, filled, read_machine
+from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
+from uq.outside.returned import Returned
+from uq.outside.row_by_row import SEED, RowByRow, model_from
+
+_LAST = 300  # characters of what a failed program said
+_TRIES = 3  # of a program that is killed, before it is blamed
+_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
+
+
+class ProgramError(Exception):
+    """A program that failed, in a sentence."""
+
+
+class _KilledError(ProgramError):
+    """A program that was killed, perhaps from outside."""
+
+
+def program_of(path: Path) -> Model:
+    """Return the model of a machine file.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be used.
+    """
+    read = read_machine(path)
+    returned = {
+        name: Returned(one.unit, one.meaning, one.life, tuple(one.shape), one.may_be_undefined)
+        for name, one in read.outputs.items()
+    }
+    folder = path.absolute().parent
+    runner = _Program(read, folder, Folders(folder / f"{read.machine.name}.rows"))
+    fields = {
+        name: (Parameter(name, one.unit, one.meaning or name, one.span, one.source), one.nominal)
+        for name, one in read.parameters.items()
+    }
+    texts = [*read.machine.command, _template(read, folder)]
+    random = any(f"{{{SEED}" in text for text in texts)
+    machine = read.machine
+    batch = RowByRow(runner, tuple(fields), returned, True, runner.folders.leave)
+    title = machine.title or machine.name
+    return model_from(machine.name, title, machine.version, fields, returned, batch, random)
+
+
+def code_of_program(path: Path) -> str:
+    """Return a hash of a machine file, its template, its program and the files that it names."""
+    read, folder = read_machine(path), path.absolute().parent
+    whole = hashlib.sha256(path.read_bytes())
+    names = [name for name in (read.machine.template, *read.machine.files) if name]
+    files = [folder / name for name in names]
+    if program := _found(read.machine.command[0], folder):
+        files.append(Path(program))
+    for file in files:
+        for one in sorted(file.rglob("*")) if file.is_dir() else [file]:
+            if one.is_file():
+                content = one.read_bytes()
+                whole.update(b"%s %d\n" % (one.name.encode(), len(content)))
+                whole.update(content)
+    return whole.hexdigest()[:16]
+
+
+def _found(program: str, folder: Path) -> str | None:
+    """Return the path of a program: beside the machine file if it has a slash, else searched."""
+    if "/" in program:
+        return str((folder / program).absolute())
+    return shutil.which(program)
+
+
+def _template(read: MachineFile, folder: Path) -> str:
+    name = read.machine.template
+    return (folder / name).read_text(encoding="utf-8") if name else ""
+
+
+@dataclass(frozen=True)
+class _Program:
+    """What runs a row."""
+
+    read: MachineFile
+    folder: Path
+    folders: Folders
+    template: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "template", _template(self.read, self.folder))
+
+    def __call__(self, **row: float | int) -> Mapping[str, Any]:
+        """Run the program on a row; return its outputs.
+
+        Raises
+        ------
+        ProgramError, WrongReturnError
+        """
+        kept = self.folders.kept(list(row.values()))
+        with self.folders.row(list(row.values())) as folder:
+            try:
+                for _ in range(_TRIES - 1):
+                    with suppress(_KilledError):
+                        self._run(folder, row)
+                        break
+                else:
+                    self._run(folder, row)
+                return {
+                    name: value_in(folder, name, output)
+                    for name, output in self.read.outputs.items()
+                }
+            except Exception as error:
+                error.args = (f"{error}; see {kept}",)
+                raise
+
+    def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
+        machine = self.read.machine
+        places = {**row, FOLDER: str(self.folder)}
+        if machine.template:
+            (folder / machine.input).write_text(filled(self.template, places), encoding="utf-8")
+        program, *arguments = (filled(part, places) for part in machine.command)
+        environment = dict(os.environ) | machine.environment
+        path = _found(program, self.folder) or program
+        with (
+            (folder / STDOUT_FILE).open("wb") as out,
+            (folder / STDERR_FILE).open("wb") as err,
+        ):
+            try:
+                process = subprocess.Popen(
+                    [path, *arguments],
+                    cwd=folder,
+                    env=environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=out,
+                    stderr=err,
+                )
+            except OSError as error:
+                raise ProgramError(f"'{program}' cannot be started: {error.strerror}") from None
+            try:
+                code = process.wait()
+            finally:
+                end_descendants()
+        if code:
+            kind = _KilledError if code in _KILLED else ProgramError
+            raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
+
+
+def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:
+    if code == -signal.SIGXFSZ:
+        text = f"was ended, as it wrote a file larger than {LARGEST:.0e} bytes"
+    elif code < 0:
+        text = f"was ended by signal {-code} ({signal.strsignal(-code)})"
+    else:
+        meaning = meanings.get(str(code))
+        text = f"ended with exit code {code}" + (f": {meaning}" if meaning else "")
+    with said.open("rb") as file:
+        file.seek(max(said.stat().st_size - 10 * _LAST, 0))
+        lines = file.read().decode(errors="replace").split("\n")
+    last = next((line.strip() for line in reversed(lines) if line.strip()), "")
+    return f"{text} ({last[:_LAST]})" if last else text

@@ -1,0 +1,95 @@
+"""What a program has written: by keys of JSON, columns of CSV, netCDF variables, or a pattern."""
+
+import csv
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uq.outside.machine_file import STDOUT, OutputTable
+from uq.outside.returned import WrongReturnError
+
+LONGEST = 100_000_000
+"""Bytes of a text that is searched for a result."""
+
+STDOUT_FILE, STDERR_FILE = "stdout.txt", "stderr.txt"
+"""Names, in the folder of a row, of what its program printed."""
+
+
+def value_in(folder: Path, name: str, output: OutputTable) -> Any:
+    """Return an output from the folder of a row: a number, or nested lists of them.
+
+    Raises
+    ------
+    WrongReturnError
+        When it is not there, with the reason.
+    """
+    file = STDOUT_FILE if output.file == STDOUT else output.file
+    where = "its output" if output.file == STDOUT else f"'{output.file}'"
+    path = folder / file
+    if not path.is_file():
+        raise WrongReturnError(f"wrote no file '{output.file}', where '{name}' is expected")
+    try:
+        if output.netcdf:
+            return _in_netcdf(path, output.netcdf)
+        if path.stat().st_size > LONGEST:
+            raise WrongReturnError(
+                f"wrote {path.stat().st_size} bytes to {where}; too many to read"
+            )
+        text = path.read_text(encoding="utf-8", errors="replace")
+        if output.json_path:
+            return _in_json(text, output.json_path)
+        if output.csv:
+            return _in_csv(text, output.csv)
+        return _matched(text, output.pattern)
+    except (KeyError, IndexError, ValueError, TypeError, OSError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        raise WrongReturnError(f"has no '{name}' in {where}: {reason}") from None
+
+
+def _in_json(text: str, path: str) -> Any:
+    found = json.loads(text)
+    for part in path.split("."):
+        if isinstance(found, dict):
+            if part not in found:
+                raise ValueError(f"no key '{part}' of '{path}'")
+            found = found[part]
+        elif isinstance(found, list):
+            found = found[int(part)]
+        else:
+            raise ValueError(f"nothing at '{part}' of '{path}'")
+    return _number(found)
+
+
+def _number(found: Any) -> Any:
+    """Return numbers, which may be written as text: ``"inf"``, as JSON has no infinity."""
+    if isinstance(found, list):
+        return [_number(one) for one in found]
+    return float(found)
+
+
+def _in_csv(text: str, column: str) -> float:
+    rows = list(csv.DictReader(text.splitlines(), skipinitialspace=True))
+    if not rows:
+        raise ValueError("no row below the first line")
+    if column not in rows[0]:
+        raise ValueError(f"no column '{column}'")
+    return float(rows[-1][column])
+
+
+def _matched(text: str, pattern: str) -> float:
+    found = re.findall(pattern, text, re.MULTILINE)
+    if not found:
+        raise ValueError("no match of its pattern")
+    return float(found[-1])
+
+
+def _in_netcdf(path: Path, variable: str) -> Any:
+    import netCDF4
+
+    with netCDF4.Dataset(path) as data:
+        if variable not in data.variables:
+            raise ValueError(f"no variable '{variable}'")
+        return np.ma.filled(np.ma.asarray(data[variable][...], dtype=float), np.nan).tolist()

@@ -1,0 +1,108 @@
+"""Rows computed one after the other by something that takes numbers and returns a dict."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Model, Parameter, Status, censored_name
+from uq.outside.returned import Returned, WrongReturnError, checked, dimensions
+
+SEED = "seed"
+"""The name by which the seed of a row is wanted."""
+
+Fields = Mapping[str, tuple[Parameter, float]]
+"""Parameters, in order: name -> declaration and nominal value."""
+
+
+def model_from(
+    name: str,
+    title: str,
+    version: str,
+    fields: Fields,
+    returned: Mapping[str, Returned],
+    batch: "RowByRow",
+    random: bool,
+) -> Model:
+    """Return a model without settings; arguments as those of `uq.contract.Model`."""
+    hints = [(one, Annotated[float, parameter]) for one, (parameter, _) in fields.items()]
+    made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
+    made._field_defaults.update({one: nominal for one, (_, nominal) in fields.items()})
+    axes: dict[str, list[int]] = {}
+    for output, one in returned.items():
+        axes |= dimensions(output, one.shape)
+    return Model(
+        name,
+        title,
+        version,
+        made,
+        _NoSettings,
+        {output: one.output(output) for output, one in returned.items()},
+        batch,
+        coordinates=lambda settings: axes,
+        random=random,
+    )
+
+
+@dataclass(frozen=True)
+class _NoSettings:
+    """There are none."""
+
+
+@dataclass(frozen=True)
+class RowByRow:
+    """A batch that computes rows one after the other, each with its own end.
+
+    Attributes
+    ----------
+    function : callable
+        Takes the parameters of a row as keywords, and returns a dict of outputs.
+    names : tuple of str
+        Of the parameters, in order.
+    returned : dict of str to Returned
+    wants_seed : bool
+        Whether the function takes the seed of the row too.
+    leave : callable
+        Called after some rows.
+    """
+
+    function: Callable[..., Any]
+    names: tuple[str, ...]
+    returned: Mapping[str, Returned]
+    wants_seed: bool
+    leave: Callable[[], object] = lambda: None
+
+    def __call__(
+        self, x: Floats, seed: NDArray[np.uint64], settings: object
+    ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
+        """Compute rows; see `uq.contract.Batch`."""
+        n = len(x)
+        columns: dict[str, NDArray[Any]] = {}
+        for name, one in self.returned.items():
+            columns[name] = np.full((n, *one.shape), np.nan)
+            if one.life:
+                columns[censored_name(name)] = np.zeros((n, *one.shape), dtype=bool)
+        status, messages = np.zeros(n, np.int8), dict[int, str]()
+        for i, row in enumerate(x.tolist()):
+            try:
+                for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
+                    columns[name][i] = numbers
+                    if self.returned[name].life:
+                        columns[censored_name(name)][i] = cut
+            except WrongReturnError as error:
+                status[i], messages[i] = Status.BAD_SHAPE, str(error)
+            except Exception as error:
+                text = " ".join(str(error).split())
+                status[i] = Status.RAISED
+                messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
+        self.leave()
+        return columns, status, messages
+
+    def row(self, row: list[float], seed: int) -> Any:
+        """Return what the function returns on a row."""
+        given: dict[str, Any] = dict(zip(self.names, row, strict=True))
+        if self.wants_seed:
+            given[SEED] = seed
+        return self.function(**given)

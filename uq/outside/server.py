@@ -1,0 +1,163 @@
+"""A model on a UM-Bridge server as a machine: each row is a call of its own."""
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from math import inf
+from typing import Any
+
+from uq.contract import Model, Parameter, censored_name
+from uq.errors import InputError
+from uq.outside.returned import Censored, Returned, from_plain
+from uq.outside.row_by_row import RowByRow, model_from
+from uq.outside.um_bridge import DESCRIBED, VERSION, ServerError, call, split_address
+
+_SOON = 5.0  # seconds for which a server is expected to start
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What a server says of a model."""
+
+    server: str
+    name: str
+    inputs: tuple[int, ...]
+    information: Mapping[str, Any]
+
+
+def server_model(address: str, returned: Mapping[str, Returned] | None = None) -> Model:
+    """Return the model at an address.
+
+    Parameters
+    ----------
+    address : str
+        ``http://HOST:PORT/NAME``.
+    returned : dict of str to Returned, optional
+        What it returns, where the server does not describe it; without, the model has no outputs.
+
+    Returns
+    -------
+    Model
+        Its parameters are x1, x2, ... (x1_1, ... of several vectors) and its outputs y, or y1, ...
+        of several vectors, unless the server describes them, as `uq.outside.serving` does.
+
+    Raises
+    ------
+    InputError
+        When no such model is there.
+    """
+    known = _known(address)
+    described = known.information.get(DESCRIBED) or {}
+    try:
+        fields = {
+            one["name"]: (
+                Parameter(
+                    one["name"],
+                    one["unit"],
+                    one["meaning"],
+                    (float(one["bounds"][0]), float(one["bounds"][1])),
+                    "assumed: of the server",
+                ),
+                float(one["nominal"]),
+            )
+            for one in described.get("parameters", ())
+        } or {
+            name: (Parameter(name, "1", name, (-inf, inf), "assumed: none is stated"), 0.0)
+            for name in _names(known.inputs)
+        }
+        outputs = from_plain(described.get("outputs", {})) or dict(returned or {})
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise InputError(f"{address}: describes itself wrongly: {error!r}") from None
+    evaluate = _Evaluate(known, tuple(fields), tuple(outputs) if described else ())
+    name = re.sub(r"[^A-Za-z0-9_-]", "-", known.name)
+    random = bool(described.get("random"))
+    batch = RowByRow(evaluate, tuple(fields), outputs, random)
+    title = f"{known.name} on a UM-Bridge server"
+    return model_from(name, title, f"UM-Bridge {VERSION:g}", fields, outputs, batch, random)
+
+
+def code_of_server(address: str) -> str:
+    """Return a hash of what a server says of a model: its code cannot be seen."""
+    known = _known(address)
+    said = json.dumps([known.name, VERSION, known.inputs, known.information], sort_keys=True)
+    return hashlib.sha256(said.encode()).hexdigest()[:16]
+
+
+@cache
+def _known(address: str) -> _Known:
+    server, name = split_address(address)
+    try:
+        information = call(server, "Info", patience=_SOON)
+        models = list(map(str, information["models"]))
+        if information["protocolVersion"] != VERSION:
+            raise InputError(
+                f"{address}: speaks version {information['protocolVersion']} of UM-Bridge, not"
+                f" {VERSION:g}"
+            )
+        if name not in models:
+            raise InputError(f"{address}: no such model (there: {', '.join(models)})")
+        own = {"name": name, "config": {}}
+        sizes = tuple(int(n) for n in call(server, "InputSizes", own)["inputSizes"])
+        about = call(server, "ModelInfo", own)
+        if not about["support"].get("Evaluate"):
+            raise InputError(f"{address}: this model cannot be evaluated")
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"{address}: is no UM-Bridge server: {error!r}") from None
+    except ServerError as error:
+        raise InputError(f"{address}: {error}") from None
+    if not 0 < sum(sizes) <= 10_000:
+        raise InputError(f"{address}: has {sum(sizes)} inputs")
+    return _Known(server, name, sizes, about)
+
+
+def _names(sizes: tuple[int, ...]) -> list[str]:
+    if len(sizes) == 1:
+        return [f"x{i + 1}" for i in range(sizes[0])]
+    return [f"x{v + 1}_{i + 1}" for v, size in enumerate(sizes) for i in range(size)]
+
+
+@dataclass(frozen=True)
+class _Evaluate:
+    """One call for a row."""
+
+    known: _Known
+    names: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    def __call__(self, **row: float | int) -> dict[str, Any]:
+        """Return the outputs of a row.
+
+        Raises
+        ------
+        ServerError
+        """
+        flat = [float(row[name]) for name in self.names]
+        vectors, first = [], 0
+        for size in self.known.inputs:
+            vectors.append(flat[first : first + size])
+            first += size
+        config = {"seed": row["seed"]} if "seed" in row else {}
+        body = {"name": self.known.name, "input": vectors, "config": config}
+        answer = call(self.known.server, "Evaluate", body)
+        output = answer.get("output") if isinstance(answer, dict) else None
+        if not isinstance(output, list) or not all(isinstance(one, list) for one in output):
+            raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")
+        if self.outputs:
+            return self._named(output)
+        names = ["y"] if len(output) == 1 else [f"y{i + 1}" for i in range(len(output))]
+        return {n: v[0] if len(v) == 1 else v for n, v in zip(names, output, strict=True)}
+
+    def _named(self, output: list[list[float]]) -> dict[str, Any]:
+        """Return outputs of a server that describes them: vectors by name, then flags."""
+        described = self.known.information[DESCRIBED]
+        columns = dict(zip(described["columns"], output, strict=True))
+        found: dict[str, Any] = {}
+        for name, one in described["outputs"].items():
+            flags = columns.get(censored_name(name)) or [0.0] * len(columns[name])
+            both = zip(columns[name], flags, strict=True)
+            values = [Censored(value) if cut else value for value, cut in both]
+            found[name] = values if one["shape"] else values[0]
+        return found

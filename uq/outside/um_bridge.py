@@ -1,0 +1,111 @@
+"""The protocol of UM-Bridge models [1]_: JSON over HTTP, a connection for each call.
+
+References
+----------
+.. [1] L. Seelinger, V. Cheng-Seelinger, A. Davis, M. Parno, A. Reinarz, "UM-Bridge: Uncertainty
+   quantification and modeling bridge", J. Open Source Softw. 8(83), 4748 (2023).
+"""
+
+import http.client
+import json
+import time
+from typing import Any
+from urllib.parse import SplitResult, urlsplit
+
+from uq.errors import InputError
+
+VERSION = 1.0
+"""Of the protocol."""
+
+DESCRIBED = "described"
+"""Entry of a server's model information with names, units and bounds, which UM-Bridge lacks."""
+
+_LONGEST = 100_000_000  # bytes of an answer
+_PATIENCE = 60.0  # seconds for which a server that does not answer is asked again
+_PAUSES = (0.1, 0.3, 1.0, 3.0)
+
+
+class ServerError(Exception):
+    """A call that failed, in a sentence."""
+
+
+def split_address(address: str) -> tuple[str, str]:
+    """Return the address of a server and the name of a model on it.
+
+    Raises
+    ------
+    InputError
+        When it is not ``http://HOST:PORT/NAME``.
+    """
+    try:
+        parts: SplitResult = urlsplit(address)
+        known = parts.hostname is not None and parts.port != 0
+    except ValueError:
+        known = False
+    name = parts.path.strip("/") if known else ""
+    if not known or not name or "/" in name or parts.query or parts.fragment:
+        raise InputError(f"{address}: write it as http://HOST:PORT/NAME")
+    return f"{parts.scheme}://{parts.netloc}", name
+
+
+def call(server: str, what: str, body: Any = None, patience: float = _PATIENCE) -> Any:
+    """Ask a server and return its answer.
+
+    Parameters
+    ----------
+    server : str
+        ``http://HOST:PORT``.
+    what : str
+        Such as ``Evaluate``.
+    body : object, optional
+        What is sent; nothing is asked for by GET.
+    patience : float
+        How long it is asked again if it does not answer [s].
+
+    Raises
+    ------
+    ServerError
+    """
+    began, tries = time.monotonic(), 0
+    while True:
+        try:
+            return _answer(server, what, body)
+        except (OSError, http.client.HTTPException) as error:
+            if time.monotonic() - began > patience:
+                reason = " ".join(str(error).split()) or type(error).__name__
+                raise ServerError(f"{server} does not answer: {reason}") from None
+        time.sleep(_PAUSES[min(tries, len(_PAUSES) - 1)])
+        tries += 1
+
+
+def _answer(server: str, what: str, body: Any) -> Any:
+    parts = urlsplit(server)
+    secure = parts.scheme == "https"
+    kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
+    connection = kind(parts.hostname or "", parts.port)
+    try:
+        data = None if body is None else json.dumps(body)
+        headers = {"Content-Type": "application/json", "Connection": "close"}
+        connection.request("GET" if body is None else "POST", f"/{what}", data, headers)
+        response = connection.getresponse()
+        text = response.read(_LONGEST + 1)
+        if len(text) > _LONGEST:
+            raise ServerError(f"{server} answers {what} with more than {_LONGEST:.0e} bytes")
+        if response.length:
+            raise http.client.IncompleteRead(text, response.length)
+    finally:
+        connection.close()
+    try:
+        answer = json.loads(text)
+    except (ValueError, RecursionError):
+        said = " ".join(text[:80].decode(errors="replace").split())
+        raise ServerError(
+            f"{server} answers {what} with status {response.status} and no JSON ({said})"
+        ) from None
+    if isinstance(answer, dict) and "error" in answer:
+        error = answer["error"]
+        words = error.get("message") or error.get("type") if isinstance(error, dict) else error
+        raise ServerError(f"{server} answers {what}: {' '.join(str(words).split())}")
+    if response.status != http.client.OK:
+        raise ServerError(f"{server} answers {what} with status {response.status}")
+    return answer

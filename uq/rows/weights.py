@@ -1,0 +1,61 @@
+"""Rows that inspections have weighted."""
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Floats
+from uq.errors import InputError
+
+WEIGHT = "weight"
+"""The variable with the weight of each row."""
+
+MOST = "largest_possible"
+"""Its attribute: the largest weight that a row can have, where that is known."""
+
+
+def has_weights(ds: xr.Dataset) -> bool:
+    """Whether inspections have weighted the rows of a result."""
+    return WEIGHT in ds.variables and ds[WEIGHT].attrs.get("role") == WEIGHT
+
+
+def row_weights(ds: xr.Dataset) -> Floats | None:
+    """Return the weights of some rows of a result, of mean 1; None where rows have none.
+
+    Raises
+    ------
+    InputError
+        When all of them are zero.
+    """
+    if not has_weights(ds):
+        return None
+    weights = np.asarray(ds[WEIGHT].values, dtype=float)
+    if not weights.sum() > 0:
+        raise InputError("the inspections rule these rows out: all have weight 0")
+    return np.asarray(weights / weights.mean())
+
+
+def largest_weight(ds: xr.Dataset) -> float:
+    """Return the largest weight that a row can have, infinite where that is not known."""
+    return float(ds[WEIGHT].attrs.get(MOST, np.inf)) if has_weights(ds) else np.inf
+
+
+def refuse_weights(ds: xr.Dataset, what: str) -> None:
+    """Refuse a question that weighted rows cannot answer.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    what : str
+        The question, such as ``uq levels``.
+
+    Raises
+    ------
+    InputError
+        When rows have weights.
+    """
+    if has_weights(ds):
+        raise InputError(
+            f"{what}: not with rows that inspections have weighted; ask it of the result before"
+            " 'uq update'"
+        )
