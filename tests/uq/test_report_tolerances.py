@@ -30,7 +30,7 @@ CASES = {
     "truncated": ("z", {"z": NORMAL | {"truncate": [-2.0, 1.5]}}, {}, None),
     "counts": ("z", {"z": COUNTS}, {}, None),
     "integrated": ("a", {"a": GAMMA}, {}, None),
-    "product": ("b", {"a": GAMMA, "b": SIGMA, "c": SIGMA}, {}, None),
+    "product": ("b", {"a": SIGMA, "b": SIGMA}, {}, None),
     "factor": ("b", {"b": SIGMA | {"sigma": 0.3, "times": "a"}}, {}, None),
     "scaled by a factor": ("a", {"b": SIGMA | {"sigma": 0.3, "times": "a"}}, {}, None),
     "correlated": ("z", {}, {}, RANKS),
