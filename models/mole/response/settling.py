@@ -1,15 +1,17 @@
 """From the start to the settled response.
 
 The transient ends when the motion repeats over common periods of control and mains. Without a
-common period, it ends when the tangent flow has contracted the start to a millionth.
+common period, it ends when the tangent flow has contracted the start to a millionth. Where bar and
+mole stay at rest, the place of the bar is never forgotten; there it ends once they have rested for
+as long as motion is averaged, and the flow has contracted current and voltage.
 """
 
 import numpy as np
 
-from models.mole.lanes.block import MEASURED, TO_REPEAT
-from models.mole.lanes.rows import GROWTH, OUTCOME, REPEATING
+from models.mole.lanes.block import CURRENT, MEASURED, TO_REPEAT, P
+from models.mole.lanes.rows import GROWTH, HIGH, LOW, OUTCOME, PROGRESS, REPEATING
 from models.mole.parameters import LONGEST_PERIOD
-from models.mole.response.machines import Machines
+from models.mole.response.machines import APERIODIC, Machines
 from models.mole.response.measured import Counts, Response
 from models.mole.response.verdict import SURE
 from models.numerics.batch_means import mean_and_error
@@ -17,6 +19,7 @@ from models.numerics.batch_means import mean_and_error
 LONGEST = 120.0  # s of transient
 LATEST = 1200.0  # s more if by the tangent flow the motion is still settling
 _FORGOTTEN = np.log(1e-6)
+_ELECTRIC = np.isin(np.arange(MEASURED), (CURRENT, P)).astype(float)  # a tangent
 _LOOK = 1.0  # s between two checks of the tangent flow
 
 
@@ -58,15 +61,21 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
     done = [np.empty(0, np.int64)]
     look = np.maximum(np.round(_LOOK * machines.system.control_frequency[rows]), 1).astype(np.int64)
     tangents, growth = np.ones((len(rows), MEASURED)), np.zeros(len(rows))
-    limit = look.copy()
+    limit, rested = look.copy(), np.zeros(len(rows), np.int64)
     while len(rows):
         reached = machines.run(rows, np.minimum(limit, longest), tangents)
-        growth += machines.record[rows, GROWTH]
-        settled = (growth < _FORGOTTEN) | (limit >= longest)
+        record = machines.record[rows]
+        growth += record[:, GROWTH]
+        rests = (record[:, LOW] == record[:, HIGH]) & (record[:, PROGRESS] == 0)
+        long_enough = (rested == 0) | (rests & (rested + look >= APERIODIC))
+        settled = (growth < _FORGOTTEN) & long_enough | (limit >= longest)
+        new = rests != (rested > 0)
+        tangents[new], growth[new] = np.where(rests[new, None], _ELECTRIC, 1.0), 0.0
+        rested = np.where(rests, rested + look, 0)
         done.append(rows[reached[settled[reached]]])
         keep = reached[~settled[reached]]
         rows, longest, look, limit = rows[keep], longest[keep], look[keep], (limit + look)[keep]
-        tangents, growth = tangents[keep], growth[keep]
+        tangents, growth, rested = tangents[keep], growth[keep], rested[keep]
     return np.concatenate(done)
 
 
