@@ -1,8 +1,8 @@
 """What a second worker gains: ``python -m benchmarks.scaling [STUDY]``.
 
-Whole commands with one worker and with two, by turns, on compiled code: of the study as it is, whose
-rows take about as long as starting everything, and of eight times its rows. The times of a busy
-computer mean little.
+Whole commands with one worker and with two, by turns, on compiled code: of the study as it is,
+whose rows take about as long as starting everything, and of eight times its rows. The times of a
+busy computer mean little.
 """
 
 import sys
