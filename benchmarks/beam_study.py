@@ -1,11 +1,11 @@
 """Complete lifetime studies of the beam: run time and error, and those of the alternatives.
 
-For the paper's two cases, the second also at a small error: the wall time of the shipped lifetime study to a depth of one initial
-gap, by the command a user types, on two worker processes; the error of its lives, on rows computed
-again at the tightest settings, and how many of them are off by more than the stated errors; and the
-core-milliseconds of a row compared with the paper's method, gaps that grow in increments with
-settled work-rates at each, by the exact propagator and by Newmark's method, each at its cheapest
-setting of equal accuracy.
+For the paper's two cases, the second also at a small error: the wall time of the shipped lifetime
+study to a depth of one initial gap, by the command a user types, on two worker processes; the error
+of its lives, on rows computed again at the tightest settings, and how many of them are off by more
+than the stated errors; and the core-milliseconds of a row compared with the paper's method, gaps
+that grow in increments with settled work-rates at each, by the exact propagator and by Newmark's
+method, each at its cheapest setting of equal accuracy.
 """
 
 import re
