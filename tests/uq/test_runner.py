@@ -49,6 +49,13 @@ def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_stu
     assert dispatch.ChunkSizes(workload_of(load_study(write_study()))).good(seconds) == rows
 
 
+@pytest.mark.parametrize(("block", "rows"), [(1, 1), (1024, 16)])
+def test_the_first_chunk_of_rows_computed_one_by_one_is_one_row(write_study, block, rows):
+    workload = workload_of(load_study(write_study()))
+    workload = workload._replace(model=replace(workload.model, block=block))
+    assert dispatch.ChunkSizes(workload).first == rows
+
+
 @pytest.mark.parametrize("row_seconds", [2e-3, 0.5])
 @pytest.mark.parametrize("threads", [100, 1000])
 def test_many_workers_get_chunks_that_the_scheduler_can_follow(write_study, threads, row_seconds):

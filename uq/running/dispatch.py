@@ -54,7 +54,8 @@ class ChunkSizes(NamedTuple):
     @property
     def first(self) -> int:
         """Rows of the first chunk, before the cost of a row is known."""
-        return self.whole_groups(self.options.chunk_rows or _FIRST_ROWS)
+        few = min(_FIRST_ROWS, self.workload.model.block)  # a row alone may take minutes
+        return self.whole_groups(self.options.chunk_rows or few)
 
     def following(self, size: int, row_seconds: float) -> int:
         """Return the rows of the chunk after one of `size` rows, while chunks grow."""
