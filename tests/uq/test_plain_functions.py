@@ -204,7 +204,7 @@ def test_a_function_that_remembers_its_rows_is_noticed(uq, write):
 
 def test_an_own_model_that_is_not_named_is_asked_for(uq, write):
     write(WEAR)
-    assert "a model of your own is named by --model FILE" in uq("check", "own.toml").err
+    assert "a model of your own is named by its file" in uq("check", "own.toml").err
 
 
 def test_a_compiled_function_returns_a_tuple(uq, write):

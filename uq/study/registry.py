@@ -111,7 +111,7 @@ def _point(reference: str) -> EntryPoint:
         names = ", ".join(sorted(installed)) or "none"
         raise InputError(
             f"no such model '{reference}'{nearest(reference, installed)} (installed: {names};"
-            " a model of your own is named by --model FILE)"
+            " a model of your own is named by its file, for a study with --model FILE)"
         )
     return installed[reference]
 
