@@ -137,7 +137,7 @@ def _grid(low: float, high: float, quantiles: Quantiles | None) -> Grid:
     if quantiles is None:
         return Grid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
     first, last = _scores(low, high)
-    scores = np.linspace(first, last, _NODES // 2 + 1)[1:-1]
+    scores = np.linspace(first, last, _NODES + 1)[1:-1]
     return _joined([np.linspace(low, high, _NODES + 1), special.ndtr(scores)], quantiles)
 
 
@@ -147,10 +147,21 @@ def _scores(low: float, high: float) -> Floats:
 
 
 def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> Grid:
-    """Return the grid whose values lie in the middle between some probabilities."""
+    """Return the grid whose values lie between some probabilities."""
     edges = np.unique(np.concatenate(parts))
-    middle = (edges[1:] + edges[:-1]) / 2
-    return Grid(edges, quantiles(middle), np.log(np.diff(edges)))
+    return Grid(edges, quantiles(_centres(edges)), np.log(np.diff(edges)))
+
+
+def _centres(edges: Floats) -> Floats:
+    """Return the probabilities of the mean normal score between some probabilities."""
+    scores = special.ndtri(edges)
+    width, middle = np.diff(scores), (scores[1:] + scores[:-1]) / 2
+    with np.errstate(invalid="ignore"):
+        narrow = middle * (1 - width**2 / 12)
+    density = np.exp(-(scores**2) / 2) / np.sqrt(2 * np.pi)
+    return np.asarray(
+        special.ndtr(np.where(width < 0.1, narrow, -np.diff(density) / np.diff(edges)))
+    )
 
 
 def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
