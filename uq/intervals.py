@@ -36,6 +36,15 @@ def is_constant(values: Floats) -> bool:
     return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
 
 
+def sized(values: Floats) -> tuple[Floats, float]:
+    """Return values divided by a power of two near the largest, and this power.
+
+    Then neither squares nor fourth powers leave the range of numbers, and no digit is lost.
+    """
+    size = 2.0 ** int(np.clip(np.frexp(np.abs(values).max())[1], -1000, 1000))
+    return values / size, size
+
+
 def scatter_interval(value: float, estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
     """Return ``value`` +- t s / sqrt(R) from independent estimates of the same number.
 
@@ -54,7 +63,8 @@ def scatter_interval(value: float, estimates: Floats, confidence: float = CONFID
     count = len(estimates)
     if count < 2 or is_constant(estimates):
         return UNKNOWN
-    error = estimates.std(ddof=1) / count**0.5
+    estimates, size = sized(estimates)
+    error = size * (estimates.std(ddof=1) / count**0.5)
     half = student(upper_probability(confidence), count - 1) * error
     return float(value - half), float(value + half)
 

@@ -16,6 +16,7 @@ from uq.intervals import (
     is_constant,
     mean_interval,
     scatter_interval,
+    sized,
     upper_probability,
 )
 from uq.quantile_functions import normal
@@ -154,6 +155,7 @@ def sd_interval(
     n = len(values)
     if n < _FEWEST or is_constant(values):
         return UNKNOWN
+    values, size = sized(values)
     squares = (values - values.mean()) ** 2
     variance = standard_deviation(values, replicate) ** 2
     if replicate is None:
@@ -163,13 +165,12 @@ def sd_interval(
         logarithm = float(np.log(variance))
         if isinstance(replicate, Clusters):  # a few rows each: their logarithms scatter too much
             low, high = np.exp(scatter_interval(logarithm, found / variance, confidence))
-            return float(np.sqrt(low)), float(
-                np.sqrt(high + found.max() / max(len(found), replicate.samples))
-            )
+            farthest = found.max() / max(len(found), replicate.samples)
+            return size * float(np.sqrt(low)), size * float(np.sqrt(high + farthest))
         if not (found > 0).all():
             return UNKNOWN
         low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
-    return float(np.sqrt(low)), float(np.sqrt(high + squares.max() / n))
+    return size * float(np.sqrt(low)), size * float(np.sqrt(high + squares.max() / n))
 
 
 def _bonett(values: Floats, squares: Floats, confidence: float) -> Floats:
@@ -205,7 +206,10 @@ def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
         variance for independent rows, much less for designs that spread evenly, where it is
         estimated from the means of the replicates.
     """
+    if len(values) < 2:
+        return np.nan
+    values, size = sized(values)
     means = values[:1] if replicate is None else by_replicate(values, replicate)
     if len(means) > 1:
-        return float(np.sqrt(values.var() + np.var(means, ddof=1) / len(means)))
-    return float(values.std(ddof=1)) if len(values) > 1 else np.nan
+        return size * float(np.sqrt(values.var() + np.var(means, ddof=1) / len(means)))
+    return size * float(values.std(ddof=1))

@@ -112,7 +112,10 @@ def test_a_contribution_has_size_and_direction(lifetime):
 def test_an_assumed_law_that_matters_is_measured_first(lifetime):
     ds, found = lifetime
     assert [one.rule for one in found.advice] == ["measure", "tighten"]
-    assert found.advice[0].text == ("Measure rate first: it matters most, and its law is assumed.")
+    assert found.advice[0].text == (
+        "Measure rate first: it matters most to how many end within 10 days, and its law is"
+        " assumed."
+    )
     known = ds.copy()
     known["rate"].attrs["source"] = "measured"
     assert [one.rule for one in answer(known).advice] == ["tighten", "nothing"]

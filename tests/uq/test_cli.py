@@ -16,8 +16,9 @@ def test_help_lists_every_verb(uq):
     ended = uq("--help")
     assert ended.code == 0
     verbs = (
-        "models simulate init check schema plan run status extend rerun verify row summary "
-        "sensitivity levels fleet convergence compare what-if twin trace rare-event plot report"
+        "models simulate init check schema serve plan run status extend rerun verify row summary "
+        "sensitivity levels fleet convergence compare what-if update next-inspection twin trace "
+        "rare-event plot report"
     ).split()
     listed = ended.out.partition("Commands:\n")[2]
     assert [line.split()[0] for line in listed.splitlines() if line.strip()] == verbs

@@ -167,3 +167,12 @@ def test_one_row_or_equal_rows_have_no_scatter_and_no_reason():
     one, constant = moments(np.array([1.0])), moments(np.ones(80))
     assert {found.reason for found in (one.mean, one.sd, constant.mean, constant.sd)} == {""}
     assert constant.sd.value == 0
+
+
+@pytest.mark.parametrize("size", [1e-200, 1e-160, 1e150, 1e200])
+def test_the_size_of_values_changes_no_digit_of_their_scatter(size):
+    values = np.random.default_rng(7).normal(size=200)
+    small, usual = moments(values * size), moments(values)
+    for name in ("mean", "sd"):
+        found, known = (getattr(one, name).numbers for one in (small, usual))
+        assert np.array(found) / size == pytest.approx(np.array(known), rel=1e-9)

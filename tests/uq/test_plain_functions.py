@@ -114,6 +114,11 @@ def test_a_seed_is_that_of_the_row(uq, write):
     assert noise.attrs["random"] == 1
 
 
+BOUNDED = (
+    "from typing import Annotated\nimport uq\n"
+    "@uq.machine\ndef wear(load: Annotated[float, %s] = 1.0): ...\n"
+)
+
 MISTAKES = {
     "x = 1\n": "has no model and no function under @uq.machine",
     "def wear(load=1.0): return {}\n": "has no model and no function under @uq.machine",
@@ -128,6 +133,26 @@ MISTAKES = {
     "import uq\n@uq.machine(returns={'y': 3})\ndef wear(load=1.0): ...\n": "must be a unit or",
     "import uq\n@uq.machine(returns={})\ndef wear(load=1.0): ...\n": "name at least one output",
     "import uq\nuq.machine(\n": "SyntaxError",
+    "import uq\n@uq.machine\ndef wear(load=1.0, /): ...\n": "only named floats can be parameters",
+    "import uq\nwear = uq.machine(lambda load=1.0: {})\n": "is not a function with a name",
+    "import uq\n@uq.machine\nclass Wear: ...\n": "is not a function with a name",
+    "import uq\n@uq.machine\ndef wear(load=float('nan')): ...\n": "nominal value nan of 'load'",
+    "import uq\n@uq.machine\ndef wear(load=float('inf')): ...\n": "nominal value inf of 'load'",
+    BOUNDED % "(2.0, 3.0)": "nominal value 1 of 'load' must be a finite number between 2 and 3",
+    BOUNDED % "(3.0, 0.0)": "bounds of 'load' must be a lower and a higher number, not (3, 0)",
+    "import uq\n@uq.machine\ndef wear(load: 'no such' = 1.0): ...\n": "annotations: ",
+    "import uq\n@uq.machine\ndef wear(load=1.0): return {}\n": "returned an empty dict",
+    "import uq\n@uq.machine\ndef wear(load=1.0): return {'load': load}\n": (
+        "output 'load': 'load' is the name of a parameter; choose another"
+    ),
+    "import uq\n@uq.machine\ndef wear(load=1.0): return {'status': load}\n": (
+        "'status' is the name of a result's own variables"
+    ),
+    "import uq\n@uq.machine\ndef wear(load=1.0): return {'y': [load], 'y_index': 0.0}\n": (
+        "'y_index' is the name of output 'y' or of a part of it"
+    ),
+    "from . import other\n": "ImportError: attempted relative import",
+    "import sys, uq\n@uq.machine\ndef wear(load=1.0): sys.exit(3)\n": "raised SystemExit: 3",
 }
 
 
@@ -148,6 +173,38 @@ def test_a_file_that_is_not_there_or_has_the_name_of_another_module_is_one_line(
 def test_a_study_names_no_code(uq, write):
     file = write(WEAR, STUDY.replace('"wear"', '"own_machine.py"'))
     assert file and "must consist of letters" in uq("check", "own.toml").err
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_row_that_leaves_the_program_or_its_folder_costs_that_row_only(uq, write, workers):
+    file = write(
+        "import os, sys, uq\n@uq.machine\ndef wear(load: float = 1.0):\n"
+        "    here = float(os.getcwd() != '/')\n    os.chdir('/')\n"
+        "    if load > 1.9:\n        sys.exit('too heavy')\n    return {'y': here}\n"
+    )
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet", "--workers", workers)
+    ds = package.open_result("own.nc")
+    heavy = ds["load"].values > 1.9
+    assert (ds["status"].values == np.where(heavy, Status.RAISED, Status.OK)).all() and heavy.any()
+    assert ds["status"].attrs["example_raised"].endswith("SystemExit: too heavy")
+    assert (ds["y"].values[~heavy] == 1).all()
+
+
+def test_a_function_that_remembers_its_rows_is_noticed(uq, write):
+    file = write(
+        "import uq\nrows = []\n@uq.machine\ndef wear(load: float = 1.0):\n"
+        "    rows.append(load)\n    return {'y': load + len(rows)}\n"
+    )
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet", "--samples", 40)
+    ended = uq("verify", "own.nc", "--model", file)
+    assert ended.code == 1 and "does not return the same" in ended.out
+    reason = uq("row", "own.nc", 30, "--model", file).out
+    assert "the model does not return the same" in " ".join(reason.split())
+
+
+def test_an_own_model_that_is_not_named_is_asked_for(uq, write):
+    write(WEAR)
+    assert "a model of your own is named by its file" in uq("check", "own.toml").err
 
 
 def test_a_compiled_function_returns_a_tuple(uq, write):

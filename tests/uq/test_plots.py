@@ -226,7 +226,8 @@ def test_total_indices_converge_in_a_figure():
     figure = plots.index_convergence(ds, "y")
     (axes,) = figure.axes
     assert len(axes.lines) == 4 and "Independent input ($x_{4}$)" in words(figure)
-    assert axes.lines[0].get_xdata().tolist() == [16, 32, 64]
+    for line in axes.lines:  # side by side, near their number of samples
+        assert np.log2(line.get_xdata()) == pytest.approx([4, 5, 6], abs=0.1)
     assert axes.lines[0].get_ydata()[-1] == pytest.approx(16 / 30, abs=0.01)
     assert axes.get_xlabel() == "Samples of each of 4 replicates"
 

@@ -146,6 +146,8 @@ def test_progress_is_a_sentence():
         "100 of 400 rows, 50 rows/s, 0:06 left, 3 failed"
     )
     assert progress.sentence(Progress(1, 3601, 0), 1.0).endswith("1:00:00 left, 0 failed")
+    under_way = Progress(3, 40, 0, under_way=2)
+    assert progress.sentence(under_way, 0.0) == "3 of 40 rows, 2 under way, 0 failed"
 
 
 def test_the_time_that_a_model_compiles_is_not_taken_for_that_of_its_rows():

@@ -11,12 +11,15 @@ import xarray as xr
 from computed import computed, linear, study_of
 from in_memory import compute
 
+import uq
 from uq import store
 from uq.analysis.as_json import summary_json
 from uq.analysis.summary import summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.exploring.simulation import simulate
+from uq.report.dossier.chapters import dossier
+from uq.report.page import page
 from uq.rows import results
 from uq.rows.elements import elements_of
 from uq.running import runner
@@ -249,3 +252,22 @@ def test_a_result_is_titled_by_what_its_study_says_it_is(described):
         "uncertain": {"x1": {"distribution": "uniform", "lower": 0.0, "upper": 1.0}},
     }
     assert computed(study_of(tables)).attrs["title"] == described.get("description", "plain")
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        uq.summary,
+        uq.answer,
+        uq.sensitivity,
+        lambda ds: uq.row(ds, 0),
+        lambda ds: uq.trace(ds, "outputs/y/mean"),
+        lambda ds: page(ds, "none.nc"),
+        lambda ds: dossier(ds, "none.nc"),
+    ],
+)
+def test_a_result_of_which_no_row_was_kept_is_refused_in_one_line(ask):
+    ds = linear("monte-carlo", samples=8).isel(sample=slice(0))
+    with pytest.raises(InputError) as refused:
+        ask(ds)
+    assert str(refused.value) == "this result has no rows"

@@ -49,6 +49,13 @@ def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_stu
     assert dispatch.ChunkSizes(workload_of(load_study(write_study()))).good(seconds) == rows
 
 
+@pytest.mark.parametrize(("block", "rows"), [(1, 1), (1024, 16)])
+def test_the_first_chunk_of_rows_computed_one_by_one_is_one_row(write_study, block, rows):
+    workload = workload_of(load_study(write_study()))
+    workload = workload._replace(model=replace(workload.model, block=block))
+    assert dispatch.ChunkSizes(workload).first == rows
+
+
 @pytest.mark.parametrize("row_seconds", [2e-3, 0.5])
 @pytest.mark.parametrize("threads", [100, 1000])
 def test_many_workers_get_chunks_that_the_scheduler_can_follow(write_study, threads, row_seconds):
@@ -74,6 +81,9 @@ class OneGivenUp(list):
         model, given = self.workload.model, self.workload.settings
         seconds = 0.0 if start + len(some.x) == self.workload.total else 3.0
         self.append((start, some, evaluate(model, given, some.x, some.seed, start), seconds))
+
+    def begun(self, threads):
+        return sum(len(some.x) for _, some, *_ in self[:threads])
 
     def returned(self):
         back = self[:]
@@ -105,6 +115,19 @@ def test_a_few_rows_at_the_end_are_no_chunk_of_their_own(write_study, monkeypatc
     dispatcher.finish_on(SimpleNamespace(dashboard="", threads=2, own=0))
     assert dispatcher.left == 0
     assert min(sizes) >= 100 // 8
+
+
+def test_progress_says_how_many_rows_are_under_way_before_the_first_returns(
+    write_study, monkeypatch
+):
+    monkeypatch.setattr(dispatch, "SentChunks", OneGivenUp)
+    workload = workload_of(load_study(write_study(samples=40)))
+    seen = []
+    options = RunOptions(chunk_rows=10, progress=seen.append)
+    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher.finish_on(SimpleNamespace(dashboard="", threads=2, own=0))
+    assert (seen[0].done, seen[0].under_way) == (0, 20)
+    assert (seen[-1].done, seen[-1].under_way) == (40, 0)
 
 
 @settings(

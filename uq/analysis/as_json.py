@@ -6,8 +6,6 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from uq import json_form
-from uq.analysis.comparison import Comparison, Side
-from uq.analysis.differences import Compared, ComparedOutput
 from uq.analysis.input_changes import OnlyChange, Spread
 from uq.analysis.life_fit import Fit
 from uq.analysis.statistics.statistic import Reader, Statistic
@@ -16,7 +14,9 @@ from uq.analysis.summary import REGIME, Described, Shares, Summary, share_json
 from uq.population.smoothing import Smoothed
 
 if TYPE_CHECKING:
+    from uq.analysis.comparison import Comparison, Side
     from uq.analysis.converging import Converging
+    from uq.analysis.differences import Compared, ComparedOutput
     from uq.analysis.level_shares import ByLevel, LevelShares
     from uq.analysis.twin import Sharpened, TwoFidelities
 
@@ -100,7 +100,7 @@ def put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> No
     found |= entry
 
 
-def comparison_json(comparison: Comparison) -> dict[str, Any]:
+def comparison_json(comparison: "Comparison") -> dict[str, Any]:
     """Return a comparison in plain data.
 
     Returns
@@ -135,7 +135,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _about(one: Side) -> dict[str, Any]:
+def _about(one: "Side") -> dict[str, Any]:
     facts = {name: getattr(one.summary, name) for name in ("samples", "rows_used", "status")}
     return {"title": one.title} | facts
 
@@ -147,7 +147,7 @@ def _only(one: OnlyChange) -> dict[str, Any]:
     return {"name": one.name, "units": one.units} | found
 
 
-def _output(one: ComparedOutput) -> dict[str, Any]:
+def _output(one: "ComparedOutput") -> dict[str, Any]:
     found: dict[str, Any] = {"units": one.units}
     for name, pairs in one.parts.items():
         if EMPTY.get(name) == {}:
@@ -158,7 +158,7 @@ def _output(one: ComparedOutput) -> dict[str, Any]:
     return found
 
 
-def _compared(one: Compared) -> dict[str, Any]:
+def _compared(one: "Compared") -> dict[str, Any]:
     same = {"identical": True} if one.identical else {}
     found = {"a": one.first.kind.entry(one.first), "b": one.second.kind.entry(one.second)}
     found["difference"] = json_form.numbers(one.difference) | same

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from uq.cli.verbs import results, studies
+from uq.cli.verbs import learning, results, studies
 
 VERBS = (
     studies.models,
@@ -27,8 +27,8 @@ VERBS = (
     results.convergence,
     results.compare,
     results.what_if,
-    results.update,
-    results.next_inspection,
+    learning.update,
+    learning.next_inspection,
     results.twin,
     results.trace,
     studies.rare_event,

@@ -106,6 +106,8 @@ def _moving() -> Iterator[Report]:
 def sentence(progress: Progress, pace: float) -> str:
     """Return the progress of a run at a pace in rows per second; 0 if that is unknown."""
     text = f"{progress.done} of {progress.total} rows, "
+    if progress.under_way:
+        text += f"{progress.under_way} under way, "
     if pace:
         left = (progress.total - progress.done) / pace
         text += f"{pace:.3g} rows/s, {_clock(left)} left, "

@@ -53,6 +53,11 @@ def verify(path: Path, model: str | None) -> int:
         rows, differences = verification.recompute(path, model)
     for line in differences:
         console.print(f"recomputed, differs in {line}")
+    if differences and holds and not others:
+        console.print(
+            "File and code are the same: this model does not return the same for the same row. It"
+            " keeps something between rows, or draws random numbers that its seed does not decide."
+        )
     equal = len(rows) - len(differences)
     console.print(f"rows      {equal} of {len(rows)} recomputed are equal to the bit")
     return 1 if differences or holds is False else 0

@@ -1,5 +1,6 @@
 """The output of ``uq what-if``."""
 
+from math import isfinite
 from pathlib import Path
 
 from uq.analysis.what_if import answer, read_changes, what_if_json
@@ -18,5 +19,6 @@ def what_if(result: Path, changes: list[str], json: bool) -> None:
     show_summary(ds, found.summary)
     note(
         f"What if: {'; '.join(changes)}. The same rows, weighted: worth"
-        f" {found.effective_rows:.0f} of them, Pareto k = {found.pareto_k:.2f}."
+        f" {found.effective_rows:.0f} independent ones"
+        + (f"; Pareto k = {found.pareto_k:.2f}." if isfinite(found.pareto_k) else ".")
     )

@@ -43,13 +43,9 @@ def advise(
         *_add_rows(findings, answered),
     ]
     if answered and not any(one.rule != "tighten" for one in found):
-        found += [
-            Advice(
-                "nothing",
-                "Nothing: what the study asks is settled, and no law that matters is"
-                " an assumption.",
-            )
-        ]
+        nothing = "Nothing else" if found else "Nothing"
+        settled = "what the study asks is settled, and no law that matters is an assumption"
+        found.append(Advice("nothing", f"{nothing}: {settled}."))
     yield from found
 
 
@@ -65,18 +61,18 @@ def _mend(findings: Findings) -> Iterator[Advice]:
         )
 
 
-def leading(answered: Sequence[Quantity]) -> Contribution | None:
-    """Return what contributes most to what the study is about."""
+def leading(answered: Sequence[Quantity]) -> tuple[Contribution | None, str]:
+    """Return what contributes most to what the study is about, and the event that it decides."""
     for quantity in answered[:1]:
-        of_events = (event.ranking for event in quantity.events)
-        for ranking in (*of_events, quantity.ranking):
+        of_events = ((event.ranking, event.said) for event in quantity.events)
+        for ranking, said in (*of_events, (quantity.ranking, "")):
             if ranking is not None and ranking.leads:
-                return ranking.leader
-    return None
+                return ranking.leader, said
+    return None, ""
 
 
 def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    leader = leading(answered)
+    leader, said = leading(answered)
     if leader is None:
         return
     ds = findings.ds
@@ -84,16 +80,17 @@ def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
     if assumed:
         one = len(assumed) == 1
         words = called_together(assumed)
+        to_what = f" to how many {said}" if said else ""
         yield Advice(
             "measure",
-            f"Measure {words} first: {'it matters' if one else 'they matter'} most, and"
+            f"Measure {words} first: {'it matters' if one else 'they matter'} most{to_what}, and"
             f" {'its law is' if one else 'their laws are'} assumed.",
             assumed,
         )
 
 
 def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    leader = leading(answered)
+    leader, _ = leading(answered)
     if leader is None:
         return
     found = list(tightened(findings.ds, answered[0], leader.inputs))
@@ -106,7 +103,7 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
 
 
 def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    leader = leading(answered)
+    leader, _ = leading(answered)
     changes = None if leader is None else changes_of(findings.ds, answered[0], leader.inputs)
     if leader is None or not changes:
         return

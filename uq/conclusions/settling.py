@@ -85,5 +85,6 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
         # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
             text, best = promise.unit.text(reached), promise.unit.text(estimate.value)
-            what = f"{text} is promised where {best} is likely ({quantity.words})"
+            bound_is = f"the cautious bound, {text}, is far from the estimate, {best}"
+            what = f"{bound_is} ({quantity.words})"
             yield Unsettled(what, (away / (BOUND * scale)) ** 2)

@@ -1,5 +1,7 @@
 """Figures of convergence: estimates from ever more of the first rows."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -18,6 +20,8 @@ from uq.methods.indices import ST
 from uq.rows.elements import Floats, independent_rows, named_elements
 
 _MOST_INPUTS = 6
+_MARKS = "os^vDP"
+_APART = 0.06  # between the intervals of two inputs, over the distance of twice the samples
 
 
 @styled
@@ -109,17 +113,22 @@ def index_convergence(
     last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
     leading = last["input"].tolist()[:_MOST_INPUTS]
     (panel,) = column(axes, 2.1)
+    ends = []
     for i, name in enumerate(leading):
-        words = labelled(ds[name], width=60)
+        samples, value, low, high = _numbers(own[own["input"] == name])
+        samples = samples * 2 ** (_APART * (i - (len(leading) - 1) / 2))
         colour, line = SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
-        _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
+        style: Any = {"color": colour, "ls": line, "marker": _MARKS[i], "ms": 3}
+        panel.plot(samples, value, label=labelled(ds[name], width=60), **style)
+        known = np.isfinite(low)
+        panel.vlines(samples[known], low[known], high[known], color=colour, lw=0.8)
+        ends.append((samples, low, high))
     panel.set_ylabel("Total index (ST)")
     panel.set_ylim(range_of_indices(panel.get_ylim()))
-    known = _over_samples(panel, ds)
-    for name in leading:
-        samples, _, low, high = _numbers(own[own["input"] == name])
-        arrows(panel, samples, low, high, "y", color=INK)
-    title(panel, as_label(subject(ds, output), width=50), known)
+    said = _over_samples(panel, ds)
+    for one in ends:
+        arrows(panel, *one, "y", color=INK)
+    title(panel, as_label(subject(ds, output), width=50), said)
     return finish(panel)
 
 
@@ -134,7 +143,8 @@ def _curve(
     samples, *numbers = _numbers(lines)
     value, low, high = (one / per for one in numbers)
     axes.plot(samples, value, color=colour, ls=style, marker=".", label=words)
-    axes.fill_between(samples, low, high, color=colour, alpha=0.3, lw=0)
+    if np.isfinite(low).any():
+        axes.fill_between(samples, low, high, color=colour, alpha=0.3, lw=0)
 
 
 def _numbers(lines: pd.DataFrame) -> list[Floats]:

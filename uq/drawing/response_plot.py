@@ -180,11 +180,12 @@ def _first_dimension(ds: xr.Dataset, output: str) -> str:
 
 def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
     """Describe an attractor: its categories, the chosen outputs and its share of the grid."""
-    known = [
-        str(value.item())
-        for name, value in one.data_vars.items()
-        if str(name).startswith("representative_") and value.dtype.kind in "UO" and not value.ndim
-    ]
+    known = []
+    for name, value in one.data_vars.items():
+        output = str(name).removeprefix("representative_")
+        if output != name and value.dtype.kind in "UO" and not value.ndim:
+            text = str(value.item())
+            known.append(f"{output.replace('_', ' ')} {text}" if text.isdecimal() else text)
     for name in outputs:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])

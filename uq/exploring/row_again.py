@@ -194,4 +194,7 @@ def _reason(change: str, versions: Mapping[str, tuple[str, str]], source: str) -
         return "other code of the model computed it"
     if versions:
         return f"it was computed with another {', '.join(versions)}"
-    return f"{source} may have been changed: 'uq verify' checks it"
+    return (
+        f"either {source} has been changed, which 'uq verify' checks, or the model does not return"
+        " the same for the same row"
+    )

@@ -21,6 +21,7 @@ from uq.methods.sample import Sample
 from uq.rows.elements import analysis_of, independent_rows, why_no_statistics
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, one_of_each_sample
+from uq.rows.results import refuse_empty
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 
@@ -130,6 +131,7 @@ def sensitivities(
     InputError
         When the design cannot feed the method, or there is no such output.
     """
+    refuse_empty(ds)
     refuse_weights(ds, "sensitivity indices")
     if regime is not None:
         ds = within_regime(ds, regime)

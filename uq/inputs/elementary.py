@@ -10,7 +10,7 @@ from math import pi, sqrt
 from typing import Any
 
 import numpy as np
-from scipy import special
+import scipy  # which imports scipy.special when it is first used
 
 _LOG_ROOT_2_PI = np.log(np.sqrt(2 * pi))
 
@@ -49,16 +49,16 @@ class Elementary(ABC):
 
 class _OfNormal(Elementary):
     def cdf(self, x: Any) -> Any:
-        return special.ndtr(self.score(x))
+        return scipy.special.ndtr(self.score(x))
 
     def sf(self, x: Any) -> Any:
-        return special.ndtr(-self.score(x))
+        return scipy.special.ndtr(-self.score(x))
 
     def ppf(self, p: Any) -> Any:
-        return self.value(special.ndtri(p))
+        return self.value(scipy.special.ndtri(p))
 
     def isf(self, q: Any) -> Any:
-        return self.value(-special.ndtri(q))
+        return self.value(-scipy.special.ndtri(q))
 
 
 class _OfUniform(Elementary):

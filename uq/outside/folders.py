@@ -62,7 +62,8 @@ class Folders:
             shutil.rmtree(folder, ignore_errors=True)
 
     def leave(self) -> None:
-        """Remove the folder of the folders, if it holds none."""
+        """Remove folders that killed processes left, and that of all folders if it holds none."""
+        self._tidy()
         with suppress(OSError):
             self.root.rmdir()
 

@@ -62,6 +62,11 @@ def machine(
     callable
         The function itself.
 
+    Raises
+    ------
+    InputError
+        When it is not a function.
+
     Examples
     --------
     >>> @uq.machine
@@ -70,6 +75,11 @@ def machine(
     """
 
     def mark(function: F) -> F:
+        plain = _plain(function)
+        if not inspect.isfunction(plain) or plain.__name__ == "<lambda>":
+            raise InputError(
+                f"@uq.machine: {function!r} is not a function with a name; write one with 'def'"
+            )
         setattr(function, _MARK, Declared(returns, title, version))
         return function
 
@@ -96,7 +106,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
         When its arguments or declarations cannot be used.
     """
     declared: Declared = getattr(function, _MARK)
-    plain = inspect.unwrap(getattr(function, "py_func", function))
+    plain = _plain(function)
     name = plain.__name__
     label = f"machine '{name}'"
     fields, wants_seed = _parameters(plain, label)
@@ -106,12 +116,17 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     return model_from(name, title, declared.version, fields, outputs, batch, wants_seed)
 
 
+def _plain(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function as it was written, without what wraps or compiles it."""
+    return inspect.unwrap(getattr(function, "py_func", function))
+
+
 def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]:
     """Return its parameters with their nominal values, and whether it wants the seed."""
     faults, fields = [], dict[str, tuple[Parameter, float]]()
     try:
         hints = get_type_hints(function, include_extras=True)
-    except NameError as error:
+    except (NameError, TypeError, SyntaxError, AttributeError) as error:
         raise InputError(f"{label}: annotations: {error}") from None
     signature = inspect.signature(function)
     for name, argument in signature.parameters.items():

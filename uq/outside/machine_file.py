@@ -63,7 +63,7 @@ class OutputTable(_Table):
     unit: str = "1"
     meaning: str = ""
     life: bool = False
-    shape: list[int] = []
+    shape: list[Annotated[int, Field(ge=1)]] = []
     may_be_undefined: bool = False
     file: Annotated[str, Field(description="file that the program writes")] = STDOUT
     json_path: Annotated[str, Field(alias="json", description="keys and numbers: a.b.0")] = ""
@@ -146,15 +146,61 @@ def _known(path: Sequence[Any]) -> list[str]:
     return [field.alias or name for name, field in table.model_fields.items()]
 
 
+def template_of(machine: MachineTable, folder: Path) -> str:
+    """Return the text of a template, its line ends as they are; "" without one.
+
+    Raises
+    ------
+    OSError, UnicodeDecodeError
+    """
+    if not machine.template:
+        return ""
+    return (folder / machine.template).read_bytes().decode()
+
+
+def code_files(machine: MachineTable, folder: Path) -> list[Path]:
+    """Return the files whose content is part of a machine, but for its file and its program.
+
+    They are its template, the files that it names, and those among the arguments.
+    """
+    named = [folder / name for name in (machine.template, *machine.files) if name]
+    for argument in machine.command[1:]:
+        path = folder / (argument.partition(f"{{{FOLDER}}}/")[2] or argument)
+        named += [path] * path.is_file()
+    return named
+
+
 def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
     machine = found.machine
-    texts = list(machine.command)
-    if machine.template:
-        template = folder / machine.template
-        if not template.is_file():
-            yield Fault(("machine", "template"), "no such file", machine.template)
-            return
-        texts.append(template.read_text(encoding="utf-8", errors="replace"))
+    try:
+        texts = [*machine.command, template_of(machine, folder)]
+    except UnicodeDecodeError:
+        problem = "is not a text in UTF-8; let the program read it from {machine_folder}"
+        yield Fault(("machine", "template"), problem, machine.template)
+        return
+    except OSError:
+        yield Fault(("machine", "template"), "no such file", machine.template)
+        return
+    for argument in machine.command[1:]:
+        if (folder / argument).is_file() and not Path(argument).is_absolute():
+            problem = (
+                f"'{argument}' is beside this file, but the program runs in the folder of its row;"
+                f" write {{{FOLDER}}}/{argument}"
+            )
+            yield Fault(("machine", "command"), problem)
+    for name in machine.environment:
+        if not name or "=" in name:
+            yield Fault(("machine", "environment", name), "must be a name without '='")
+    if not _is_name(machine.input):
+        yield Fault(("machine", "input"), _IN_ROW, machine.input)
+    for name, output in found.outputs.items():
+        if not _is_within(output.file):
+            yield Fault(("outputs", name, "file"), _IN_ROW, output.file)
+    try:
+        nominal = {name: one.nominal for name, one in found.parameters.items()}
+        filled(" ".join(texts), {**nominal, SEED: 0, FOLDER: ""})
+    except ValueError as error:
+        yield Fault(("machine", "command"), f"a place in it or in the template: {error}")
     for name in found.parameters:
         if name in (SEED, FOLDER):
             yield Fault(("parameters", name), "is the name of another place; choose another")
@@ -171,6 +217,18 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
     for code in machine.exit_codes:
         if not re.fullmatch(r"\d{1,3}", code):
             yield Fault(("machine", "exit_codes", code), "must be a number between 1 and 255")
+
+
+_IN_ROW = "must be the name of a file in the folder of the row"
+
+
+def _is_name(file: str) -> bool:
+    return Path(file).name == file and file not in ("", "..")
+
+
+def _is_within(file: str) -> bool:
+    """Whether a file lies in the folder of a row, not in one that other rows share."""
+    return bool(file) and not Path(file).is_absolute() and ".." not in Path(file).parts
 
 
 def filled(text: str, values: Mapping[str, float | int | str]) -> str:

@@ -14,7 +14,14 @@ from typing import Any
 from uq.contract import Model, Parameter
 from uq.outside.descendants import LARGEST, end_descendants
 from uq.outside.folders import Folders
-from uq.outside.machine_file import FOLDER, MachineFile, filled, read_machine
+from uq.outside.machine_file import (
+    FOLDER,
+    MachineFile,
+    code_files,
+    filled,
+    read_machine,
+    template_of,
+)
 from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
 from uq.outside.returned import Returned
 from uq.outside.row_by_row import SEED, RowByRow, model_from
@@ -51,7 +58,7 @@ def program_of(path: Path) -> Model:
         name: (Parameter(name, one.unit, one.meaning or name, one.span, one.source), one.nominal)
         for name, one in read.parameters.items()
     }
-    texts = [*read.machine.command, _template(read, folder)]
+    texts = [*read.machine.command, template_of(read.machine, folder)]
     random = any(f"{{{SEED}" in text for text in texts)
     machine = read.machine
     batch = RowByRow(runner, tuple(fields), returned, True, runner.folders.leave)
@@ -60,11 +67,10 @@ def program_of(path: Path) -> Model:
 
 
 def code_of_program(path: Path) -> str:
-    """Return a hash of a machine file, its template, its program and the files that it names."""
+    """Return a hash of a machine file, its template, its program and the files named in it."""
     read, folder = read_machine(path), path.absolute().parent
     whole = hashlib.sha256(path.read_bytes())
-    names = [name for name in (read.machine.template, *read.machine.files) if name]
-    files = [folder / name for name in names]
+    files = code_files(read.machine, folder)
     if program := _found(read.machine.command[0], folder):
         files.append(Path(program))
     for file in files:
@@ -83,11 +89,6 @@ def _found(program: str, folder: Path) -> str | None:
     return shutil.which(program)
 
 
-def _template(read: MachineFile, folder: Path) -> str:
-    name = read.machine.template
-    return (folder / name).read_text(encoding="utf-8") if name else ""
-
-
 @dataclass(frozen=True)
 class _Program:
     """What runs a row."""
@@ -98,7 +99,7 @@ class _Program:
     template: str = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "template", _template(self.read, self.folder))
+        object.__setattr__(self, "template", template_of(self.read.machine, self.folder))
 
     def __call__(self, **row: float | int) -> Mapping[str, Any]:
         """Run the program on a row; return its outputs.
@@ -128,7 +129,7 @@ class _Program:
         machine = self.read.machine
         places = {**row, FOLDER: str(self.folder)}
         if machine.template:
-            (folder / machine.input).write_text(filled(self.template, places), encoding="utf-8")
+            (folder / machine.input).write_bytes(filled(self.template, places).encode())
         program, *arguments = (filled(part, places) for part in machine.command)
         environment = dict(os.environ) | machine.environment
         path = _found(program, self.folder) or program

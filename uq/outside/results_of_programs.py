@@ -67,7 +67,17 @@ def _number(found: Any) -> Any:
     """Return numbers, which may be written as text: ``"inf"``, as JSON has no infinity."""
     if isinstance(found, list):
         return [_number(one) for one in found]
-    return float(found)
+    return _real(found) if isinstance(found, str) else float(found)
+
+
+def _real(text: str) -> float:
+    """Return a number written as text, also as Fortran does: ``1.5D+03``."""
+    try:
+        return float(text)
+    except ValueError:
+        if re.fullmatch(r"\s*[-+.\d]+[dD][-+]?\d+\s*", text):
+            return float(re.sub("[dD]", "e", text))
+        raise
 
 
 def _in_csv(text: str, column: str) -> float:
@@ -76,14 +86,14 @@ def _in_csv(text: str, column: str) -> float:
         raise ValueError("no row below the first line")
     if column not in rows[0]:
         raise ValueError(f"no column '{column}'")
-    return float(rows[-1][column])
+    return _real(rows[-1][column])
 
 
 def _matched(text: str, pattern: str) -> float:
     found = re.findall(pattern, text, re.MULTILINE)
     if not found:
         raise ValueError("no match of its pattern")
-    return float(found[-1])
+    return _real(found[-1])
 
 
 def _in_netcdf(path: Path, variable: str) -> Any:

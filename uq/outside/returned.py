@@ -130,6 +130,8 @@ def seen_in(row: Any) -> dict[str, Returned]:
     """
     if not isinstance(row, Mapping):
         raise WrongReturnError(f"returned {type(row).__name__}, not a dict")
+    if not row:
+        raise WrongReturnError("returned an empty dict; name at least one output")
     found = {}
     for name, value in row.items():
         if not (isinstance(name, str) and name.isidentifier()):

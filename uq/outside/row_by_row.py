@@ -1,17 +1,24 @@
 """Rows computed one after the other by something that takes numbers and returns a dict."""
 
-from collections.abc import Callable, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
+from uq.errors import InputError
 from uq.outside.returned import Returned, WrongReturnError, checked, dimensions
 
 SEED = "seed"
 """The name by which the seed of a row is wanted."""
+
+_TAKEN = (
+    "sample replicate group block world unit repeat status rerun".split()  # of a result itself
+)
 
 Fields = Mapping[str, tuple[Parameter, float]]
 """Parameters, in order: name -> declaration and nominal value."""
@@ -26,7 +33,15 @@ def model_from(
     batch: "RowByRow",
     random: bool,
 ) -> Model:
-    """Return a model without settings; arguments as those of `uq.contract.Model`."""
+    """Return a model without settings; arguments as those of `uq.contract.Model`.
+
+    Raises
+    ------
+    InputError
+        When a nominal value or a name cannot be used.
+    """
+    if faults := [*_nominal_faults(fields), *_name_faults(fields, returned)]:
+        raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
     hints = [(one, Annotated[float, parameter]) for one, (parameter, _) in fields.items()]
     made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
     made._field_defaults.update({one: nominal for one, (_, nominal) in fields.items()})
@@ -44,6 +59,34 @@ def model_from(
         coordinates=lambda settings: axes,
         random=random,
     )
+
+
+def _nominal_faults(fields: Fields) -> Iterator[str]:
+    for name, (parameter, nominal) in fields.items():
+        low, high = parameter.bounds
+        if not low < high:
+            yield f"bounds of '{name}' must be a lower and a higher number, not ({low:g}, {high:g})"
+        elif not (isfinite(nominal) and low <= nominal <= high):
+            within = (
+                f"between {low:g} and {high:g}" if isfinite(high - low) else "within its bounds"
+            )
+            yield f"nominal value {nominal:g} of '{name}' must be a finite number {within}"
+
+
+def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
+    """Yield what is wrong with names, all of which stand side by side in a result."""
+    taken = dict.fromkeys(_TAKEN, "of a result's own variables") | dict.fromkeys(
+        fields, "of a parameter"
+    )
+    for name in fields:
+        if name in _TAKEN:
+            yield f"parameter '{name}' has the name of one {taken[name]}; choose another"
+    for name, one in returned.items():
+        made = [name, *dimensions(name, one.shape), *([censored_name(name)] if one.life else [])]
+        for new in made:
+            if new in taken:
+                yield f"output '{name}': '{new}' is the name {taken[new]}; choose another"
+            taken[new] = f"of output '{name}' or of a part of it"
 
 
 @dataclass(frozen=True)
@@ -93,7 +136,7 @@ class RowByRow:
                         columns[censored_name(name)][i] = cut
             except WrongReturnError as error:
                 status[i], messages[i] = Status.BAD_SHAPE, str(error)
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 text = " ".join(str(error).split())
                 status[i] = Status.RAISED
                 messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
@@ -101,8 +144,12 @@ class RowByRow:
         return columns, status, messages
 
     def row(self, row: list[float], seed: int) -> Any:
-        """Return what the function returns on a row."""
+        """Return what the function returns on a row; the current folder stays as it was."""
         given: dict[str, Any] = dict(zip(self.names, row, strict=True))
         if self.wants_seed:
             given[SEED] = seed
-        return self.function(**given)
+        here = os.getcwd()
+        try:
+            return self.function(**given)
+        finally:
+            os.chdir(here)

@@ -1,6 +1,7 @@
 """The elements of a result's outputs, and what the result says of its rows."""
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 import xarray as xr
@@ -16,7 +17,7 @@ from uq.intervals import Replicates
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of
-from uq.rows.results import failed
+from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of
 from uq.rows.weights import largest_weight, row_weights
 from uq.study.file import AnalysisTable, StudyFile
@@ -34,14 +35,25 @@ def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
 
 def study_file_of(ds: xr.Dataset) -> StudyFile:
     """Return the study in a result."""
-    return read_study_text(ds.attrs["study"], "study of this result")
+    return _read(ds.attrs["study"])
+
+
+@lru_cache(maxsize=2)
+def _read(study: str) -> StudyFile:
+    return read_study_text(study, "study of this result")
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     """Return the rows for plain statistics: blocks A and B of a crossed design, all rows of others.
 
     The other blocks repeat the values of A and B. No row is returned where `why_no_statistics`.
+
+    Raises
+    ------
+    InputError
+        When the result has no rows at all.
     """
+    refuse_empty(ds)
     labels = [] if why_no_statistics(ds) else flags(ds["block"])
     plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)

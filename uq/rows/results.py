@@ -221,6 +221,17 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
         raise InputError(f"{path}: not a sound result: {fault}")
 
 
+def refuse_empty(ds: xr.Dataset) -> None:
+    """Refuse a result of which no row was kept; 'uq run' writes none such.
+
+    Raises
+    ------
+    InputError
+    """
+    if not ds.sizes["sample"]:
+        raise InputError("this result has no rows")
+
+
 def failed(ds: xr.Dataset) -> Mask:
     """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
     required = (

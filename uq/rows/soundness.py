@@ -30,6 +30,8 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
             yield f"attribute '{number}' is not a positive number"
     if ds.attrs.get("design") not in DESIGNS:
         yield "its design is unknown"
+    if not ds.sizes.get("sample", 0):
+        yield "it has no rows"
     for place in _PLACES:
         if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
             yield f"'{place}' is not one integer per row"

@@ -9,6 +9,7 @@ import xarray as xr
 from uq.contract import Model, censored_name
 from uq.errors import InputError
 from uq.rows.one_row import Row
+from uq.rows.results import refuse_empty
 from uq.rows.variables import outputs_of
 
 
@@ -20,6 +21,7 @@ def place_of(ds: xr.Dataset, number: int) -> int:
     InputError
         When there is no such row.
     """
+    refuse_empty(ds)
     numbers = ds["sample"].values
     found = (numbers == number).nonzero()[0]
     if not len(found):

@@ -54,7 +54,8 @@ class ChunkSizes(NamedTuple):
     @property
     def first(self) -> int:
         """Rows of the first chunk, before the cost of a row is known."""
-        return self.whole_groups(self.options.chunk_rows or _FIRST_ROWS)
+        few = min(_FIRST_ROWS, self.workload.model.block)  # a row alone may take minutes
+        return self.whole_groups(self.options.chunk_rows or few)
 
     def following(self, size: int, row_seconds: float) -> int:
         """Return the rows of the chunk after one of `size` rows, while chunks grow."""
@@ -132,6 +133,7 @@ class Dispatcher:
         self._untaken = self.left = self.rows
         self.row_seconds = 0.0
         self._dashboard = ""
+        self._under_way = 0
 
     def begin_here(self, share: float) -> None:
         """Run the first rows here, in growing chunks, until a chunk takes long enough.
@@ -162,6 +164,9 @@ class Dispatcher:
             # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(sent) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
                 sent.send(*self._take(self._shared(sharing)))
+            before, self._under_way = self._under_way, sent.begun(threads)
+            if self._under_way and not before:
+                self.report_progress()  # the first row may take minutes
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
             for start, some, chunk, seconds in sent.returned():
@@ -205,7 +210,9 @@ class Dispatcher:
         store = self.store
         seen = store.preview.median, store.preview.shares
         counts = store.done, store.total, store.failed, store.found, dict(store.status)
-        self._options.progress(Progress(*counts, *seen, self._dashboard))
+        self._options.progress(
+            Progress(*counts, *seen, self._dashboard, under_way=min(self._under_way, self.left))
+        )
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""

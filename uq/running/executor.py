@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from uq.compilation import compilation
 from uq.contract import Floats
 from uq.interrupts import in_background
+from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
 from uq.running.dispatch import Dispatcher
@@ -82,6 +83,8 @@ class Executor:
 
     def __exit__(self, *exception: object) -> None:
         self._stack.close()
+        if isinstance(self._workload.model.batch, RowByRow):
+            self._workload.model.batch.leave()  # after the processes that were stopped
 
     def finish(self, dispatcher: Dispatcher) -> None:
         """Have all rows of a dispatcher computed."""

@@ -12,21 +12,19 @@ from collections.abc import Iterator
 from contextlib import suppress
 from multiprocessing import Pipe
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from platformdirs import user_cache_path
 
 from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.returned import Returned, as_plain, from_plain, joined
-from uq.rows.sampling import row_block, rows
-from uq.running import probe
 from uq.running.environment import command, inherited
-from uq.study import definition
-from uq.study.definition import Study, study_from_text
 from uq.study.registry import code_of, find_model, located, with_returns
 from uq.study.sources import DISTRIBUTION
+
+if TYPE_CHECKING:
+    from uq.study.definition import Study
 
 SEEN = 64
 """Rows of a design that show what a function returns."""
@@ -36,7 +34,7 @@ _WORTH_KEEPING = 1.0  # seconds that these rows took
 Row = tuple[list[float], int]
 
 
-def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
+def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
     """Read and check a study file.
 
     Parameters
@@ -62,11 +60,15 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     >>> study.design.samples, list(study.uncertain)
     (256, ['x1', 'x2', 'x3'])
     """
+    from uq.study import definition
+
     return _known(definition.load_study(path, model and located(model)))
 
 
-def study_of_text(text: str, source: str, model: str | None) -> Study:
+def study_of_text(text: str, source: str, model: str | None) -> "Study":
     """Check the text of a study of a result; see `load_study`."""
+    from uq.study.definition import study_from_text
+
     return _known(study_from_text(text, source, model and located(model)))
 
 
@@ -80,10 +82,13 @@ def load_model(reference: str) -> Model:
     return find_model(with_returns(reference, _found(reference, [nominal])))
 
 
-def _known(study: Study) -> Study:
+def _known(study: "Study") -> "Study":
     """Return a study whose model has outputs."""
     if study.model.outputs:
         return study
+    from uq.rows.sampling import row_block, rows
+    from uq.study.definition import study_from_text
+
     first = row_block(study, 0, min(SEEN, rows(study)))
     nominal = study.model.nominal | dict(study.fixed)
     tried = [(list(nominal.values()), 0)]
@@ -97,6 +102,8 @@ def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
     key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
+    from platformdirs import user_cache_path
+
     kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
@@ -117,6 +124,8 @@ def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]
     InputError
         When the nominal row fails.
     """
+    from uq.running import probe
+
     todo = iter(enumerate(tried))
     left = len(tried)
     while left:
@@ -132,6 +141,8 @@ def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]
 
 def _in_process(reference: str, todo: Iterator[tuple[int, Row]]) -> Iterator[tuple[int, str, Any]]:
     """Yield the number of each row and what it did, until one kills the process."""
+    from uq.running import probe
+
     connection, there = Pipe()
     with there:
         process = subprocess.Popen(

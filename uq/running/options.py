@@ -27,6 +27,8 @@ class Progress(NamedTuple):
         Address of the dashboard of a dask cluster, or "".
     compiling : bool
         Whether the model is being compiled, and rows wait for it.
+    under_way : int
+        Rows that workers have begun.
     """
 
     done: int
@@ -38,6 +40,7 @@ class Progress(NamedTuple):
     shares: Mapping[str, float] = MappingProxyType({})
     dashboard: str = ""
     compiling: bool = False
+    under_way: int = 0
 
 
 Report = Callable[[Progress], object]

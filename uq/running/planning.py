@@ -150,10 +150,12 @@ def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float,
     """
     sizes = ChunkSizes(workload)
     size, seconds = min(workload.total, sizes.first), 0.0
-    for evaluate in evaluators:
-        _timed(evaluate, workload, 0, size)
+    first, *others = evaluators
+    _timed(first, workload, 0, size)
+    with ThreadPoolExecutor(max(len(others), 1)) as pool:
+        list(pool.map(lambda evaluate: _timed(evaluate, workload, 0, size), others))
     while True:
-        *_, last = _timed(evaluators[0], workload, 0, size)
+        *_, last = _timed(first, workload, 0, size)
         seconds += last
         grown = min(sizes.following(size, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:

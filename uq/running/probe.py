@@ -29,7 +29,7 @@ def main(handle: str) -> None:
             answer: tuple[str, Any] = RETURNED, as_plain(seen_in(batch.row(row, seed)))
         except WrongReturnError as error:
             answer = RAISED, str(error)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             text = " ".join(str(error).split())
             answer = RAISED, f"raised {type(error).__name__}: {text}"
         connection.send(answer)

@@ -5,6 +5,7 @@ or those of a cluster more often than dask's ``allowed-failures``, is halved unt
 found, which is marked as crashed.
 """
 
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from uq.contract import Status
@@ -54,6 +55,10 @@ class SentChunks:
 
     def __len__(self) -> int:
         return len(self._under_way) + len(self._unsent)
+
+    def begun(self, threads: int) -> int:
+        """Return how many rows so many threads have begun; the others wait for their turn."""
+        return sum(len(rows.x) for _, rows, _ in islice(self._under_way.values(), threads))
 
     def send(self, start: int, rows: Rows, tries: int = 1) -> None:
         """Have some rows computed."""

@@ -110,7 +110,8 @@ def _point(reference: str) -> EntryPoint:
     if reference not in installed:
         names = ", ".join(sorted(installed)) or "none"
         raise InputError(
-            f"no such model '{reference}'{nearest(reference, installed)} (installed: {names})"
+            f"no such model '{reference}'{nearest(reference, installed)} (installed: {names};"
+            " a model of your own is named by its file, for a study with --model FILE)"
         )
     return installed[reference]
 
@@ -153,7 +154,8 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         problem = f"{type(error).__name__}: {' '.join(str(error).split())}"
         if isinstance(error, ModuleNotFoundError):
             problem += "; install it, or name its folder in PYTHONPATH"
-        raise InputError(f"{label} cannot be imported from {point.value}: {problem}") from error
+        place = f" from {point.value}" if attribute else ""
+        raise InputError(f"{label} cannot be imported{place}: {problem}") from error
     if module_name.partition(".")[0] not in own_packages():
         fingerprint(module_name)  # now, before anything is edited
     if is_machine(found):

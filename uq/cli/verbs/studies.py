@@ -64,7 +64,7 @@ def init(
         typer.Option(metavar="NAME", help="Write a folder with a machine of your own instead."),
     ] = None,
 ) -> None:
-    """Print a commented study file to edit, or write a machine of your own to start from."""
+    """Print a study file to edit, or write a new machine."""
     if (model is None) == (machine is None):
         raise InputError("uq: give one of MODEL and --machine NAME")
     if machine is not None:
@@ -93,7 +93,7 @@ def serve(
         str, typer.Option(metavar="HOST", help="Who reaches it can have rows computed.")
     ] = "127.0.0.1",
 ) -> None:
-    """Offer a model to other programs, by the protocol of UM-Bridge."""
+    """Offer a model to other programs (UM-Bridge)."""
     from uq.outside.serving import server_of
     from uq.running.loading import load_model
 
@@ -153,7 +153,7 @@ def run(
     mixed: given.Mixed = False,
     quiet: given.Quiet = False,
 ) -> int:
-    """Run a study, or resume it where it stopped; show the summary."""
+    """Run a study, or resume it; show the summary."""
     from uq.cli.run import carried_out, end, loaded
     from uq.running.runner import finished, output_path, run_study
 
