@@ -1,17 +1,19 @@
 """What ``uq update`` shows."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from math import isfinite
 from pathlib import Path
 
 import xarray as xr
 
-from uq.cli import say_when_interrupted
+from uq.cli import progress, say_when_interrupted
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json
 from uq.cli.run import carried_out, loaded
 from uq.estimate import Estimate
-from uq.exploring.updating import check_rows, is_study, learn, samples_for
+from uq.exploring.new_rows import Budget
+from uq.exploring.updating import is_study, learn, samples_for
 from uq.learning.answer import Learnt, learnt, learnt_json
 from uq.learning.inputs_learnt import InputLearnt
 from uq.learning.inspections import Inspection
@@ -50,9 +52,13 @@ def update(
         ds, _ = carried_out(target, quiet, options, partial(run_study, study, target))
     else:
         ds = open_result(source)
-        check_rows(ds, rows)
+    budget = None
     say_when_interrupted("interrupted; nothing was written")
-    found = learn(ds, new, output, model_error)
+    with progress.shown(quiet) as show:
+        if rows is not None and not is_study(source):
+            say_when_interrupted("interrupted; the same command resumes, with the new rows so far")
+            budget = Budget(rows, replace(options, progress=show), output, model)
+        found = learn(ds, new, output, model_error, budget)
     answer = learnt(found, by)
     if json:
         print_json(learnt_json(answer))

@@ -7,11 +7,13 @@ from pathlib import Path
 import xarray as xr
 
 from uq.errors import InputError, RunError
+from uq.exploring.new_rows import Budget, can_be_drawn, enlarged
+from uq.learning.importance import own_rows
 from uq.learning.inspections import Inspection
 from uq.learning.ledger import Given, all_of, read
 from uq.learning.posterior import posterior
 from uq.learning.result import MODEL_ERROR, as_result, prior_of
-from uq.learning.trust import distrust
+from uq.learning.trust import censoring, distrust
 from uq.rows.elements import independent_rows, why_no_statistics
 from uq.rows.results import open_result
 from uq.rows.sampling import rows_per_sample
@@ -20,6 +22,8 @@ from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study
 from uq.store.files import check_target, write_result
 from uq.study.definition import Study
+
+_HINT = "; or update the result with --rows N, which computes up to N new rows there"
 
 
 def update(
@@ -47,7 +51,8 @@ def update(
     output : path-like, optional
         Where to write the posterior; by default it is not written.
     rows : int, optional
-        Number of rows: of a study, instead of its own; of a result, at least.
+        Number of rows: of a study, instead of its own; of a result, new ones that may be computed
+        if its own cannot represent what the inspections leave (`uq.exploring.new_rows.enlarged`).
     model_error : float, optional
         Coefficient of variation of a lognormal discrepancy between model and reality; default 0,
         or that of the result if it has been updated before.
@@ -96,33 +101,26 @@ def update(
     if output is not None:
         check_target(Path(output), 0)
     options = RunOptions(workers, scheduler)
-    return learn(prior(source, rows, options, model), new, output, model_error)
+    ds, budget = prior(source, rows, options, output, model)
+    return learn(ds, new, output, model_error, budget)
 
 
 def prior(
     source: xr.Dataset | Study | str | Path,
     rows: int | None,
     options: RunOptions,
+    output: str | Path | None = None,
     model: str | None = None,
-) -> xr.Dataset:
-    """Return the result to update; a study is run first."""
+) -> tuple[xr.Dataset, Budget | None]:
+    """Return the result to update, and the new rows allowed; a study is run first."""
     if not isinstance(source, Study) and (isinstance(source, xr.Dataset) or not is_study(source)):
         ds = source if isinstance(source, xr.Dataset) else open_result(source)
-        check_rows(ds, rows)
-        return ds
+        kept = None if output is None else Path(output)
+        return ds, None if rows is None else Budget(rows, options, kept, model)
     study = source if isinstance(source, Study) else load_study(source, model)
     if rows is not None:
         study = study.with_samples(samples_for(study, rows))
-    return run_study(study, output_path(study), options)
-
-
-def check_rows(ds: xr.Dataset, rows: int | None) -> None:
-    """Refuse a result with fewer rows than asked for."""
-    if rows is not None and ds.sizes["sample"] < rows:
-        raise InputError(
-            f"the result has {ds.sizes['sample']} rows, not {rows}: 'uq extend OUT.nc --samples N'"
-            " adds some"
-        )
+    return run_study(study, output_path(study), options), None
 
 
 def is_study(path: str | Path) -> bool:
@@ -140,6 +138,7 @@ def learn(
     new: Sequence[Inspection],
     output: str | Path | None,
     model_error: float | None,
+    budget: Budget | None = None,
 ) -> xr.Dataset:
     """Return a result as the inspections leave it, and write it."""
     if why := why_no_statistics(ds):
@@ -148,11 +147,17 @@ def learn(
     cv = float(ds.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
     if not 0 <= cv < 10:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")
-    rows = independent_rows(prior_of(ds))
-    found = posterior(rows, inspections, cv)
-    if why := distrust(found):
+    rows = independent_rows(own_rows(prior_of(ds)))
+    found, kept = posterior(rows, inspections, cv), list[Path]()
+    if why := censoring(found):
         raise RunError(why)
+    if why := distrust(found):
+        if budget is None:
+            raise RunError(why + (_HINT if can_be_drawn(rows) else ""))
+        rows, found, kept = enlarged(rows, found, inspections, cv, budget)
     result = as_result(rows, found, inspections, cv)
     if output is not None:
         write_result(result, Path(output))
+    for path in kept:
+        path.unlink(missing_ok=True)
     return result

@@ -7,10 +7,12 @@ Reading order; a module imports only those above it:
     worn_depth        the depth worn by a time, between the declared ones
     looks             what was looked at, in the rows of a result
     integrated        the input that only scales lives, integrated on a grid
+    importance        rows not drawn from the study's laws, and what they count
     unit_likelihood   all inspections of a unit, were it each of some rows
     evidence          what inspections say of worlds
     posterior         the rows as the inspections leave them
     trust             whether rows can represent that
+    proposal          where to draw new rows if they cannot
     result            the posterior as a result, and the rows of one unit
     ledger            each measurement used once
     inputs_learnt     inputs before and after, and what is confounded

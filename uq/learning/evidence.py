@@ -25,30 +25,35 @@ FINEST = 1e-9
 """Share of the posterior that the grid of the integrated input may leave out on each side."""
 
 _NODES = 64
+_FAR = 7.5
 _PASSES = 6
 
 
 class Grid(NamedTuple):
-    """Values of an integrated input.
+    """Values of an integrated input, evenly spread in probability, and in the tails in score.
 
     Attributes
     ----------
-    low, high : float
-        Its probabilities at the ends.
+    edges : ndarray, shape (g + 1,)
+        The prior probabilities between which each value lies.
     values : ndarray, shape (g,)
     log_share : ndarray, shape (g,)
         Logarithm of the prior probability of each value.
     """
 
-    low: float
-    high: float
+    edges: Floats
     values: Floats
     log_share: Floats
 
     @property
-    def edges(self) -> Floats:
-        """The prior probabilities between which each value lies, shape (g + 1,)."""
-        return self.low + np.append(0.0, np.cumsum(np.exp(self.log_share)))
+    def low(self) -> float:
+        """The lower end, a prior probability."""
+        return float(self.edges[0])
+
+    @property
+    def high(self) -> float:
+        """The upper end."""
+        return float(self.edges[-1])
 
 
 @dataclass(frozen=True)
@@ -130,15 +135,33 @@ def weigh_on(
 
 def _grid(low: float, high: float, quantiles: Quantiles | None) -> Grid:
     if quantiles is None:
-        return Grid(0.0, 1.0, np.ones(1), np.zeros(1))
-    return _joined([np.linspace(low, high, _NODES + 1)], quantiles)
+        return Grid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
+    first, last = _scores(low, high)
+    scores = np.linspace(first, last, _NODES + 1)[1:-1]
+    return _joined([np.linspace(low, high, _NODES + 1), special.ndtr(scores)], quantiles)
+
+
+def _scores(low: float, high: float) -> Floats:
+    """Return normal scores of probabilities, finite."""
+    return np.asarray(special.ndtri(np.array([low, high])).clip(-_FAR, _FAR))
 
 
 def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> Grid:
-    """Return the grid whose values lie in the middle between some probabilities."""
+    """Return the grid whose values lie between some probabilities."""
     edges = np.unique(np.concatenate(parts))
-    middle = (edges[1:] + edges[:-1]) / 2
-    return Grid(edges[0], edges[-1], quantiles(middle), np.log(np.diff(edges)))
+    return Grid(edges, quantiles(_centres(edges)), np.log(np.diff(edges)))
+
+
+def _centres(edges: Floats) -> Floats:
+    """Return the probabilities of the mean normal score between some probabilities."""
+    scores = special.ndtri(edges)
+    width, middle = np.diff(scores), (scores[1:] + scores[:-1]) / 2
+    with np.errstate(invalid="ignore"):
+        narrow = middle * (1 - width**2 / 12)
+    density = np.exp(-(scores**2) / 2) / np.sqrt(2 * np.pi)
+    return np.asarray(
+        special.ndtr(np.where(width < 0.1, narrow, -np.diff(density) / np.diff(edges)))
+    )
 
 
 def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
@@ -189,7 +212,9 @@ def _narrower(grid: Grid, log_unit: Floats, rest: Floats) -> tuple[float, float]
 
 
 def _is_much(ends: tuple[float, float], grid: Grid) -> bool:
-    return ends[1] - ends[0] <= 0.5 * (grid.high - grid.low)
+    """Return whether the part is half the grid or less: its middle, or its tails."""
+    middle = ends[1] - ends[0] <= 0.5 * (grid.high - grid.low)
+    return middle or bool(np.ptp(_scores(*ends)) <= 0.5 * np.ptp(_scores(grid.low, grid.high)))
 
 
 def _mean_likelihood(log_likelihood: Floats, world: NDArray[np.intp], worlds: int) -> Floats:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.designs.levels import SHARED
+from uq.learning.importance import importance_of
 from uq.learning.result import as_unit, prior_of
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import levels_of
@@ -81,8 +82,8 @@ def inputs_learnt(ds: xr.Dataset) -> Iterator[InputLearnt]:
     """Yield the shared inputs of a posterior, then those of each inspected unit."""
     levels, before = levels_of(ds), prior_of(ds)
     asked = tuple(sorted({*QUANTILES, *analysis_of(ds).quantiles}))
-    equal = np.ones(ds.sizes["sample"])
-    prior = {name: _spread(before[name].values, equal, asked) for name in levels}
+    counted = importance_of(before).of_rows
+    prior = {name: _spread(before[name].values, counted, asked) for name in levels}
     for name in (one for one, level in levels.items() if level == SHARED):
         after = _spread(ds[name].values, ds[WEIGHT].values, asked)
         yield InputLearnt(name, str(ds[name].attrs["units"]), prior[name], after)
@@ -115,7 +116,7 @@ def _pairs(
     if len(names) < 2:
         return []
     after = _correlations([ds[name].values for name in names], ds[WEIGHT].values)
-    first = _correlations([before[name].values for name in names], np.ones(ds.sizes["sample"]))
+    first = _correlations([before[name].values for name in names], importance_of(before).of_rows)
     called = {name: f"{name}[unit={label}]" if label and name in wanted else name for name in names}
     return [
         Confounded(called[one], called[other], float(after[i, j]), float(first[i, j]))

@@ -14,6 +14,7 @@ from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
 from uq.learning.evidence import Evidence, Grid, weigh
+from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at
@@ -26,6 +27,7 @@ Rows = NDArray[np.intp]
 
 _GOLDEN = (5**0.5 - 1) / 2
 _HUGE = 700.0
+_TINY = 2.0**-53
 
 
 @dataclass(frozen=True)
@@ -59,9 +61,11 @@ class Posterior:
     evidence : Evidence
     likelihoods : UnitLikelihoods
         Of the inspected units, in their order.
+    looks : dict of Inspection to Look
     world : ndarray of int, shape (n,)
         Of each row.
-    looks : dict of Inspection to Look
+    importance : Importance
+        Of each row.
     """
 
     any_unit: Weighted
@@ -71,6 +75,7 @@ class Posterior:
     likelihoods: UnitLikelihoods
     looks: Mapping[Inspection, Look]
     world: Rows
+    importance: Importance
 
     @property
     def weights(self) -> list[Smoothed]:
@@ -111,7 +116,8 @@ def posterior(
     scale = scale_of(rows, [looks[one] for one in inspections])
     world, worlds = _worlds(rows, place, scale)
     blocks = _blocks(place, len(labels), worlds)
-    likelihoods = UnitLikelihoods(inspections, looks, labels, blocks, scale, model_cv)
+    importance = importance_of(rows)
+    likelihoods = UnitLikelihoods(inspections, looks, labels, blocks, scale, model_cv, importance)
     found = weigh(
         [partial(likelihoods.of, unit) for unit in range(len(labels))],
         [world[block] for block in blocks],
@@ -126,8 +132,8 @@ def posterior(
         label: _inspected(found, unit, likelihoods, world, scale, part)
         for unit, label in enumerate(labels)
     }
-    everyone = _uninspected(found, world, place, scale, replicates_of(rows))
-    return Posterior(everyone, units, scale, found, likelihoods, looks, world)
+    everyone = _uninspected(found, importance, world, place, scale, replicates_of(rows))
+    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance)
 
 
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
@@ -167,14 +173,20 @@ def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
 
 
 def _uninspected(
-    found: Evidence, world: Rows, place: Nesting, scale: Scale | None, part: Replicates
+    found: Evidence,
+    importance: Importance,
+    world: Rows,
+    place: Nesting,
+    scale: Scale | None,
+    part: Replicates,
 ) -> Weighted:
     """Return all rows, as units that share their world with the inspected ones."""
     worth = np.exp(found.log_worlds)
     rows = np.arange(len(world))
-    size = np.bincount(world, minlength=len(worth))
+    size = np.bincount(world, importance.of_rows, len(worth))
     with np.errstate(divide="ignore"):
-        weights = smoothed(np.log(worth.sum(axis=1)[world] / size[world]), part)
+        of_rows = worth.sum(axis=1)[world] * importance.of_rows / size[world]
+        weights = smoothed(np.log(of_rows), part)
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     _, first = np.unique(place.sample, return_index=True)
@@ -232,5 +244,5 @@ def _drawn(grid: Grid, worth: Floats, scale: Scale) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
         within = (wanted - (above[here] - worth[here])) / worth[here]
     edges = grid.edges
-    places = edges[node] + np.clip(within, 0.0, 1.0) * (edges[node + 1] - edges[node])
-    return scale.quantiles(np.where(above[:, -1] > 0, places, at))
+    places = edges[node] + np.nan_to_num(within).clip(0.0, 1.0) * (edges[node + 1] - edges[node])
+    return scale.quantiles(np.where(above[:, -1] > 0, places.clip(_TINY, 1 - _TINY), at))

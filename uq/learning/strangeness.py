@@ -34,14 +34,16 @@ def strangeness(found: Posterior, seed: int, model_cv: float) -> float:
        R. Stat. Soc. A 143, 383-430 (1980).
     """
     rng = np.random.default_rng((seed, 22))
-    world = found.world[rng.integers(len(found.world), size=CAMPAIGNS)]
+    own = np.flatnonzero(found.importance.own)
+    world = found.world[own[rng.integers(len(own), size=CAMPAIGNS)]]
     common = rng.random(CAMPAIGNS)
     score = np.zeros(CAMPAIGNS + 1)  # the last is what was really found
     for unit, inspections in enumerate(found.likelihoods.of_unit):
-        rows = _rows(found.likelihoods.blocks[unit], found.world, world, rng)
-        own = rng.random(CAMPAIGNS)
+        block = found.likelihoods.blocks[unit]
+        rows = _rows(block[found.importance.own[block]], found.world, world, rng)
+        each = rng.random(CAMPAIGNS)
         for one in inspections:
-            truth = _truth(found, one, rows, common, own)
+            truth = _truth(found, one, rows, common, each)
             score += _log_probability(found, one, truth, rng, model_cv)
     return float((score[:-1] <= score[-1] + 1e-9).mean())
 

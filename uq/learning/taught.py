@@ -46,7 +46,7 @@ def taught(found: Posterior) -> Iterator[Taught]:
     _, all_told = weigh_on(grids, each, worlds, count, bool(scale and scale.is_own))
     for unit, (grid, world) in enumerate(zip(grids, worlds, strict=True)):
         size = np.bincount(world, minlength=count)[world]
-        rest = all_told.rest[unit][world] - np.log(size)[:, None]
+        rest = all_told.rest[unit][world] + (of.log_before(unit) - np.log(size))[:, None]
         single = {one: of.of_one(one, unit, grid.values) for one in of.of_unit[unit]}
         for one in single:
             others = [log for other, log in single.items() if other != one]

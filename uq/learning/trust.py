@@ -16,22 +16,33 @@ _OPEN = 0.01
 """Share of rows in which a censored life may leave open what an inspection saw."""
 
 
+def censoring(found: Posterior) -> str:
+    """Return that censored lives leave open what inspections saw, or ""."""
+    return next(_censored(found), "")
+
+
 def distrust(found: Posterior) -> str:
     """Return why the weights of a posterior cannot be trusted, or ""."""
     return next(_reasons(found), "")
 
 
-def _reasons(found: Posterior) -> Iterator[str]:
+def _censored(found: Posterior) -> Iterator[str]:
     for unit, (label, one) in enumerate(found.units.items()):
         scale = None if found.scale is None else found.scale.drawn[one.rows]
         before = found.likelihoods.bounded(unit, scale)
         after = found.likelihoods.bounded(unit, one.scale)
-        share = max(before.mean(), np.average(after, weights=one.weights.weights))
+        counted = np.exp(found.likelihoods.log_before(unit))
+        share = max(
+            np.average(before, weights=counted), np.average(after, weights=one.weights.weights)
+        )
         if share > _OPEN:
             yield (
                 f"unit {label}: {100 * share:.2g} % of the rows were censored before what its"
                 " inspections saw; run the study with a longer horizon"
             )
+
+
+def _reasons(found: Posterior) -> Iterator[str]:
     if why := _why(found.any_unit):
         yield f"what all units share: {why}"
     for label, one in found.units.items():

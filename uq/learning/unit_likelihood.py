@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
+from uq.learning.importance import Importance
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale
 from uq.learning.likelihood import log_most
@@ -27,6 +28,8 @@ class UnitLikelihoods:
         The rows that stand for each of them.
     scale : Scale or None
     model_cv : float
+    importance : Importance
+        Of all rows.
     """
 
     def __init__(
@@ -37,18 +40,25 @@ class UnitLikelihoods:
         blocks: Sequence[NDArray[np.intp]],
         scale: Scale | None,
         model_cv: float,
+        importance: Importance,
     ):
         self.of_unit = [[one for one in inspections if one.unit == label] for label in labels]
         self._looks, self.blocks, self._scale, self._cv = looks, blocks, scale, model_cv
+        self._log_before = np.log(importance.of_rows)
+        self._log_most = np.log(importance.most)
         self._values = np.empty(0)
         self._truths: dict[tuple[str, float | None, int], Floats] = {}
 
     def of(self, unit: int, values: Floats) -> Floats:
-        """Return the logarithm of the likelihood, shape (rows, g)."""
-        total = np.zeros((len(self.blocks[unit]), len(values)))
+        """Return the logarithm of the likelihood and of what each row counts, shape (rows, g)."""
+        total = np.repeat(self.log_before(unit)[:, None], len(values), axis=1)
         for one in self.of_unit[unit]:
             total += self.of_one(one, unit, values)
         return total
+
+    def log_before(self, unit: int) -> Floats:
+        """Return the logarithm of what each row counts before the inspections, shape (rows,)."""
+        return self._log_before[self.blocks[unit]]
 
     def of_one(self, one: Inspection, unit: int, values: Floats) -> Floats:
         """Return that of a single inspection, shape (rows, g)."""
@@ -56,8 +66,8 @@ class UnitLikelihoods:
         return self._looks[one].log_likelihood(one, truth, self._cv)
 
     def log_most(self, unit: int) -> float:
-        """Return a bound of the logarithm of the likelihood in any row."""
-        return sum(log_most(one, self._cv) for one in self.of_unit[unit])
+        """Return a bound of what `of` returns for any row."""
+        return float(self._log_most + sum(log_most(one, self._cv) for one in self.of_unit[unit]))
 
     def bounded(self, unit: int, scale: Floats | None) -> NDArray[np.bool_]:
         """Return in which rows a censored life leaves open what was seen, shape (rows,).

@@ -107,6 +107,18 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
 
 def _drawn(study: "Study", start: int, stop: int) -> Floats:
     """Return the inputs of the rows start..stop, shape (n, all parameters)."""
+    return physical(study, unit_block(study, start, stop))
+
+
+def unit_block(study: "Study", start: int, stop: int) -> Floats:
+    """Return the points of the unit cube of the rows start..stop, shape (n, uncertain).
+
+    Parameters
+    ----------
+    study : Study
+        Not of imported rows.
+    start, stop : int
+    """
     table = study.design
     levels, per_sample = study.levels, rows_per_sample(study)
     first, last = start // per_sample, -(-stop // per_sample)
@@ -123,8 +135,7 @@ def _drawn(study: "Study", start: int, stop: int) -> Floats:
     if table.rows_of_a_sample > 1:
         cube = cube[..., coordinates(levels, table.units, table.repeats)]
     offset = first * per_sample
-    unit = cube.reshape(-1, len(levels))[start - offset : stop - offset]
-    return physical(study, unit)
+    return np.asarray(cube.reshape(-1, len(levels))[start - offset : stop - offset])
 
 
 def physical(study: "Study", unit: Floats) -> Floats:

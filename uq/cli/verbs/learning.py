@@ -20,7 +20,7 @@ def update(
         Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
     ],
     rows: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Rows of a study, not its own number.")
+        int | None, typer.Option(min=1, metavar="N", help="Rows of a study; new rows of a result.")
     ] = None,
     model_error: Annotated[
         float | None,

@@ -1,0 +1,157 @@
+"""Where to draw new rows: a mixture of Student laws around the rows that the inspections leave."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+from scipy.linalg import solve_triangular
+from scipy.stats import norm
+
+from uq.contract import Floats
+from uq.population.smoothing import effective_rows
+
+FREEDOM = 5.0
+"""Degrees of freedom: tails heavier than those of a posterior."""
+
+_CENTRES = 100
+_LEAST = 100.0
+_EDGE = 8.0
+_HALVINGS = 60
+_COLDEST = 1e-9
+
+
+class Proposal(NamedTuple):
+    """A mixture of equal Student laws in some of the normal scores of the inputs.
+
+    All other scores have the standard normal law, as all scores have before the inspections.
+
+    Attributes
+    ----------
+    columns : ndarray of int, shape (k,)
+        The scores with a law of their own.
+    centres : ndarray, shape (c, k)
+    root : ndarray, shape (k, k)
+        Lower triangular root of their common matrix.
+    """
+
+    columns: NDArray[np.intp]
+    centres: Floats
+    root: Floats
+
+    def drawn(self, count: int, inputs: int, rng: np.random.Generator) -> Floats:
+        """Draw normal scores of so many rows, shape (count, inputs)."""
+        scores = rng.standard_normal((count, inputs))
+        chosen = self.centres[rng.integers(len(self.centres), size=count)]
+        tail = np.sqrt(FREEDOM / rng.chisquare(FREEDOM, size=count))
+        scores[:, self.columns] = chosen + tail[:, None] * (scores[:, self.columns] @ self.root.T)
+        return np.asarray(scores.clip(-_EDGE, _EDGE))
+
+    def log_ratio(self, scores: Floats) -> Floats:
+        """Return the logarithm of its density over that before the inspections, shape (n,)."""
+        at, k = scores[:, self.columns], len(self.columns)
+        log_density = np.full((len(at), len(self.centres)), -np.log(len(self.centres)))
+        constant = (
+            special.gammaln((FREEDOM + k) / 2)
+            - special.gammaln(FREEDOM / 2)
+            - k / 2 * np.log(FREEDOM * np.pi)
+            - np.log(np.diag(self.root)).sum()
+        )
+        for place, centre in enumerate(self.centres):
+            off = solve_triangular(self.root, (at - centre).T, lower=True)
+            square = (off**2).sum(axis=0)
+            log_density[:, place] += constant - (FREEDOM + k) / 2 * np.log1p(square / FREEDOM)
+        return np.asarray(special.logsumexp(log_density, axis=1) - norm.logpdf(at).sum(axis=1))
+
+
+def log_importance(proposals: Sequence[Proposal], own: int, each: int, scores: Floats) -> Floats:
+    """Return the logarithm of how much rows count before the inspections.
+
+    The density before the inspections over the mixture of all that rows were drawn from [1]_, each
+    in proportion to its rows; at most (all rows) / `own`.
+
+    Parameters
+    ----------
+    proposals : sequence of Proposal
+    own : int
+        Rows drawn before the inspections.
+    each : int
+        Rows drawn from each proposal.
+    scores : ndarray, shape (n, inputs)
+        Of all rows.
+
+    References
+    ----------
+    .. [1] A. Owen, Y. Zhou, "Safe and effective importance sampling", J. Am. Stat. Assoc. 95,
+       135-143 (2000).
+    """
+    mixture = np.full(len(scores), np.log(own))
+    for one in proposals:
+        mixture = np.logaddexp(mixture, np.log(each) + one.log_ratio(scores))
+    return np.log(own + each * len(proposals)) - mixture
+
+
+def tempered(log_before: Floats, log_likelihood: Floats) -> Floats:
+    """Return weights with as much of the likelihood as leaves enough rows.
+
+    Parameters
+    ----------
+    log_before : ndarray, shape (n,)
+        What rows count without the likelihood.
+    log_likelihood : ndarray, shape (n,)
+        Not all -inf.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        With the likelihood to the largest power, at most 1, that leaves 100 effective rows, or
+        half of what is possible.
+    """
+
+    def weights(power: float) -> Floats:
+        found = log_before + power * log_likelihood
+        return np.exp(found - found.max())
+
+    least = min(_LEAST, effective_rows(weights(_COLDEST)) / 2)
+    if effective_rows(weights(1.0)) >= least:
+        return weights(1.0)
+    low, high = np.log(_COLDEST), 0.0
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (
+            (middle, high)
+            if effective_rows(weights(float(np.exp(middle)))) >= least
+            else (low, middle)
+        )
+    return weights(float(np.exp(low)))
+
+
+def fitted(
+    scores: Floats, weights: Floats, columns: NDArray[np.intp], rng: np.random.Generator
+) -> Proposal:
+    """Return a proposal around weighted rows: a kernel estimate of their density [1]_.
+
+    Parameters
+    ----------
+    scores : ndarray, shape (n, inputs)
+    weights : ndarray, shape (n,)
+    columns : ndarray of int, shape (k,)
+        The scores to give a law of their own.
+    rng : numpy.random.Generator
+
+    References
+    ----------
+    .. [1] M. West, "Approximating posterior distributions by mixtures", J. R. Stat. Soc. B 55,
+       409-422 (1993).
+    """
+    at, k = scores[:, columns], len(columns)
+    rows = effective_rows(weights)
+    covariance = np.atleast_2d(np.cov(at.T, aweights=weights, ddof=0))
+    floor = 1e-6 * np.trace(covariance) / k + 1e-12
+    width = (4 / ((k + 2) * rows)) ** (1 / (k + 4))
+    root = width * np.linalg.cholesky(covariance + floor * np.eye(k))
+    above = np.cumsum(weights) / weights.sum()
+    places = (np.arange(_CENTRES) + rng.random()) / _CENTRES
+    chosen = np.minimum(np.searchsorted(above, places), len(at) - 1)
+    return Proposal(columns, at[chosen], root)
