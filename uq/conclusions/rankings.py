@@ -13,6 +13,7 @@ from uq.conclusions.contributions import Change, Contribution, Ranking
 from uq.conclusions.words import Unit, called, rows_in_words, twin_of
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
+from uq.errors import choices
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs, why_dependent
@@ -117,9 +118,11 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     reason, factor = _unsettled(measured, kind)
     if reason:
         return Ranking(name, method, kind.key, what, reason=reason, rows_factor=factor)
-    groups = list(_groups(findings.ds, [one for one in measured if one.counts]))
+    # What does not exceed inputs without effect may yet contribute as much as the first.
+    weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
+    groups = list(_groups(findings.ds, weighed))
     if len({twin_of(one.name) for one in groups[0]}) > MOST_TIED:
-        names = ", ".join(called(one.name) for one in groups[0])
+        names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL / 2)
         factor = (hypot(first.half, second.half) / apart) ** 2
@@ -217,17 +220,18 @@ def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]
     left = list(measured)
     while left:
         first, others = left[0], left[1:]
-        tied = [
-            one
-            for one in others
-            if first.index.value - one.index.value <= hypot(first.half, one.half)
-        ]
+        tied = [one for one in others if _are_tied(first, one)]
         group = [first, *tied]
         group += [
             one for one in others if one not in group and any(are_twins(one, of) for of in group)
         ]
         yield group
         left = [one for one in left if one not in group]
+
+
+def _are_tied(first: Measured, other: Measured) -> bool:
+    """Return whether the index of another input may be as large."""
+    return first.index.value - other.index.value <= hypot(first.half, other.half)
 
 
 def _effects(findings: Findings, method: str, name: str) -> dict[str, Effect]:
