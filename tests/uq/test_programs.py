@@ -1,5 +1,6 @@
 """A program as a machine: what a study makes of it, what goes wrong, what it leaves behind."""
 
+import tempfile
 from contextlib import suppress
 from pathlib import Path
 
@@ -244,3 +245,16 @@ def test_folders_of_killed_processes_are_removed(folder):
             assert first.is_dir() and second.is_dir() and not dead.exists()
     folders.leave()
     assert not (folder / "rows").exists()
+
+
+def test_a_process_that_leaves_takes_no_folder_from_another(folder, monkeypatch):
+    real, left = tempfile.mkdtemp, []
+
+    def mkdtemp(*arguments, **options):
+        if not left:  # between two steps of the other
+            left.append(Folders(folder / "rows").leave())
+        return real(*arguments, **options)
+
+    monkeypatch.setattr(tempfile, "mkdtemp", mkdtemp)
+    with Folders(folder / "rows").row([1.0]) as one:
+        assert one.is_dir()

@@ -43,12 +43,10 @@ class Folders:
         numbers : sequence of float
             The row: its parameters and seed.
         """
-        self.root.mkdir(parents=True, exist_ok=True)
         if not self._tidied:
             self._tidied = True
             self._tidy()
-        mine = f"{_RUNNING}-{socket.gethostname()}-{os.getpid()}-"
-        folder = Path(tempfile.mkdtemp(prefix=mine, dir=self.root))
+        folder = self._new()
         try:
             yield folder
         except Exception:
@@ -60,6 +58,14 @@ class Folders:
             raise
         finally:
             shutil.rmtree(folder, ignore_errors=True)
+
+    def _new(self) -> Path:
+        """Return a new folder of this process."""
+        mine = f"{_RUNNING}-{socket.gethostname()}-{os.getpid()}-"
+        while True:
+            self.root.mkdir(parents=True, exist_ok=True)
+            with suppress(FileNotFoundError):  # another process has just left
+                return Path(tempfile.mkdtemp(prefix=mine, dir=self.root))
 
     def leave(self) -> None:
         """Remove folders that killed processes left, and that of all folders if it holds none."""
