@@ -43,9 +43,9 @@ def slow(x1: float = 0.5):
 MACHINE = """
 [machine]
 name = "slow"
-command = ["sh", "slow.sh"]
+command = ["sh", "script.sh"]
 template = "slow.sh"
-input = "slow.sh"
+input = "script.sh"
 [parameters.x1]
 nominal = 0.5
 [outputs.y]

@@ -141,7 +141,7 @@ def test_while_workers_start(started):
 
 
 @pytest.mark.parametrize(
-    "delay", [0.5, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.2, 0.8, 1.1))]
+    "delay", [0.5, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.2, 0.35, 0.65))]
 )
 def test_while_modules_are_loaded(started, delay):
     process, _ = started("SLEEPING", "--workers", "0", seconds=1.0)
