@@ -32,7 +32,7 @@ CHECKED, RIVALLED, BLOCK = 50, 20, 512
 # Study, its rows and settings, and the median error of its lives that is good enough.
 CASES = (
     ("beam-lifetime-561", 1000, {"accuracy": 0.04}, 0.02),
-    ("beam-lifetime", 10_000, {"accuracy": 0.5, "steps_per_period": 60}, 0.01),
+    ("beam-lifetime", 10_000, {"accuracy": 0.5, "steps_per_period": 64}, 0.01),
     ("beam-lifetime", 10_000, {"accuracy": 0.1, "steps_per_period": 64}, 0.0005),
 )
 # Increments, tolerance of settled work, blocks of 64 periods if unsettled: by cost.
