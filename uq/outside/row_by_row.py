@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
-from uq.errors import InputError
+from uq.errors import InputError, described
 from uq.outside.returned import Returned, WrongReturnError, checked, dimensions
 
 SEED = "seed"
@@ -137,9 +137,7 @@ class RowByRow:
             except WrongReturnError as error:
                 status[i], messages[i] = Status.BAD_SHAPE, str(error)
             except (Exception, SystemExit) as error:
-                text = " ".join(str(error).split())
-                status[i] = Status.RAISED
-                messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
+                status[i], messages[i] = Status.RAISED, described(error)
         self.leave()
         return columns, status, messages
 

@@ -12,7 +12,7 @@ import time
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
-from uq.errors import InputError
+from uq.errors import InputError, one_line
 
 VERSION = 1.0
 """Of the protocol."""
@@ -72,7 +72,7 @@ def call(server: str, what: str, body: Any = None, patience: float = _PATIENCE) 
             return _answer(server, what, body)
         except (OSError, http.client.HTTPException) as error:
             if time.monotonic() - began > patience:
-                reason = " ".join(str(error).split()) or type(error).__name__
+                reason = one_line(error) or type(error).__name__
                 raise ServerError(f"{server} does not answer: {reason}") from None
         time.sleep(_PAUSES[min(tries, len(_PAUSES) - 1)])
         tries += 1
