@@ -113,6 +113,15 @@ def test_a_threshold_has_the_unit_of_its_output_or_of_its_base(uq, write, unit, 
         assert f"'y' is in '{unit}': give the number in that unit, without a unit" in ended.err
 
 
+def test_a_threshold_with_a_unit_waits_for_the_outputs(uq, write):
+    limits = '[analysis]\nthresholds = {life = "4 days"}\n'
+    refused = uq("check", "own.toml", "--model", write(WEAR, STUDY + limits))
+    assert refused.code == 2 and "the unit 'days' does not fit 'life'" in refused.err
+    in_seconds = '@uq.machine(returns={"life": uq.Returned("s", life=True), "profile": "m"})'
+    text = WEAR.replace("@uq.machine", in_seconds)
+    assert uq("check", "own.toml", "--model", write(text, STUDY + limits)).code == 0
+
+
 def test_a_seed_is_that_of_the_row(uq, write):
     file = write(
         "import uq\n@uq.machine\n"

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Floats, Model, Parameter
-from uq.errors import InputError
+from uq.errors import InputError, one_line
 from uq.inputs.faults import Fault, unknown
 from uq.outside.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable, read_fmu_file
 from uq.outside.fmu_said import bounds_of, said_of, times_of, unit_of_variable, variables_of
@@ -178,7 +178,7 @@ class _Fmu:
             except Exception as error:
                 (folder / _LOG).write_text("\n".join(log), encoding="utf-8")
                 said = f" ({log[-1]})" if log else ""
-                text = f"{' '.join(str(error).split())}{said}; see {self.folders.kept(numbers)}"
+                text = f"{one_line(error)}{said}; see {self.folders.kept(numbers)}"
                 kind = NonFiniteError if isinstance(error, NonFiniteError) else FmuError
                 raise kind(text) from None
 

@@ -12,7 +12,7 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
-from uq.errors import InputError
+from uq.errors import InputError, described
 from uq.outside.machine_tables import file_there
 
 _VERSIONS = ("2.0", "3.0")
@@ -38,8 +38,7 @@ def said_of(path: Path) -> Any:
         said = fmpy.read_model_description(str(path), validate=False)
         platforms = fmpy.supported_platforms(str(path))
     except Exception as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{path}: is no FMU: {type(error).__name__}: {reason}") from None
+        raise InputError(f"{path}: is no FMU: {described(error)}") from None
     if said.fmiVersion not in _VERSIONS:
         known = " and ".join(_VERSIONS)
         raise InputError(f"{path}: is of FMI {said.fmiVersion}; {known} are supported")

@@ -6,7 +6,7 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from uq.errors import InputError, nearest
+from uq.errors import InputError, nearest, one_line
 from uq.inputs.faults import Fault, fault_of
 from uq.literals import read_toml
 from uq.places import node
@@ -55,7 +55,7 @@ def data_of(path: Path) -> dict[str, Any]:
     try:
         data = read_toml(path.read_text(encoding="utf-8"))
     except (ValueError, OverflowError, RecursionError) as error:
-        raise InputError(f"{path}: not valid TOML: {' '.join(str(error).split())}") from None
+        raise InputError(f"{path}: not valid TOML: {one_line(error)}") from None
     if "study" in data and "machine" not in data:
         raise InputError(f"{path}: is a study, not a machine file; it needs a table [machine]")
     return data

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
-from uq.errors import InputError
+from uq.errors import InputError, described
 from uq.outside.returned import (
     NonFiniteError,
     Returned,
@@ -176,9 +176,7 @@ class RowByRow:
             except OverdueError as error:
                 status[i], messages[i] = Status.TIMED_OUT, str(error)
             except (Exception, SystemExit) as error:
-                text = " ".join(str(error).split())
-                status[i] = Status.RAISED
-                messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
+                status[i], messages[i] = Status.RAISED, described(error)
         self.leave()
         return columns, status, messages
 

@@ -13,7 +13,7 @@ from math import inf, isfinite
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
-from uq.errors import InputError
+from uq.errors import InputError, one_line
 from uq.outside.row_by_row import OverdueError
 
 VERSION = 1.0
@@ -94,7 +94,7 @@ def call(
                 raise OverdueError(f"{server} did not answer within {limit:g} s") from None
             if server in _silent or now - began > (_PATIENCE if patience is None else patience):
                 _silent.add(server)
-                reason = " ".join(str(error).split()) or type(error).__name__
+                reason = one_line(error) or type(error).__name__
                 raise ServerError(f"{server} does not answer: {reason}") from None
         pause = _PAUSES[min(tries, len(_PAUSES) - 1)]
         time.sleep(max(min(pause, until - time.monotonic()), 0.0))

@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from math import ceil
-from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, cast
 
@@ -26,7 +25,7 @@ from uq.outside.descendants import end_with_descendants
 from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
-from uq.running.environment import command, inherited
+from uq.running.environment import started
 from uq.study.registry import code_of
 
 if TYPE_CHECKING:
@@ -74,7 +73,8 @@ def isolated(
     """
     process = Isolated(spec_of(workload), limit, compiling)
     with undone(process.close):
-        process.begin()
+        with suppress(OSError):  # it is tried again for the first rows
+            process.begin()
         yield process.evaluate
 
 
@@ -185,16 +185,8 @@ class Isolated:
         """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
         if self._connection:
             return self._connection
-        self._connection, there = Pipe()
-        with there, suppress(OSError):
-            self._process = subprocess.Popen(
-                command("uq.running.child", str(there.fileno())),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                pass_fds=(there.fileno(),),
-                start_new_session=True,  # Ctrl-C reaches this process, which ends the other
-                env=inherited(),
-            )
+        self._process, self._connection = started("uq.running.child")
+        with suppress(OSError):  # of a process that died: `start` sees it
             self._connection.send((self.spec, self.limit))
         return self._connection
 

@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from uq.contract import Model
-from uq.errors import InputError, choices, nearest
+from uq.errors import InputError, choices, described, nearest
 from uq.outside.function import is_machine, model_of
 from uq.outside.returned import Returned, as_plain, from_plain
 from uq.places import node
@@ -152,7 +152,7 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
     except InputError:
         raise
     except (Exception, SystemExit) as error:
-        problem = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        problem = described(error)
         if isinstance(error, ModuleNotFoundError):
             problem += "; install it, or name its folder in PYTHONPATH"
         place = f" from {point.value}" if attribute else ""
