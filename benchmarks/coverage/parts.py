@@ -19,6 +19,7 @@ from benchmarks.coverage import (
     plain,
     scaled,
     tails,
+    whole,
 )
 from benchmarks.coverage.tally import Line
 
@@ -65,6 +66,8 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "whole": Part(partial(whole.whole, "saltelli"), 1000),
+    "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},

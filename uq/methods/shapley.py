@@ -45,10 +45,11 @@ def shapley_indices(sample: Sample) -> Indices:
     """
     whole = sample.whole
     y = sample.grouped[whole]
-    if is_constant(y):
+    if sample.is_constant(y):
         raise RefusedError(NO_VARIANCE)
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
+    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)  # over the elements of a whole output
     parts = np.einsum("ns,nsp->np", steps, sample.direction[whole] != 0)
     total = parts.sum(axis=1)
     if is_constant(y - y[:, :1]):
