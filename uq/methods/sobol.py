@@ -1,6 +1,6 @@
 """Sobol' indices of a crossed design, with intervals from the replicates."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import combinations
 
@@ -17,8 +17,11 @@ MIN_GROUPS = 8
 
 _NOISE = IndexKind(NOISE, "share of noise", "variance")
 
+Estimates = Callable[[Sequence[str], Floats], Values]
+"""Names of the blocks, and groups of shape (n, blocks), standardised -> indices."""
 
-def sobol_indices(sample: Sample) -> Indices:
+
+def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices:
     """Estimate first-order, total and, where the design has them, second-order indices.
 
     Those of a whole output are aggregated [2]_: parts of the variance are summed over its elements.
@@ -27,6 +30,8 @@ def sobol_indices(sample: Sample) -> Indices:
     ----------
     sample : Sample
         Of a crossed design.
+    estimates : callable, optional
+        Estimators to compare with those below.
 
     Returns
     -------
@@ -66,7 +71,7 @@ def sobol_indices(sample: Sample) -> Indices:
     few = any(len(own) < 2 or sample.is_constant(own[:, ends]) for own in replicates)
     lacking = "in some replicates too few rows differ" if few else ""
     found, notes = pooled_with_intervals(
-        partial(_estimates, sample.blocks), y[whole], replicates, "indices", lacking
+        partial(estimates or _estimates, sample.blocks), y[whole], replicates, "indices", lacking
     )
     independent = y[whole][:, ends].reshape(-1, *y.shape[3:])
     more = one_more_row(independent, int(whole.sum()), len(replicates))
