@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from asked_indices import indices
 from computed import asking, computed, kinds, study_of, with_status
-from test_plot_numbers import words
+from drawn import words
 
 import uq
 from benchmarks.coverage import whole
