@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from benchmarks.coverage import (
     curves,
+    dependent,
     differences,
     effects,
     few,
@@ -68,6 +69,7 @@ PARTS = {
     "shapley": Part(known_indices.shapley),
     "whole": Part(partial(whole.whole, "saltelli"), 1000),
     "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
+    "shapley-dependent": Part(dependent.shapley, 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},

@@ -69,6 +69,22 @@ def test_an_output_of_equal_shape_in_all_elements_has_the_indices_of_one(method,
                     assert (value is together is None) or together == pytest.approx(value, rel=1e-9)
 
 
+def test_an_input_that_counts_by_correlation_alone_is_named():
+    names = [name for name in whole.LAWS if name != "r2"]
+    correlation = [
+        [1.0 if i == j else 0.5 * ({i, j} == {2, 3}) for j in range(4)] for i in range(4)
+    ]
+    tables = {
+        "study": {"name": "curves", "model": "curves"},
+        "design": {"method": "shapley", "samples": 256},
+        "uncertain": {name: whole.LAWS[name] for name in names},
+        "dependence": {"parameters": names, "rank_correlation": correlation},
+        "analysis": {"outputs": ["worn"]},
+    }
+    found = indices(computed(study_of(tables, whole.NAME)))["outputs"]["worn[:]"]
+    assert found["by_correlation"] == ["x3"]
+
+
 def test_intervals_are_those_of_all_elements_together():
     found = indices(curves(samples=256, replicates=8))["outputs"]
     for name, kinds_of in whole.truths().items():

@@ -41,7 +41,8 @@ class Method:
     most_rows : int or None
         Of a larger plain sample this many rows are chosen: all would take too long.
     assumes_independence : bool
-        Whether the inputs must be independent of each other.
+        Whether the inputs must be independent of each other. If not, they may depend in any way in
+        a plain sample, and as the study states in the rows of a design.
     aggregates : bool
         Whether it also gives one index for all elements of an output: the sum of what an input
         explains of their variances, over the sum of these variances (Gamboa et al. 2014).
