@@ -18,6 +18,7 @@ from benchmarks.coverage import (
     noise,
     plain,
     scaled,
+    stopping,
     tails,
 )
 from benchmarks.coverage.tally import Line
@@ -79,7 +80,10 @@ PARTS = {
     "few-indices": Part(few.indices, 1000),
     "few-twin": Part(few.twin, 1000),
     "failed": Part(few.failed, 1000),
-    "stopped": Part(fewer_rows.stopped),
+    "stopped": Part(partial(stopping.rows, "monte-carlo", 2048, 1)),
+    "stopped-replicates": Part(partial(stopping.rows, "halton", 256, 8)),
+    "stopped-integrated": Part(stopping.integrated),
+    **{f"stopped-{name}": Part(partial(stopping.indices, name)) for name in stopping.INDICES},
     "subset": Part(fewer_rows.subset),
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
+from uq.intervals import CONFIDENCE
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,10 @@ class Sample:
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
         Name -> probability of each quantile that indices of quantiles are about.
+    confidence : float
+        Of intervals.
+    difference : tuple of str, optional
+        Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
     """
 
     values: Floats
@@ -42,6 +47,8 @@ class Sample:
     direction: Floats = field(default_factory=lambda: np.empty(0))
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
+    confidence: float = CONFIDENCE
+    difference: tuple[str, str] | None = None
 
     @classmethod
     def plain(cls, values: Floats, inputs: Mapping[str, Floats], **more: Any) -> Self:

@@ -8,7 +8,14 @@ import numpy as np
 
 from uq.designs.layouts import NOISE
 from uq.intervals import is_constant
-from uq.methods.groups import Values, effective_rows, one_more_row, pooled_with_intervals, widened
+from uq.methods.groups import (
+    Values,
+    effective_rows,
+    one_more_row,
+    pooled_with_intervals,
+    widened,
+    with_difference,
+)
 from uq.methods.indices import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
@@ -62,11 +69,12 @@ def sobol_indices(sample: Sample) -> Indices:
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
     few = any(len(own) < 2 or is_constant(own[:, ends]) for own in replicates)
     lacking = "in some replicates too few rows differ" if few else ""
+    estimate = with_difference(partial(_estimates, sample.blocks), sample.difference)
     found, notes = pooled_with_intervals(
-        partial(_estimates, sample.blocks), y[whole], replicates, "indices", lacking
+        estimate, y[whole], replicates, "indices", lacking, sample.confidence
     )
     independent = y[whole][:, ends].ravel()
-    more = one_more_row(independent, int(whole.sum()), len(replicates))
+    more = one_more_row(independent, int(whole.sum()), len(replicates), sample.confidence)
     if more and not notes:
         rows = effective_rows(independent) / len(replicates)
         notes += (
