@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from benchmarks.coverage import (
     curves,
+    dependent,
     differences,
     effects,
     few,
@@ -66,6 +67,7 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "shapley-dependent": Part(dependent.shapley, 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},

@@ -56,6 +56,7 @@ def small_studies() -> dict[str, str]:
             "exponential-wear", "monte-carlo", 200, "[fixed]\nthreshold = 1e-10", TOLERANCE
         ),
         "correlated-small": _study("linear", "monte-carlo", 200, CORRELATED),
+        "correlated-paths-small": _study("linear", "shapley", 64, CORRELATED),
     }
 
 

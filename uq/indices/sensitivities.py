@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from uq.contract import Mask
+from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, nearest
 from uq.estimate import Estimate
@@ -140,7 +141,7 @@ def sensitivities(
         why = why_dependent(ds)
     nested, ds = is_nested(ds), one_of_each_sample(ds)
     method = method or [*methods(ds, bool(why)), *fed_by(DESIGNS[ds.attrs["design"]])][0]
-    _check_method(ds.attrs["design"], method, why)
+    _check_method(ds.attrs["design"], method, why, regime is not None)
     sample, notes = sample_of(ds), tuple(notes_on_inputs(ds))
     if nested:
         notes = (*notes, ONE_ROW)
@@ -258,14 +259,19 @@ def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
     return {f"Q{probability!r}": probability for probability in asked}
 
 
-def _check_method(design: str, method: str, dependent: str) -> None:
+def _check_method(design: str, method: str, dependent: str, in_regime: bool) -> None:
     usable = fed_by(DESIGNS[design], bool(dependent))
+    if in_regime and DESIGNS[design].layout is not PLAIN:
+        usable = ()  # what inputs of a regime have in common is not what the design assumes
     if method in usable:
         return
     if method in fed_by(DESIGNS[design]):
+        only = METHODS[method].assumes_independence
+        assumed = "independent inputs" if only else "inputs that depend as their design states"
+        others = [name for name in for_dependent_inputs() if METHODS[name].layout is PLAIN]
         raise InputError(
-            f"method '{method}' assumes independent inputs, but {dependent}"
-            f" (methods that do not: {', '.join(for_dependent_inputs())})"
+            f"method '{method}' assumes {assumed}, but {dependent}"
+            f" (methods that do not: {', '.join(others)})"
         )
     if method not in METHODS:
         known = sorted(METHODS)

@@ -42,7 +42,8 @@ class Method:
     most_rows : int or None
         Of a larger plain sample this many rows are chosen: all would take too long.
     assumes_independence : bool
-        Whether the inputs must be independent of each other.
+        Whether the inputs must be independent of each other. If not, they may depend in any way in
+        a plain sample, and as the study states in the rows of a design.
     takes_events, takes_numbers : bool
         Whether it is for events, outputs of 0 or 1, and for other outputs.
     scale_free : bool

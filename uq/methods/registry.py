@@ -109,9 +109,10 @@ METHODS = {
         PATHS,
         shapley_indices,
         (SHAPLEY,),
-        source="Goda (2021)",
+        source="Goda (2021); Song, Nelson & Staum (2016) where inputs are correlated",
         intervals="Student's t of independent paths",
         least=MIN_PATHS,
+        assumes_independence=False,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
     ),
     "fast": Method(

@@ -30,6 +30,8 @@ class Sample:
     direction : ndarray, shape (R, N, k - 1, d)
         Where inputs change one at a time: whether a step (third axis) raises an input (last axis),
         1, lowers it, -1, or neither, 0, in probability. Empty elsewhere.
+    correlated : dict of str to tuple of str
+        Input -> those it is correlated with, where the study states rank correlations.
     random : bool
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
@@ -45,6 +47,7 @@ class Sample:
     groups: NDArray[np.intp]
     blocks: tuple[str, ...] = ("sample",)
     direction: Floats = field(default_factory=lambda: np.empty(0))
+    correlated: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
     confidence: float = CONFIDENCE

@@ -145,7 +145,7 @@ def rests_on_few(numbers: Floats, weights: Floats | None, part: Replicates) -> b
 
 
 def weighted_moments(
-    values: Floats, weights: Floats, part: Replicates = None
+    values: Floats, weights: Floats, part: Replicates = None, most: float = inf
 ) -> tuple[Estimate, Estimate]:
     """Estimate mean and standard deviation from rows with weights.
 
@@ -153,6 +153,8 @@ def weighted_moments(
     ----------
     values, weights : ndarray, shape (n,)
     part : ndarray of int, shape (n,), optional
+    most : float, optional
+        The largest weight that a row can have, where no value is farther out than those here.
 
     Returns
     -------
@@ -167,7 +169,9 @@ def weighted_moments(
     found = Estimate(mean, *scatter_interval(mean, pulls(values, weights, part)))
     ends = np.asarray(scatter_interval(0.0, pulls(squares, weights, part) / max(variance, 1e-300)))
     spread = Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
-    return trusted(found, values, weights, part), trusted(spread, squares, weights, part)
+    both = zip((found, spread), (np.abs(values), squares), strict=True)
+    parts = [trusted(one, of / max(of.max(), 1e-300), weights, part, most) for one, of in both]
+    return parts[0], parts[1]
 
 
 def trusted(

@@ -19,7 +19,7 @@ from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of
-from uq.rows.weights import largest_weight, row_weights
+from uq.rows.weights import has_rounds, largest_weight, row_weights
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -90,6 +90,8 @@ def are_independent(ds: xr.Dataset) -> bool:
 
 def has_independent_samples(ds: xr.Dataset) -> bool:
     """Whether samples are independent, however many rows each has."""
+    if has_rounds(ds):
+        return False
     design = DESIGNS[ds.attrs["design"]]
     return design.independent or (design.imported and study_file_of(ds).design.independent)
 

@@ -105,7 +105,8 @@ def _output_faults(
 
 def _unit_faults(model: Model, name: str, path: tuple[str, ...], value: Any) -> Iterator[Fault]:
     """Yield whether a number is in a unit that does not fit an output."""
-    if isinstance(value, str) and (problem := misfit(value, name, model.outputs[name].unit)):
+    output = model.outputs.get(name)  # None: not known before rows have run
+    if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
         yield Fault(path, problem, value)
 
 

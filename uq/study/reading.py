@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from uq.designs.registry import IMPORTED
-from uq.errors import InputError, nearest
+from uq.errors import InputError, nearest, one_line
 from uq.inputs.faults import MISSING, Fault, fault_of, unknown
 from uq.inputs.law import Law
 from uq.inputs.registry import LAWS
@@ -43,8 +43,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
     try:
         return read_toml(text)
     except (ValueError, OverflowError, RecursionError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{source}: not valid TOML: {reason}") from error
+        raise InputError(f"{source}: not valid TOML: {one_line(error)}") from error
 
 
 def shape_faults(data: dict[str, Any]) -> list[Fault]:
