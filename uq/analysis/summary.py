@@ -278,7 +278,13 @@ def _notes(ds: xr.Dataset) -> list[str]:
         place = nesting_of(ds)
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
-    if not has_independent_samples(ds) and ds.attrs["replicates"] == 1:
-        reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
-        notes.append(reason.format(design=ds.attrs["design"]))
+    notes += filter(None, [why_no_intervals(ds)])
     return notes
+
+
+def why_no_intervals(ds: xr.Dataset) -> str:
+    """Return why the rows of a result support no intervals, or ""."""
+    if has_independent_samples(ds) or ds.attrs["replicates"] > 1:
+        return ""
+    reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
+    return reason.format(design=ds.attrs["design"])
