@@ -155,7 +155,7 @@ def sensitivities(
     for target in chosen(ds, method, output):
         quantiles = _quantiles(target, analysis_of(ds).quantiles)
         own = replace(sample, values=target.values, quantiles=quantiles)
-        found[target.name] = one = _indices(ds, METHODS[method], target, own, notes)
+        found[target.name] = one = indices_of_target(ds, METHODS[method], target, own, notes)
         (whole if one.refused else used).append(own.whole)
     if nested:
         found = {name: _with_reason(one) for name, one in found.items()}
@@ -167,9 +167,26 @@ def _with_reason(one: TargetIndices) -> TargetIndices:
     return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
 
 
-def _indices(
-    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...]
+def indices_of_target(
+    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...] = ()
 ) -> TargetIndices:
+    """Estimate the indices of a target, or say why there are none.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        The result that the target is of.
+    method : Method
+    target : Target
+    sample : Sample
+        With its values.
+    notes : tuple of str, optional
+        Sentences to add to those of the indices.
+
+    Returns
+    -------
+    TargetIndices
+    """
     caution = DESIGNS[ds.attrs["design"]].caution
     counts = _counts(sample.whole, rows=len(sample.values))
     try:

@@ -165,3 +165,13 @@ def designs_for(method: str) -> tuple[str, ...]:
 def for_dependent_inputs() -> tuple[str, ...]:
     """Return the methods that do not assume independent inputs."""
     return tuple(name for name, method in METHODS.items() if not method.assumes_independence)
+
+
+def kinds_with_intervals(design: Design) -> dict[str, tuple[IndexKind, str]]:
+    """Return the indices of single inputs that have intervals: key -> kind and method."""
+    found: dict[str, tuple[IndexKind, str]] = {}
+    for name in fed_by(design):
+        for kind in METHODS[name].kinds if METHODS[name].intervals else ():
+            if not kind.of_pairs:
+                found.setdefault(kind.key, (kind, name))
+    return found

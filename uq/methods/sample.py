@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.intervals import is_constant
+from uq.intervals import CONFIDENCE, is_constant
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,10 @@ class Sample:
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
         Name -> probability of each quantile that indices of quantiles are about.
+    confidence : float
+        Of intervals.
+    difference : tuple of str, optional
+        Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
     """
 
     values: Floats
@@ -46,6 +50,8 @@ class Sample:
     correlated: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
+    confidence: float = CONFIDENCE
+    difference: tuple[str, str] | None = None
 
     @classmethod
     def plain(cls, values: Floats, inputs: Mapping[str, Floats], **more: Any) -> Self:

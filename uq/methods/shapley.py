@@ -69,9 +69,15 @@ def shapley_indices(sample: Sample) -> Indices:
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
     found = {}
-    for name, share, error in zip(sample.inputs, shares.tolist(), errors.T, strict=True):
+    names = list(sample.inputs)
+    terms = list(zip(names, shares.tolist(), errors.T, strict=True))
+    if sample.difference:
+        one, other = (terms[names.index(name)] for name in sample.difference)
+        terms.append((" - ".join(sample.difference), one[1] - other[1], one[2] - other[2]))
+    for name, share, error in terms:
         # Errors of rounding alone give no interval.
-        ends = UNKNOWN if is_constant(share + error) else scatter_interval(share, error)
+        constant = is_constant(share + error)
+        ends = UNKNOWN if constant else scatter_interval(share, error, sample.confidence)
         found[name] = Estimate(share, *ends)
     idle = {name: paths for name in found if (paths := _paths_without_effect(sample, name))}
     notes = tuple(

@@ -7,7 +7,14 @@ from itertools import combinations
 import numpy as np
 
 from uq.designs.layouts import NOISE
-from uq.methods.groups import Values, effective_rows, one_more_row, pooled_with_intervals, widened
+from uq.methods.groups import (
+    Values,
+    effective_rows,
+    one_more_row,
+    pooled_with_intervals,
+    widened,
+    with_difference,
+)
 from uq.methods.indices import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
@@ -70,11 +77,13 @@ def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
     few = any(len(own) < 2 or sample.is_constant(own[:, ends]) for own in replicates)
     lacking = "in some replicates too few rows differ" if few else ""
+    of_blocks = partial(estimates or _estimates, sample.blocks)
+    estimate = with_difference(of_blocks, sample.difference)
     found, notes = pooled_with_intervals(
-        partial(estimates or _estimates, sample.blocks), y[whole], replicates, "indices", lacking
+        estimate, y[whole], replicates, "indices", lacking, sample.confidence
     )
     independent = y[whole][:, ends].reshape(-1, *y.shape[3:])
-    more = one_more_row(independent, int(whole.sum()), len(replicates))
+    more = one_more_row(independent, int(whole.sum()), len(replicates), sample.confidence)
     if more and not notes:
         rows = effective_rows(independent) / len(replicates)
         notes += (
