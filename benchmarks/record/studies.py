@@ -9,6 +9,7 @@ from uq.methods.registry import fed_by
 SHIPPED = Path("studies")
 SAMPLES = {  # of each replicate
     "beam-basins": 16,
+    "beam-depths": 2,
     "beam-lifetime-561": 8,
     "beam-random-load": 4,
     "beam-sensitivity": 2,

@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
+from uq.analysis import stopping
 from uq.analysis.estimators import in_categories, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
@@ -21,7 +22,6 @@ from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
 from uq.population.smoothing import Smoothed, weights_of
-from uq.rows import stopping
 from uq.rows.elements import (
     Element,
     Mask,

@@ -119,8 +119,10 @@ def subject(ds: xr.Dataset, name: str) -> str:
     if is_category(ds, category):
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
         return f"whether the {meaning} is {label}"
-    (element,) = named_elements(ds, inside)
+    element, *others = named_elements(ds, inside)
     words = element_in_words(ds, element)
+    if others:
+        words = f"{element.meaning}, all {1 + len(others)} elements together"
     if at:
         asked = analysis_of(ds).thresholds.get(element.output, ())
         at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)

@@ -8,7 +8,7 @@ import numpy as np
 
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.intervals import ROUNDING, Replicates, is_constant, replicates_of_some
+from uq.intervals import CONFIDENCE, ROUNDING, Replicates, is_constant, replicates_of_some
 from uq.population.means import pulls, rests_on_few, trusted, weighted_share
 from uq.roots import root
 from uq.rows.element import Element
@@ -30,6 +30,8 @@ class Population:
     element : Element
     part : ndarray of int, shape (n,), or None
         The independent part of each row.
+    confidence : float
+        Of intervals.
 
     References
     ----------
@@ -39,6 +41,7 @@ class Population:
 
     element: Element
     part: Replicates
+    confidence: float = CONFIDENCE
 
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
@@ -87,7 +90,8 @@ class Population:
 
     def _share(self, numbers: Floats, kept: Mask) -> Estimate:
         """Estimate a probability, or say why the weights do not allow it."""
-        return self._trusted(weighted_share(numbers[kept], *self._of(kept)), numbers, kept)
+        found = weighted_share(numbers[kept], *self._of(kept), confidence=self.confidence)
+        return self._trusted(found, numbers, kept)
 
     def _of(self, kept: Mask) -> tuple[Floats | None, Replicates]:
         """Return weight and part of some rows."""
@@ -114,7 +118,7 @@ class Population:
         few = rests_on_few(self._below(value)[kept], weights, part)
 
         def share(y: float) -> Estimate:
-            return weighted_share(self._below(y)[kept], weights, part, few)
+            return weighted_share(self._below(y)[kept], weights, part, few, self.confidence)
 
         return share
 
