@@ -6,12 +6,15 @@ is independent of its own inputs, given what the world shares, and unbiased.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
 from uq.learning.evidence import Evidence
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.rows.nesting import Nesting
+
+Places = NDArray[np.integer]
 
 
 def log_worth(found: Evidence, likelihoods: UnitLikelihoods, place: Nesting, own: bool) -> Floats:
@@ -47,7 +50,7 @@ def log_worth(found: Evidence, likelihoods: UnitLikelihoods, place: Nesting, own
     return worth
 
 
-def _mean_of_others(logs: Floats, of_unit: Floats, sample: Floats) -> Floats:
+def _mean_of_others(logs: Floats, of_unit: Places, sample: Places) -> Floats:
     """Return the logarithm of the mean over the rows of other units of the sample, shape (m, g)."""
     _, unit = np.unique(of_unit, return_inverse=True)
     top = np.full((sample.max() + 1, logs.shape[1]), -np.inf)
