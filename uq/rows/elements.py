@@ -132,7 +132,7 @@ def labels(variable: xr.DataArray) -> xr.DataArray:
 
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
     """Return the outputs that a study names, or all if it names none."""
-    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds)))
+    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)))
     return named if analysis.outputs else output_names(ds)
 
 
