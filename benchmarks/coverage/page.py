@@ -26,7 +26,8 @@ censored; Weibull and lognormal lives; the *g-function*; a *linear function* in 
 *Pareto* values without variance or mean; gamma lives and lives with infant mortality, to which
 wrong laws are fitted; a *random model*, x1 + (1 + 2 x2) e with noise e; limits with a probability
 of 1e-5; nested *random effects* of samples, units and repeats; lives *scaled* by a lognormal input;
-*fleets* of units that share a lognormal rate, each with a depth of its own. Their true values are
+*fleets* of units that share a lognormal rate, each with a depth of its own; *basins* with a flat
+boundary, with Cantor's, and without any. Their true values are
 closed forms or quadratures (`benchmarks/coverage`).
 
 *Held or refused* counts intervals that contain the truth together with those refused with a reason.

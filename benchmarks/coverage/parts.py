@@ -5,6 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 from benchmarks.coverage import (
+    basins,
     curves,
     differences,
     effects,
@@ -88,4 +89,5 @@ PARTS = {
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
     "fleet-shared": Part(fleets.shared_scale, 1000),
+    "basins": Part(basins.exponents, 1000),
 }

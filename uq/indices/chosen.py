@@ -44,7 +44,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
     if output is None:
         found = False
         for name in shown_outputs(ds, analysis_of(ds)):
-            for target in _targets(ds, name):
+            for target in targets_of(ds, name):
                 if asked.takes_events if target.event else asked.takes_numbers:
                     yield target if asked.scale_free else lightened(target)
                     found = True
@@ -65,7 +65,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         _, inside, _ = split_name(output)
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
-        names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
+        names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
     yield from named if asked.scale_free else map(with_tail_note, named)
 
@@ -74,20 +74,34 @@ def _named(ds: xr.Dataset, name: str) -> list[Target]:
     """Return the targets that a user means by a name; none for an unknown name."""
     name = canonical(name)
     form, inside, _ = split_name(name)
-    found = list(_targets(ds, _output_in(inside), every=True))
+    found = list(targets_of(ds, output_in(inside), every=True))
     if form:
         return [target for target in found if target.name == name]
     own = [target for target in found if split_name(target.name)[0] == ""]
-    return own or list(_targets(ds, name))
+    return own or list(targets_of(ds, name))
 
 
-def _output_in(inside: str) -> str:
+def output_in(inside: str) -> str:
     """Return the output or element that the name of a target is about."""
     return inside if "[" in inside else inside.partition("=")[0]
 
 
-def _targets(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
-    """Return the targets of an output or of one element of it."""
+def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
+    """Return the targets of an output or of one element of it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+    every : bool, optional
+        Whether also those that must be asked for by name.
+
+    Returns
+    -------
+    iterator of Target
+        Of a category without dimensions, whether a row is in each that occurs.
+    """
     if is_category(ds, name) and ds[name].ndim == 1:
         return category_targets(ds, name)
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
