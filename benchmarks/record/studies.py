@@ -9,6 +9,7 @@ from uq.methods.registry import fed_by
 SHIPPED = Path("studies")
 SAMPLES = {  # of each replicate
     "beam-basins": 16,
+    "beam-depths": 2,
     "beam-lifetime-561": 8,
     "beam-outcome": 8,
     "beam-random-load": 4,
@@ -58,6 +59,7 @@ def small_studies() -> dict[str, str]:
             "exponential-wear", "monte-carlo", 200, "[fixed]\nthreshold = 1e-10", TOLERANCE
         ),
         "correlated-small": _study("linear", "monte-carlo", 200, CORRELATED),
+        "correlated-paths-small": _study("linear", "shapley", 64, CORRELATED),
     }
 
 

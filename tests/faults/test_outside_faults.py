@@ -7,8 +7,10 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import cooling_fmu
 import psutil
 import pytest
+from their_server import TheirServer
 
 import uq
 
@@ -54,28 +56,19 @@ pattern = '(.+)'
 """
 PROGRAM = "sleep 0.02\necho {x1} > part.txt\nsleep 0.02\nmv part.txt y.txt\n"
 
-SERVER = """
-import sys
-import time
-import umbridge
+SERVER = "time.sleep(0.02)\nreturn [[parameters[0][0] ** 3]]"
+MODELS = {"function": "slow.py", "program": "slow.toml", "server": "", "fmu": "body.toml"}
 
-class Slow(umbridge.Model):
-    def __init__(self):
-        super().__init__("slow")
-    def get_input_sizes(self, config):
-        return [1]
-    def get_output_sizes(self, config):
-        return [1]
-    def supports_evaluate(self):
-        return True
-    def __call__(self, parameters, config):
-        time.sleep(0.02)
-        return [[parameters[0][0] ** 3]]
-
-umbridge.serve_models([Slow()], int(sys.argv[1]))
+FMU = """
+[machine]
+name = "slow"
+fmu = "body.fmu"
+step = 0.4
+[parameters.x1]
+variable = "body.rate"
+[outputs.y]
+variable = "T"
 """
-PORT = "52417"
-MODELS = {"function": "slow.py", "program": "slow.toml", "server": f"http://127.0.0.1:{PORT}/slow"}
 
 
 def start(*arguments):
@@ -99,18 +92,25 @@ def descendants(process):
 
 @pytest.fixture
 def files(folder):
-    """Write a study, a function, a program and a server into an empty folder."""
-    texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM, "server.py": SERVER}
+    """Write a study, a function and a program into an empty folder; return it."""
+    texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM, "body.toml": FMU}
     for name, text in {**texts, "own.toml": STUDY.format(one=1)}.items():
         (folder / name).write_text(text)
+    return folder
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", MODELS)
 def test_kills_leave_no_trace(files, kind):
     chance = random.Random(kind)
-    server = start("server.py", PORT) if kind == "server" else None
-    command = ("-m", "uq", "run", "own.toml", "--model", MODELS[kind], "--quiet", "--workers", "2")
+    if kind == "fmu":
+        slow = cooling_fmu.SOURCE.replace("int fault", "usleep(4000); int fault")
+        cooling_fmu.write("body.fmu", cooling_fmu.compiled(files, slow))
+    server = TheirServer(".", SERVER, "slow") if kind == "server" else None
+    if server:
+        server.start()
+    model = server.address if server else MODELS[kind]
+    command = ("-m", "uq", "run", "own.toml", "--model", model, "--quiet", "--workers", "2")
     try:
         whole = start(*command, "-o", "whole.nc")
         assert whole.wait(PATIENCE) == 0
@@ -123,21 +123,21 @@ def test_kills_leave_no_trace(files, kind):
                 driver = start(*command, "-o", "own.nc")
             time.sleep(chance.uniform(0.5, 1.5))
             below = descendants(driver)
-            targets = [one for one in (driver, *below, *filter(None, [server])) if running(one)]
+            other = [psutil.Process(server.process.pid)] if server else []
+            targets = [one for one in (driver, *below, *other) if running(one)]
             if len(killed) < KILLS and targets:
                 one = chance.choice(targets)
                 killed.append(one)
                 with suppress(psutil.NoSuchProcess):
                     one.kill()
-                if one is server:
-                    server.wait()
-                    server = start("server.py", PORT)
+                if one in other:
+                    server.kill()
+                    server.start()
         assert driver.wait() == 0 and len(killed) >= KILLS // 2
         time.sleep(1.0)
         assert not [one for one in below if running(one)]
     finally:
         if server:
             server.kill()
-            server.wait()
     assert uq.open_result("own.nc").identical(uq.open_result("whole.nc"))
     assert sorted(one.name for one in Path().glob("slow.rows/*")) == []

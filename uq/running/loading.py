@@ -6,11 +6,9 @@ return is remembered on this computer until the function changes.
 
 import hashlib
 import json
-import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import suppress
-from multiprocessing import Pipe
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -19,9 +17,11 @@ import numpy as np
 from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.returned import Returned, as_plain, from_plain, joined
-from uq.running.environment import command, inherited
+from uq.running.environment import started
+from uq.running.options import Say, ignore
 from uq.study.registry import code_of, find_model, located, with_returns
 from uq.study.sources import DISTRIBUTION
+from uq.wording import duration
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -30,11 +30,12 @@ SEEN = 64
 """Rows of a design that show what a function returns."""
 
 _WORTH_KEEPING = 1.0  # seconds that these rows took
+_SLOW = 3.0  # seconds after which a user is told that rows are run
 
 Row = tuple[list[float], int]
 
 
-def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
+def load_study(path: str | PathLike[str], model: str | None = None, say: Say = ignore) -> "Study":
     """Read and check a study file.
 
     Parameters
@@ -44,6 +45,8 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
     model : str, optional
         Use this model instead of the file's: an installed name, ``"package.module:ATTRIBUTE"``,
         or a file ``"mine.py"`` (``"mine.py:NAME"`` where it has several).
+    say : callable, optional
+        Called with a line for the user if it takes long to find out what the model returns.
 
     Returns
     -------
@@ -62,7 +65,7 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
     """
     from uq.study import definition
 
-    return _known(definition.load_study(path, model and located(model)))
+    return _known(definition.load_study(path, model and located(model)), say)
 
 
 def study_of_text(text: str, source: str, model: str | None) -> "Study":
@@ -82,7 +85,7 @@ def load_model(reference: str) -> Model:
     return find_model(with_returns(reference, _found(reference, [nominal])))
 
 
-def _known(study: "Study") -> "Study":
+def _known(study: "Study", say: Say = ignore) -> "Study":
     """Return a study whose model has outputs."""
     if study.model.outputs:
         return study
@@ -94,21 +97,21 @@ def _known(study: "Study") -> "Study":
     tried = [(list(nominal.values()), 0)]
     tried += zip(first.x.tolist(), first.seed.tolist(), strict=True)
     reference = study.model_reference
-    known = with_returns(reference, _found(reference, tried))
+    known = with_returns(reference, _found(reference, tried, say))
     return study_from_text(study.text, study.path, known)
 
 
-def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
+def _found(reference: str, tried: list[Row], say: Say = ignore) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
-    numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
-    key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
     from platformdirs import user_cache_path
 
+    numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
+    key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
     kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()
-    found = joined(list(_returned(reference, tried)))
+    found = joined(list(_returned(reference, tried, say)))
     if time.monotonic() - began > _WORTH_KEEPING:
         with suppress(OSError):
             kept.parent.mkdir(parents=True, exist_ok=True)
@@ -116,7 +119,7 @@ def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
     return found
 
 
-def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]:
+def _returned(reference: str, tried: list[Row], say: Say) -> Iterator[dict[str, Returned]]:
     """Yield what rows return; a later one that fails is passed over, as in a run it has a status.
 
     Raises
@@ -128,9 +131,18 @@ def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]
 
     todo = iter(enumerate(tried))
     left = len(tried)
+    began, told = time.monotonic(), False
     while left:
         for i, said, value in _in_process(reference, todo):
             left = len(tried) - i - 1
+            seconds = time.monotonic() - began
+            if seconds > _SLOW and left and not told:
+                told = True
+                more = seconds / (i + 1) * left
+                say(
+                    f"running {left} more rows, once, to see what the model returns: about"
+                    f" {duration(more) or f'{more:.0f} s'}; 'returns' in @uq.machine states it"
+                )
             if said == probe.REFUSED:
                 raise value
             if said == probe.RETURNED:
@@ -143,16 +155,7 @@ def _in_process(reference: str, todo: Iterator[tuple[int, Row]]) -> Iterator[tup
     """Yield the number of each row and what it did, until one kills the process."""
     from uq.running import probe
 
-    connection, there = Pipe()
-    with there:
-        process = subprocess.Popen(
-            command("uq.running.probe", str(there.fileno())),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            pass_fds=(there.fileno(),),
-            start_new_session=True,
-            env=inherited(),
-        )
+    process, connection = started("uq.running.probe")
     try:
         connection.send(reference)
         for i, row in todo:
