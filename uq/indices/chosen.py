@@ -1,5 +1,6 @@
 """Which targets a user means: those that suit a method, or those of some names."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 import xarray as xr
@@ -83,12 +84,12 @@ def _named(ds: xr.Dataset, name: str) -> list[Target]:
 
 def _output_in(inside: str) -> str:
     """Return the output or element that the name of a target is about."""
-    return inside if "[" in inside else inside.partition("=")[0]
+    return re.sub(r"=[^\]]*$", "", inside)
 
 
 def _targets(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
     """Return the targets of an output or of one element of it."""
-    if is_category(ds, name) and ds[name].ndim == 1:
+    if is_category(ds, name.partition("[")[0]):
         return category_targets(ds, name)
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
     return targets.targets(known, analysis_of(ds).thresholds, every)
