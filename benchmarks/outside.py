@@ -5,9 +5,7 @@ that write and read the same files, and a UM-Bridge server beside the package's 
 row after the other in one process, by turns, the median of several.
 """
 
-import socket
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -15,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.figures import Figure, keep
+from tests.their_server import TheirServer
 from uq.outside.function import machine, model_of
 from uq.outside.program import program_of
 from uq.outside.server import server_model
@@ -33,25 +32,6 @@ file = "out.txt"
 pattern = 'y = (\\S+)'
 """
 PROGRAM = "#!/bin/sh\nread x < input.txt\necho y = $x > out.txt\n"
-
-SERVER = """
-import sys
-import umbridge
-
-class Trivial(umbridge.Model):
-    def __init__(self):
-        super().__init__("trivial")
-    def get_input_sizes(self, config):
-        return [1]
-    def get_output_sizes(self, config):
-        return [1]
-    def supports_evaluate(self):
-        return True
-    def __call__(self, parameters, config):
-        return [[parameters[0][0]]]
-
-umbridge.serve_models([Trivial()], int(sys.argv[1]))
-"""
 
 
 @machine(returns={"y": "1"})
@@ -111,23 +91,11 @@ def main():
         own, least = by_turns(lambda: ours(model), lambda: bare(folder))
         program = own / least
         print(f"program            {own * 1e3:8.2f} ms a row {least * 1e3:8.2f} ms {program:6.2f}")
-        (folder / "server.py").write_text(SERVER)
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = str(free.getsockname()[1])
-        with subprocess.Popen(
-            [sys.executable, folder / "server.py", port],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        ) as process:
-            try:
-                address = f"http://127.0.0.1:{port}"
-                known = {"y": next(iter(model_of(_trivial).batch.returned.values()))}
-                model = server_model(f"{address}/trivial", known)
-                client = umbridge.HTTPModel(address, "trivial")
-                own, least = by_turns(lambda: ours(model), lambda: theirs(client))
-            finally:
-                process.kill()
+        with TheirServer(folder, "return [[parameters[0][0]]]", "trivial") as other:
+            known = {"y": next(iter(model_of(_trivial).batch.returned.values()))}
+            model = server_model(other.address, known)
+            client = umbridge.HTTPModel(other.base, "trivial")
+            own, least = by_turns(lambda: ours(model), lambda: theirs(client))
         server = own / least
         print(f"UM-Bridge server   {own * 1e3:8.2f} ms a row {least * 1e3:8.2f} ms {server:6.2f}")
     keep(

@@ -104,6 +104,7 @@ def test_what_is_off_needs_a_reason():
         "lives",
         "sobol-life",
         "shapley",
+        "shapley-dependent",
         "nested-few-samples",
         "levels-two-values",
         "null-regional",

@@ -29,6 +29,17 @@ class RunError(Exception):
     """A run that gives no result although its input is valid: one plain sentence."""
 
 
+def one_line(error: BaseException) -> str:
+    """Return the text of an exception in one line, which may be empty."""
+    return " ".join(str(error).split())
+
+
+def described(error: BaseException) -> str:
+    """Return the kind of an exception and its text in one line."""
+    text = one_line(error)
+    return f"{type(error).__name__}: {text}" if text else repr(error)
+
+
 def choices(names: Iterable[str], most: int = 6) -> str:
     """Return the first of some names for an error line: ``a, b, c and 4 more``."""
     all_names = list(names)

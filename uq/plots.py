@@ -20,6 +20,7 @@ from uq.drawing.distribution_plots import lifetime as lifetime
 from uq.drawing.distribution_plots import quantile_table as quantile_table
 from uq.drawing.event_plot import event_probability as event_probability
 from uq.drawing.figure import write
+from uq.drawing.index_curve_plot import index_curves as index_curves
 from uq.drawing.index_plot import index_bars as index_bars
 from uq.drawing.input_plot import inputs as inputs
 from uq.drawing.motion_plot import history as history
@@ -77,6 +78,11 @@ FIGURES: dict[str, Entry] = {
         "Sensitivity indices of {name} by {method}",
         section="",
         file=("method", "name"),
+    ),
+    "index-curves": Entry(
+        index_curves,
+        of.curves,
+        "Sensitivity indices of {name} by {method}, along its dimension",
     ),
     "convergence-indices": Entry(
         index_convergence,

@@ -101,12 +101,28 @@ def misfit(text: str, of: str, units: str) -> str:
         The CF unit of that.
     """
     written = read_quantity(text)
-    if written.dimensions == _taken_apart(units)[2]:
+    size, turns, dimensions, _ = _taken_apart(units)
+    if (size, turns) != (1, 0):
+        return f"'{of}' is in '{units}': give the number in that unit, without a unit"
+    if written.dimensions == dimensions:
         return ""
     given = text.strip().removeprefix(written.number).strip()
     allowed = allowed_units(units)
     meant = nearest(given, allowed)
     return f"the unit '{given}' does not fit '{of}'{meant} (allowed: {', '.join(allowed)})"
+
+
+def fault_of_unit(unit: str) -> str:
+    """Return why a string cannot be the unit of a parameter or output; "" where it can."""
+    short = {word: name for name, word in _TIMES.items()} | {"seconds": "s"}
+    if unit in short:  # which xarray would turn into dates
+        return f"write it as '{short[unit]}'"
+    place = 0
+    while found := _PART.match(unit, place):
+        place = found.end()
+    if unit == "1" or (unit and place == len(unit)):
+        return ""
+    return "write its factors with their powers, such as 'N m-1', or '1' for a pure number"
 
 
 def allowed_units(units: str) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from benchmarks.coverage import (
     curves,
+    dependent,
     differences,
     effects,
     few,
@@ -18,7 +19,9 @@ from benchmarks.coverage import (
     noise,
     plain,
     scaled,
+    stopping,
     tails,
+    whole,
 )
 from benchmarks.coverage.tally import Line
 
@@ -65,6 +68,9 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "whole": Part(partial(whole.whole, "saltelli"), 1000),
+    "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
+    "shapley-dependent": Part(dependent.shapley, 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
@@ -79,7 +85,10 @@ PARTS = {
     "few-indices": Part(few.indices, 1000),
     "few-twin": Part(few.twin, 1000),
     "failed": Part(few.failed, 1000),
-    "stopped": Part(fewer_rows.stopped),
+    "stopped": Part(partial(stopping.rows, "monte-carlo", 2048, 1)),
+    "stopped-replicates": Part(partial(stopping.rows, "halton", 256, 8)),
+    "stopped-integrated": Part(stopping.integrated),
+    **{f"stopped-{name}": Part(partial(stopping.indices, name)) for name in stopping.INDICES},
     "subset": Part(fewer_rows.subset),
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),

@@ -9,6 +9,7 @@ from uq.methods.registry import fed_by
 SHIPPED = Path("studies")
 SAMPLES = {  # of each replicate
     "beam-basins": 16,
+    "beam-depths": 2,
     "beam-lifetime-561": 8,
     "beam-random-load": 4,
     "beam-sensitivity": 2,
@@ -56,6 +57,7 @@ def small_studies() -> dict[str, str]:
             "exponential-wear", "monte-carlo", 200, "[fixed]\nthreshold = 1e-10", TOLERANCE
         ),
         "correlated-small": _study("linear", "monte-carlo", 200, CORRELATED),
+        "correlated-paths-small": _study("linear", "shapley", 64, CORRELATED),
     }
 
 

@@ -166,6 +166,14 @@ EXAMPLES = (
         "beam-lifetime",
     ),
     _of_result(
+        "index-curves",
+        INPUTS,
+        "Sensitivity indices along a curve",
+        "The index of each depth, with its band; in the legend, that of all depths together.",
+        'index_curves(ds, "first_time_to_depth")',
+        "beam-depths",
+    ),
+    _of_result(
         "pairs",
         INPUTS,
         "Regimes over the inputs that separate them",

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from their_server import TheirServer
 
 import uq
 
@@ -54,28 +55,8 @@ pattern = '(.+)'
 """
 PROGRAM = "sleep 0.02\necho {x1} > part.txt\nsleep 0.02\nmv part.txt y.txt\n"
 
-SERVER = """
-import sys
-import time
-import umbridge
-
-class Slow(umbridge.Model):
-    def __init__(self):
-        super().__init__("slow")
-    def get_input_sizes(self, config):
-        return [1]
-    def get_output_sizes(self, config):
-        return [1]
-    def supports_evaluate(self):
-        return True
-    def __call__(self, parameters, config):
-        time.sleep(0.02)
-        return [[parameters[0][0] ** 3]]
-
-umbridge.serve_models([Slow()], int(sys.argv[1]))
-"""
-PORT = "52417"
-MODELS = {"function": "slow.py", "program": "slow.toml", "server": f"http://127.0.0.1:{PORT}/slow"}
+SERVER = "time.sleep(0.02)\nreturn [[parameters[0][0] ** 3]]"
+MODELS = {"function": "slow.py", "program": "slow.toml", "server": ""}
 
 
 def start(*arguments):
@@ -99,8 +80,8 @@ def descendants(process):
 
 @pytest.fixture
 def files(folder):
-    """Write a study, a function, a program and a server into an empty folder."""
-    texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM, "server.py": SERVER}
+    """Write a study, a function and a program into an empty folder."""
+    texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM}
     for name, text in {**texts, "own.toml": STUDY.format(one=1)}.items():
         (folder / name).write_text(text)
 
@@ -109,8 +90,11 @@ def files(folder):
 @pytest.mark.parametrize("kind", MODELS)
 def test_kills_leave_no_trace(files, kind):
     chance = random.Random(kind)
-    server = start("server.py", PORT) if kind == "server" else None
-    command = ("-m", "uq", "run", "own.toml", "--model", MODELS[kind], "--quiet", "--workers", "2")
+    server = TheirServer(".", SERVER, "slow") if kind == "server" else None
+    if server:
+        server.start()
+    model = server.address if server else MODELS[kind]
+    command = ("-m", "uq", "run", "own.toml", "--model", model, "--quiet", "--workers", "2")
     try:
         whole = start(*command, "-o", "whole.nc")
         assert whole.wait(PATIENCE) == 0
@@ -123,21 +107,21 @@ def test_kills_leave_no_trace(files, kind):
                 driver = start(*command, "-o", "own.nc")
             time.sleep(chance.uniform(0.5, 1.5))
             below = descendants(driver)
-            targets = [one for one in (driver, *below, *filter(None, [server])) if running(one)]
+            other = [psutil.Process(server.process.pid)] if server else []
+            targets = [one for one in (driver, *below, *other) if running(one)]
             if len(killed) < KILLS and targets:
                 one = chance.choice(targets)
                 killed.append(one)
                 with suppress(psutil.NoSuchProcess):
                     one.kill()
-                if one is server:
-                    server.wait()
-                    server = start("server.py", PORT)
+                if one in other:
+                    server.kill()
+                    server.start()
         assert driver.wait() == 0 and len(killed) >= KILLS // 2
         time.sleep(1.0)
         assert not [one for one in below if running(one)]
     finally:
         if server:
             server.kill()
-            server.wait()
     assert uq.open_result("own.nc").identical(uq.open_result("whole.nc"))
     assert sorted(one.name for one in Path().glob("slow.rows/*")) == []

@@ -103,6 +103,25 @@ def test_what_is_declared_is_not_looked_for(uq, write):
     assert "returned 'profile' with shape (2,), expected ()" in said
 
 
+@pytest.mark.parametrize(("unit", "fits"), [("m", True), ("mm", False), ("MPa", False)])
+def test_a_threshold_has_the_unit_of_its_output_or_of_its_base(uq, write, unit, fits):
+    text = f"import uq\n@uq.machine(returns={{'y': '{unit}'}})\ndef wear(load=1.0): ...\n"
+    study = STUDY + "[analysis]\nthresholds = {y = '250 um'}\n"
+    ended = uq("check", "own.toml", "--model", write(text, study))
+    assert (ended.code == 0) is fits
+    if not fits:
+        assert f"'y' is in '{unit}': give the number in that unit, without a unit" in ended.err
+
+
+def test_a_threshold_with_a_unit_waits_for_the_outputs(uq, write):
+    limits = '[analysis]\nthresholds = {life = "4 days"}\n'
+    refused = uq("check", "own.toml", "--model", write(WEAR, STUDY + limits))
+    assert refused.code == 2 and "the unit 'days' does not fit 'life'" in refused.err
+    in_seconds = '@uq.machine(returns={"life": uq.Returned("s", life=True), "profile": "m"})'
+    text = WEAR.replace("@uq.machine", in_seconds)
+    assert uq("check", "own.toml", "--model", write(text, STUDY + limits)).code == 0
+
+
 def test_a_seed_is_that_of_the_row(uq, write):
     file = write(
         "import uq\n@uq.machine\n"
@@ -140,6 +159,10 @@ MISTAKES = {
     "import uq\n@uq.machine\ndef wear(load=float('inf')): ...\n": "nominal value inf of 'load'",
     BOUNDED % "(2.0, 3.0)": "nominal value 1 of 'load' must be a finite number between 2 and 3",
     BOUNDED % "(3.0, 0.0)": "bounds of 'load' must be a lower and a higher number, not (3, 0)",
+    BOUNDED % "'newtons per metre!'": "unit 'newtons per metre!' of 'load': write its factors with",
+    "import uq\n@uq.machine(returns={'y': 'hours'})\ndef wear(load=1.0): ...\n": (
+        "unit 'hours' of output 'y': write it as 'h'"
+    ),
     "import uq\n@uq.machine\ndef wear(load: 'no such' = 1.0): ...\n": "annotations: ",
     "import uq\n@uq.machine\ndef wear(load=1.0): return {}\n": "returned an empty dict",
     "import uq\n@uq.machine\ndef wear(load=1.0): return {'load': load}\n": (

@@ -1,6 +1,8 @@
 """A program as a machine: what a study makes of it, what goes wrong, what it leaves behind."""
 
+import os
 import tempfile
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -210,11 +212,35 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, machine, change):
     assert all("machine" in one for one in ended.err.splitlines())
 
 
-def test_folders_of_rows_that_were_stopped_are_gone_when_the_run_ends(uq, machine, folder):
-    machine("#!/bin/sh\nhead -c 1000000 /dev/zero > large\nexec sleep 300\n")
-    _, ds = run(uq, "--row-limit", "1", "--samples", "2", "--workers", "1")
+LOST = {
+    "exec sleep 300": ("timed-out", "did not end within 0.5 s"),
+    "kill -9 $PPID; exec sleep 300": ("crashed", "killed its process (Killed)"),
+    "echo nan > out.json; printf 'a,b\\n0,nan\\n' > out.csv": ("non-finite", "'last' is nan"),
+}
+
+
+@pytest.mark.parametrize("line", LOST)
+def test_a_lost_row_keeps_its_folder_without_large_files(uq, machine, folder, line):
+    writing = "head -c 11000000 /dev/zero > large\ntouch small\necho life = 1\n"
+    pair = "echo '{\"pairs\": [[1, 2]]}' > out.json\n"
+    machine(f"#!/bin/sh\n{writing}{line}\n{pair}")
+    _, ds = run(uq, "--row-limit", "0.5", "--samples", "2")
+    label, words = LOST[line]
+    assert {Status(code).label for code in ds["status"].values} == {label}
+    said = ds["status"].attrs[f"example_{label.replace('-', '_')}"]
+    assert words in said
+    assert Path(said.rpartition("; see ")[2], "small").is_file()
+    kept = [one.name for one in (folder / "pad.rows").iterdir()]
+    assert len(kept) == 2 and all(one.startswith("failed-") for one in kept)
+    assert not list((folder / "pad.rows").rglob("large"))
+
+
+def test_a_row_limit_costs_no_more_than_the_limit_of_each_row(uq, machine):
+    machine("#!/bin/sh\nexec sleep 300\n")
+    began = time.monotonic()
+    _, ds = run(uq, "--row-limit", "0.2", "--samples", "6")
     assert (ds["status"].values == Status.TIMED_OUT).all()
-    assert not (folder / "pad.rows").exists()
+    assert time.monotonic() - began < 10  # each in a process of its own: half a minute
 
 
 def test_numbers_of_fortran_are_read(uq, machine):
@@ -238,8 +264,7 @@ def test_a_program_that_is_not_there_is_a_status(uq, machine, folder):
 def test_folders_of_killed_processes_are_removed(folder):
     folders = Folders(folder / "rows")
     with folders.row([1.0]) as first:
-        parts = first.name.rsplit("-", 2)
-        dead = first.with_name(f"{parts[0]}-999999999-x")
+        dead = first.with_name(first.name.replace(str(os.getpid()), "999999999"))
         dead.mkdir()
         with Folders(folder / "rows").row([2.0]) as second:
             assert first.is_dir() and second.is_dir() and not dead.exists()

@@ -10,7 +10,8 @@ from scipy import stats
 from study_text import study_text
 
 from uq.designs.registry import DESIGNS
-from uq.rows.sampling import _splitmix64, group_size, row_block, rows
+from uq.designs.streams import splitmix64
+from uq.rows.sampling import group_size, row_block, rows
 from uq.study.definition import study_from_text
 
 MIXED: dict[str, dict[str, Any]] = {
@@ -158,11 +159,11 @@ def test_rows_of_several_replicates_fill_the_law_together():
         assert stats.kstest(x, study.uncertain["rate"].frozen().cdf).statistic <= 1 / 50 + 1e-6
 
 
-def test_the_seed_hash_is_splitmix64():
+def test_the_seed_hash_issplitmix64():
     # First outputs of the reference generator started at 1234567.
     reference = [6457827717110365317, 3203168211198807973, 9817491932198370423]
     states = np.uint64(1234567) + np.arange(3, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
-    assert _splitmix64(states).tolist() == reference
+    assert splitmix64(states).tolist() == reference
 
 
 def test_row_seeds_are_distinct_and_depend_on_the_study():

@@ -1,21 +1,24 @@
 """Models on UM-Bridge servers, with its own package as the other side, and ours offered to it."""
 
+import itertools
 import json
 import socket
-import subprocess
-import sys
 import threading
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from their_server import TheirServer
 
 import uq as package
 from models.analytic import EXPONENTIAL_WEAR as WEAR
 from models.analytic import ISHIGAMI
 from uq.contract import Status
 from uq.outside import server, um_bridge
-from uq.outside.serving import server_of
+from uq.outside.returned import Returned
+from uq.outside.serving import address_of, server_of
+from uq.study.registry import with_returns
 
 STUDY = """
 [study]
@@ -32,26 +35,11 @@ upper = {upper}
 source = "assumed"
 """
 
-THEIRS = """
-import sys
-import umbridge
-
-class Theirs(umbridge.Model):
-    def __init__(self):
-        super().__init__("forward")
-    def get_input_sizes(self, config):
-        return [2, 1]
-    def get_output_sizes(self, config):
-        return [1, 2]
-    def supports_evaluate(self):
-        return True
-    def __call__(self, parameters, config):
-        (a, b), (c,) = parameters
-        if a > 0.9:
-            raise ValueError("too much")
-        return [[a + b + c], [a, 2 * a]]
-
-umbridge.serve_models([Theirs()], int(sys.argv[1]))
+THEIRS = """\
+(a, b), (c,) = parameters
+if a > 0.9:
+    raise ValueError("too much")
+return [[a + b + c], [a, 2 * a]]
 """
 
 
@@ -62,25 +50,11 @@ def forgetful(monkeypatch):
     monkeypatch.setattr(server, "_SOON", 20.0)
 
 
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
-
-
 @pytest.fixture
 def theirs(folder):
     """Start a server of the other side; return the address of its model."""
-    (folder / "theirs.py").write_text(THEIRS)
-    port = free_port()
-    process = subprocess.Popen(
-        [sys.executable, "theirs.py", str(port)],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    yield f"http://127.0.0.1:{port}/forward"
-    process.kill()
-    process.wait()
+    with TheirServer(folder, THEIRS, inputs=(2, 1), outputs=(1, 2)) as one:
+        yield one.address
 
 
 @pytest.fixture
@@ -88,16 +62,25 @@ def ours():
     """Return a function that serves a model and returns its address."""
     servers = []
 
-    def serve(model):
-        one = server_of(model, port=0)
+    def serve(model, host="127.0.0.1"):
+        one = server_of(model, host, port=0)
         threading.Thread(target=one.serve_forever, daemon=True).start()
         servers.append(one)
-        return f"http://127.0.0.1:{one.server_address[1]}/{model.name}"
+        return address_of(host, one.server_address[1], model.name)
 
     yield serve
     for one in servers:
         one.shutdown()
         one.server_close()
+
+
+def run_known(address, **options):
+    """Run a study of a server of which it is known what it returns."""
+    Path("own.toml").write_text(
+        STUDY.format(model="m", name="x1", lower=0, upper=1, samples=options.pop("samples"))
+    )
+    study = package.load_study("own.toml", with_returns(address, {"y": Returned()}))
+    return package.run(study, "own.nc", **options)
 
 
 def run(uq, address, *more, **study):
@@ -194,6 +177,8 @@ WRONG = {
     "an error": ({"error": {"type": "X", "message": "no mesh"}}, "answers Evaluate: no mesh"),
     "a list": ([1.0], "answers Evaluate without a list of vectors"),
     "text": ({"output": [["a"]]}, "returned 'y' as str"),
+    "nan": ({"output": [[float("nan")]]}, "'y' is nan"),
+    "null": ({"output": [[None]]}, "returned 'y' as NoneType"),
     "500": ("HTTP/1.1 500 X\r\nContent-Length: 2\r\n\r\n{}", "with status 500"),
 }
 
@@ -229,6 +214,42 @@ def test_a_server_that_is_restarted_loses_no_row(monkeypatch, hostile):
     answers = {"Evaluate": lambda count: "" if count < 3 else {"output": [[2.0]]}}
     base = hostile(answers).rsplit("/", 1)[0]
     assert um_bridge.call(base, "Evaluate", {}) == {"output": [[2.0]]}
+
+
+def test_a_server_that_does_not_return_is_waited_for_once(uq, monkeypatch, hostile):
+    monkeypatch.setattr(um_bridge, "_PATIENCE", 1.0)
+    monkeypatch.setattr(um_bridge, "_silent", set())
+    address = hostile(INFO | {"Evaluate": lambda count: {"output": [[2.0]]} if count < 3 else ""})
+    began = time.monotonic()
+    ds = run_known(address, samples=40, workers=0)
+    assert time.monotonic() - began < 10  # not a second for each row
+    assert (ds["status"].values == Status.RAISED).sum() == 37
+    assert "does not answer" in ds["status"].attrs["example_raised"]
+
+
+def test_a_server_that_answers_late_costs_its_row(uq, hostile):
+    calls = itertools.count()
+
+    def late(count):
+        time.sleep(30.0 if next(calls) == 2 else 0.0)
+        return {"output": [[1.0]]}
+
+    began = time.monotonic()
+    ds = run_known(hostile(INFO | {"Evaluate": late}), samples=4, row_limit=0.5)
+    assert (ds["status"].values == Status.TIMED_OUT).sum() == 1
+    assert "did not answer within 0.5 s" in ds["status"].attrs["example_timed_out"]
+    assert time.monotonic() - began < 10
+
+
+def test_addresses_of_ipv6_serve_and_are_asked(uq, ours):
+    try:
+        address = ours(ISHIGAMI, "::1")
+    except OSError:
+        pytest.skip("this computer has no IPv6")
+    assert address.startswith("http://[::1]:")
+    study = {"model": "i", "name": "x1", "lower": 0, "upper": 1, "samples": 4}
+    run(uq, address, **study)
+    assert (package.open_result("own.nc")["status"] == 0).all()
 
 
 def test_an_endless_answer_is_not_read(monkeypatch, hostile):

@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
+from uq.analysis import stopping
 from uq.analysis.estimators import in_categories, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
@@ -21,7 +22,6 @@ from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
 from uq.population.smoothing import Smoothed, weights_of
-from uq.rows import stopping
 from uq.rows.elements import (
     Element,
     Mask,
@@ -283,7 +283,13 @@ def _notes(ds: xr.Dataset) -> list[str]:
         place = nesting_of(ds)
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
-    if not has_independent_samples(ds) and ds.attrs["replicates"] == 1:
-        reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
-        notes.append(reason.format(design=ds.attrs["design"]))
+    notes += filter(None, [why_no_intervals(ds)])
     return notes
+
+
+def why_no_intervals(ds: xr.Dataset) -> str:
+    """Return why the rows of a result support no intervals, or ""."""
+    if has_independent_samples(ds) or ds.attrs["replicates"] > 1:
+        return ""
+    reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
+    return reason.format(design=ds.attrs["design"])

@@ -30,7 +30,7 @@ ModelReference = Annotated[
     typer.Option(
         "--model",
         metavar="FILE.py",
-        help="Use a model that is not installed: FILE.py[:NAME], or PKG.MOD:ATTR.",
+        help="A model of your own: FILE.py[:NAME], FILE.toml, FILE.fmu, http://..., MOD:ATTR.",
     ),
 ]
 Workers = Annotated[

@@ -1,6 +1,6 @@
 """What ``uq sensitivity`` shows: tables of 80 columns."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import xarray as xr
 
@@ -8,7 +8,7 @@ from uq.cli.printing import grid, heading, paragraph
 from uq.conclusions.targets import Target
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities
-from uq.methods.indices import S1, IndexKind, Null
+from uq.methods.indices import BY_CORRELATION, S1, IndexKind, Indices
 from uq.units import typical, unit_of
 from uq.wording import in_brackets
 
@@ -31,7 +31,8 @@ def show(ds: xr.Dataset, found: Sensitivities) -> None:
         for table in (one.kinds(), one.kinds(of_pairs=True)):
             if table:
                 header = (text for kind in table for text in (kind.key, "95 % interval"))
-                grid(_lines(table, one.indices.nulls, unit.size), header=("", *header))
+                remark = ("",) * bool(one.indices.by_correlation)
+                grid(_lines(table, one.indices, unit.size), header=("", *header, *remark))
         if noise := one.indices.noise:
             share = (S1.text(noise.value), S1.interval(noise))
             grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
@@ -44,11 +45,13 @@ def _is_effect(kind: IndexKind) -> bool:
     return kind.unit == "output"
 
 
-def _lines(table: Values, nulls: Mapping[IndexKind, Null], per: float) -> Iterator[list[str]]:
-    for label, estimates in lines(table, nulls):
+def _lines(table: Values, indices: Indices, per: float) -> Iterator[list[str]]:
+    borrowed = indices.by_correlation
+    for label, estimates in lines(table, indices.nulls):
         pairs = [
             (kind, one.over(per) if _is_effect(kind) else one)
             for kind, one in zip(table, estimates, strict=True)
         ]
         cells = ((kind.text(one.value), kind.interval(one)) for kind, one in pairs)
-        yield [label, *(text for pair in cells for text in pair)]
+        remark = [BY_CORRELATION * (label in borrowed)] if borrowed else []
+        yield [label, *(text for pair in cells for text in pair), *remark]

@@ -153,8 +153,9 @@ def _unsettled(measured: Sequence[Measured], kind: IndexKind) -> tuple[str, floa
 def _measured(
     ds: xr.Dataset, method: str, name: str, kind: IndexKind, found: TargetIndices
 ) -> Iterator[Measured]:
-    """Yield the indices of one kind, the largest first."""
-    values = found.kinds()[kind]
+    """Yield the indices of one kind, the largest first, of inputs with an effect of their own."""
+    every, borrowed = found.kinds()[kind], found.indices.by_correlation
+    values = {label: one for label, one in every.items() if label not in borrowed} or every
     null = found.indices.nulls.get(kind, Null(nan))
     limit = null.largest if isfinite(null.largest) else null.one
     parts = {} if any(one.has_interval for one in values.values()) else _parts(ds, method, name)

@@ -35,6 +35,9 @@ class Layout:
         Whether each row of a group differs from the one before it in one input.
     by_block : bool
         Whether the rows of one block are a group, instead of one row of each.
+    given_the_rest : bool
+        Whether inputs that depend on each other are drawn, once they have changed, given those that
+        have not (`uq.inputs.conditional`).
     """
 
     needs: str
@@ -42,6 +45,7 @@ class Layout:
     shared_seeds: Rule
     one_at_a_time: bool = False
     by_block: bool = False
+    given_the_rest: bool = False
 
 
 def own_seeds(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
@@ -94,5 +98,5 @@ def _curves(parameters: tuple[str, ...], second_order: bool, random: bool) -> tu
 PLAIN = Layout("rows have a value", _sample, own_seeds)
 CROSSED = Layout("groups are whole", _crossed, _of_ends)
 TRAJECTORIES = Layout("trajectories are whole", _steps, _of_groups, one_at_a_time=True)
-PATHS = Layout("paths are whole", _places, _of_groups, one_at_a_time=True)
+PATHS = Layout("paths are whole", _places, _of_groups, one_at_a_time=True, given_the_rest=True)
 CURVES = Layout("curves are whole", _curves, _of_curves, by_block=True)

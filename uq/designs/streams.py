@@ -36,6 +36,48 @@ def inside(points: Points, smallest: float = 2.0**-54) -> Points:
     return np.clip(points, smallest, 1.0 - 2.0**-53, out=points)
 
 
+def splitmix64(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Take one step of SplitMix64, from states to numbers.
+
+    References
+    ----------
+    G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA
+    2014, 453-472; constants as in java.util.SplittableRandom.
+    """
+    z = z + _GAMMA
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return z ^ (z >> np.uint64(31))
+
+
+_GAMMA = np.uint64(0x9E3779B97F4A7C15)
+
+
+def hashed(points: Points) -> NDArray[np.uint64]:
+    """Hash the coordinates of points, shape (n, d), into one state of SplitMix64 per point."""
+    state = np.zeros(len(points), np.uint64)
+    for column in points.T:
+        state = splitmix64(state) ^ np.ascontiguousarray(column).view(np.uint64)
+    return splitmix64(state)
+
+
+def uniform(state: NDArray[np.uint64], number: NDArray[np.int64]) -> Points:
+    """Return one number in (0, 1) of the stream that SplitMix64 draws from each state.
+
+    Parameters
+    ----------
+    state : ndarray of uint64, shape (n,)
+    number : ndarray of int, shape (n,)
+        Its place in the stream, from 0.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    found = splitmix64(state + number.astype(np.uint64) * _GAMMA)
+    return np.asarray(((found >> np.uint64(11)) + 0.5) * 2.0**-53)
+
+
 def drawn_at_once(draw: Callable[[int, int, int, int], Points]) -> Callable[..., Points]:
     """Cut parts from a design that can only be drawn as a whole: it is drawn once and kept."""
 

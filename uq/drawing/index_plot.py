@@ -12,6 +12,7 @@ from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
 from uq.indices.targets import FORMS, split_name
+from uq.methods.indices import BY_CORRELATION
 from uq.rows.elements import analysis_of, named_elements
 from uq.rows.variables import is_category
 from uq.wording import threshold
@@ -54,7 +55,11 @@ def index_bars(
     kinds, name = found.kinds(), found.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
-    labels = [labelled(ds[parameter], width=30) for parameter in parameters]
+    labels = [
+        labelled(ds[parameter], width=30)
+        + f"\n({BY_CORRELATION})" * (parameter in found.indices.by_correlation)
+        for parameter in parameters
+    ]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     (panel,) = column(axes, 0.8 + 0.13 * lines.sum())
     middle = np.cumsum(lines) - lines / 2
@@ -116,8 +121,10 @@ def subject(ds: xr.Dataset, name: str) -> str:
         meaning = ds[output].attrs["long_name"].removeprefix("the ")
         where = f", {place.removesuffix(']')}," if place else ""
         return f"whether the {meaning}{where} is {label}"
-    (element,) = named_elements(ds, inside)
+    element, *others = named_elements(ds, inside)
     words = element_in_words(ds, element)
+    if others:
+        words = f"{element.meaning}, all {1 + len(others)} elements together"
     if at:
         asked = analysis_of(ds).thresholds.get(element.output, ())
         at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)

@@ -8,9 +8,12 @@ from uq.conclusions.answer import conclude
 from uq.drawing.catalogue import Subject
 from uq.drawing.convergence_plot import followed, total_indices
 from uq.drawing.elements_plot import occurring_regimes
+from uq.drawing.index_curve_plot import dimension_of
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
-from uq.indices.sensitivities import methods
+from uq.indices.sensitivities import TargetIndices, methods
+from uq.indices.targets import split_name
+from uq.rows.element import is_whole
 from uq.rows.elements import analysis_of, shown_outputs
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
@@ -51,14 +54,29 @@ def categories(findings: Findings) -> Iterator[Subject]:
 
 def targets(findings: Findings) -> Iterator[Subject]:
     """Yield each target of each sensitivity method."""
+    for method, found in _indices(findings):
+        yield Subject(found.name, method, {"method": method, "found": found})
+
+
+def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
+    """Yield each method with what it finds for each target."""
     for method in methods(findings.ds):
         try:
             targets_of = findings.sensitivities(method).targets
         except InputError:  # the report gives the reason
             continue
-        for name, found in targets_of.items():
+        for found in targets_of.values():
             if not found.refused and found.kinds():
-                yield Subject(name, method, {"method": method, "found": found})
+                yield method, found
+
+
+def curves(findings: Findings) -> Iterator[Subject]:
+    """Yield each output with a dimension of three or more numbers, by each method."""
+    for method, found in _indices(findings):
+        inside = split_name(found.name)[1]
+        output = inside.partition("[")[0]
+        if is_whole(inside) and dimension_of(findings.ds, output):
+            yield Subject(output, method, {"method": method, "findings": findings})
 
 
 def decided_events(findings: Findings) -> Iterator[Subject]:

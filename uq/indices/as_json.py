@@ -25,6 +25,8 @@ def _plain_target(one: TargetIndices) -> dict[str, Any]:
         entry[kind.key] = {label: numbers(index) for label, index in values.items()}
     if one.indices.noise is not None:
         entry["noise"] = numbers(one.indices.noise)
+    if one.indices.by_correlation:
+        entry["by_correlation"] = list(one.indices.by_correlation)
     if one.indices.nulls:
         entry["dummy"] = {
             key: number

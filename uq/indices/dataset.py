@@ -26,7 +26,8 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         Each index over ``output`` and ``parameter`` (``S2`` over ``pair``), with ``_low`` and
         ``_high``; NaN where there is none. ``dummy_<index>``, ``groups_dropped`` and ``refused``
         (why there are no indices, or "") over ``output``; so is ``noise``, with ``_low`` and
-        ``_high``, where a model is random.
+        ``_high``, where a model is random. ``by_correlation`` over ``output`` and ``parameter``
+        where an index is due to correlation alone.
 
     Raises
     ------
@@ -59,6 +60,10 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         shares = np.array([(one.indices.noise or NOTHING).numbers for one in targets])
         for end, numbers in zip(_ENDS, shares.T, strict=True):
             data[f"noise{end}"] = ("output", numbers)
+    if any(one.indices.by_correlation for one in targets):
+        names = coords["parameter"]
+        due = [[name in one.indices.by_correlation for name in names] for one in targets]
+        data["by_correlation"] = (("output", "parameter"), due)
     for kind in {kind: None for one in targets for kind in one.indices.nulls}:
         nulls = [one.indices.nulls.get(kind, Null(np.nan)) for one in targets]
         data[f"dummy_{kind.key}"] = ("output", [null.one for null in nulls])

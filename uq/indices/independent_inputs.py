@@ -31,6 +31,18 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
     }
 
 
+def correlated_inputs(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
+    """Return the inputs with stated rank correlations: name -> those it is correlated with."""
+    stated = study_file_of(ds).dependence
+    if stated is None:
+        return {}
+    names = stated.parameters
+    return {
+        name: tuple(other for other, rank in zip(names, row, strict=True) if rank and other != name)
+        for name, row in zip(names, stated.rank_correlation, strict=True)
+    }
+
+
 def why_dependent(ds: xr.Dataset) -> str:
     """Return a clause on why inputs are not assumed to be independent, or ""."""
     study = study_file_of(ds)
@@ -39,6 +51,10 @@ def why_dependent(ds: xr.Dataset) -> str:
     if DESIGNS[study.design.method].imported and not study.design.independent:
         return "imported inputs may depend on each other"
     return ""
+
+
+_DUE = "the index of an input may be due to another"
+_DIVIDED = "what correlated inputs explain in common is divided among them"
 
 
 def notes_on_inputs(ds: xr.Dataset) -> list[str]:
@@ -52,5 +68,6 @@ def notes_on_inputs(ds: xr.Dataset) -> list[str]:
         elif entry.times is not None:
             notes.append(f"{name} is {entry.times} times a factor: its index is that of the factor")
     if why := why_dependent(ds):
-        notes.append(f"{why}: the index of an input may be due to another")
+        shared = DESIGNS[ds.attrs["design"]].layout.given_the_rest
+        notes.append(f"{why}: {_DIVIDED if shared else _DUE}")
     return notes

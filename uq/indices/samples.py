@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.indices.independent_inputs import independent_inputs
+from uq.indices.independent_inputs import correlated_inputs, independent_inputs
 from uq.methods.sample import Sample
 from uq.rows.elements import Floats, flags, study_file_of
 from uq.study.file import Tied
@@ -49,6 +49,7 @@ def sample_of(ds: xr.Dataset) -> Sample:
         groups=groups.transpose(0, 2, 1) if layout.by_block else groups,
         blocks=blocks,
         direction=_directions(ds, groups) if layout.one_at_a_time else np.empty(0),
+        correlated=correlated_inputs(ds),
     )
 
 
@@ -80,9 +81,14 @@ def _directions(ds: xr.Dataset, order: NDArray[np.intp]) -> Floats:
     direction = np.sign(np.diff(_unit(ds, order, len(parameters)), axis=2))
     changing = direction != 0
     sound = bool((changing.sum(axis=-1) == 1).all())
+    moving = changing.copy()
+    dependent = [parameters.index(name) for name in correlated_inputs(ds)]
+    # Those that have changed are drawn again when another one does.
+    among = changing[..., dependent]
+    moving[..., dependent] = among.any(axis=-1, keepdims=True) & (among.cumsum(axis=2) > 0)
     for own, (name, times) in enumerate(scales.items()):
         values = ds[name].values[order]
-        still = ~(changing[..., own] | changing[..., parameters.index(times or name)])
+        still = ~(moving[..., own] | moving[..., parameters.index(times or name)])
         sound &= bool((values[..., 1:] == values[..., :-1])[still].all())
     if not sound:
         raise InputError(

@@ -91,6 +91,26 @@ def cdf_between(law: Law, x: Floats, low: Floats, high: Floats) -> Floats:
     return _probabilities(_shares(law, *_tightened(law, low, high)), x)
 
 
+def cell_of(law: Law, u: Floats, bounds: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Return the part of the unit interval that a discrete law maps to the same value.
+
+    Parameters
+    ----------
+    law : Law
+    u : ndarray, shape (n,)
+    bounds : tuple of float
+        As in `ppf_within`.
+
+    Returns
+    -------
+    below, up_to : ndarray, shape (n,)
+        The probabilities of less than the value of each u, and of no more.
+    """
+    x = ppf_within(law, u, bounds)
+    below, up_to = (cdf_within(law, end, bounds) for end in (np.nextafter(x, -np.inf), x))
+    return np.minimum(below, u), np.maximum(up_to, u)
+
+
 def log_density_between(law: Law, x: Floats, low: Any, high: Any) -> Floats:
     """Return the logarithm of the density of a law conditioned on ends, -inf outside.
 

@@ -10,7 +10,7 @@ from typing import Any, get_args, get_type_hints
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from uq.contract import Model, Parameter
-from uq.errors import nearest
+from uq.errors import nearest, one_line
 
 
 def unknown_name(kind: str, name: str, model: Model, known: tuple[str, ...]) -> str:
@@ -93,7 +93,7 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
     try:
         return model.settings(**values), {}
     except ValueError as error:  # of the model, about a combination of settings
-        return None, {"": " ".join(str(error).split())}
+        return None, {"": one_line(error)}
 
 
 def fault_lines(

@@ -13,7 +13,7 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.evidence import Evidence, Grid, weigh
+from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
@@ -136,6 +136,16 @@ def posterior(
     return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance)
 
 
+def on_wide_grids(found: Posterior) -> tuple[list[Grid], Evidence]:
+    """Return grids from end to end of the prior, of each inspected unit, and the evidence there."""
+    scale, of = found.scale, found.likelihoods
+    grids = [wide(grid, scale.quantiles if scale else None) for grid in found.evidence.grids]
+    worlds = [found.world[block] for block in of.blocks]
+    each = [partial(of.of, unit) for unit in range(len(grids))]
+    count, own = int(found.world.max()) + 1, bool(scale and scale.is_own)
+    return grids, weigh_on(grids, each, worlds, count, own)[1]
+
+
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
     faults = []
     found = {}
@@ -155,12 +165,18 @@ def _worlds(rows: xr.Dataset, place: Nesting, scale: Scale | None) -> tuple[Rows
 
     All rows are of one world where nothing is shared but what is integrated.
     """
-    shared = {name for name, level in levels_of(rows).items() if level == SHARED}
-    if scale is not None and not scale.is_own:
-        shared -= {scale.name, *(a for a, b in scale.inputs.tied.items() if b == scale.name)}
-    if not shared:
+    if not shared_inputs(rows, scale):
         return np.zeros(len(place.sample), np.intp), 1
     return place.sample, place.samples
+
+
+def shared_inputs(rows: xr.Dataset, scale: Scale | None) -> list[str]:
+    """Return the inputs that units share, without the integrated one and those equal to it."""
+    shared = [name for name, level in levels_of(rows).items() if level == SHARED]
+    if scale is None or scale.is_own:
+        return shared
+    tied = {a for a, b in scale.inputs.tied.items() if b == scale.name}
+    return [name for name in shared if name not in {scale.name, *tied}]
 
 
 def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:

@@ -83,12 +83,20 @@ class Indices:
         Where the method has no intervals.
     noise : Estimate or None
         Share of the variance that remains once all inputs are known, where the rows determine it.
+    by_correlation : tuple of str
+        Inputs that have an index but no effect of their own: it is that of inputs they are
+        correlated with.
     """
 
     values: Mapping[IndexKind, Mapping[str, Estimate]]
     notes: tuple[str, ...] = ()
     nulls: Mapping[IndexKind, Null] = field(default_factory=dict)
     noise: Estimate | None = None
+    by_correlation: tuple[str, ...] = ()
+
+
+BY_CORRELATION = "by correlation alone"
+"""What stands beside the index of such an input."""
 
 
 class RefusedError(Exception):

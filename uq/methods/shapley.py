@@ -2,14 +2,18 @@
 
 import numpy as np
 
+from uq.errors import choices
 from uq.estimate import Estimate
-from uq.intervals import UNKNOWN, is_constant, scatter_interval
+from uq.intervals import ROUNDING, UNKNOWN, is_constant, scatter_interval
 from uq.methods.indices import ALL_NOISE, SHAPLEY, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Sample
 
 MIN_PATHS = 32
 """With fewer paths Student's law does not give the interval of a mean."""
+
+MIN_SEEN = 10
+"""With fewer paths it is not known whether an input has an effect of its own."""
 
 
 def shapley_indices(sample: Sample) -> Indices:
@@ -24,7 +28,7 @@ def shapley_indices(sample: Sample) -> Indices:
     -------
     Indices
         ``shapley``, shares of the variance. Paths are independent: intervals are Student's, for the
-        ratio linearised.
+        ratio linearised. An input whose share is due to its correlation alone is named.
 
     Raises
     ------
@@ -33,22 +37,31 @@ def shapley_indices(sample: Sample) -> Indices:
 
     Notes
     -----
-    Along a path from one row to an independent one, input by input in random order, step k moves
-    the output from before to after. With the output y at the start of the path, the mean of
-    (y - (before + after)/2) (before - after) over the steps of an input is its Shapley effect
-    times the variance [1]_; their sum over a path is (y - end)^2/2.
+    Along a path, inputs change one by one in random order; those that have changed are drawn given
+    those that have not. So the output y at the start of the path and the one after some steps are
+    independent given the inputs that have not changed, and half their squared difference
+    estimates the variance that is left when these are known without bias: the value of a set of
+    inputs in [1]_, by one outer and two inner rows [2]_. Its increase, the mean of
+    (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
+    effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
+    path is (y - end)^2/2.
 
     References
     ----------
-    .. [1] T. Goda, "A simple algorithm for global sensitivity analysis with Shapley effects",
+    .. [1] A. B. Owen, C. Prieur, "On Shapley value for measuring importance of dependent inputs",
+       SIAM/ASA J. Uncertain. Quantif. 5, 986-1002 (2017).
+    .. [2] E. Song, B. L. Nelson, J. Staum, "Shapley effects for global sensitivity analysis: theory
+       and computation", SIAM/ASA J. Uncertain. Quantif. 4, 1060-1083 (2016).
+    .. [3] T. Goda, "A simple algorithm for global sensitivity analysis with Shapley effects",
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
     """
     whole = sample.whole
     y = sample.grouped[whole]
-    if is_constant(y):
+    if sample.is_constant(y):
         raise RefusedError(NO_VARIANCE)
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
+    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)  # over the elements of a whole output
     parts = np.einsum("ns,nsp->np", steps, sample.direction[whole] != 0)
     total = parts.sum(axis=1)
     if is_constant(y - y[:, :1]):
@@ -56,8 +69,39 @@ def shapley_indices(sample: Sample) -> Indices:
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
     found = {}
-    for name, share, error in zip(sample.inputs, shares.tolist(), errors.T, strict=True):
+    names = list(sample.inputs)
+    terms = list(zip(names, shares.tolist(), errors.T, strict=True))
+    if sample.difference:
+        one, other = (terms[names.index(name)] for name in sample.difference)
+        terms.append((" - ".join(sample.difference), one[1] - other[1], one[2] - other[2]))
+    for name, share, error in terms:
         # Errors of rounding alone give no interval.
-        ends = UNKNOWN if is_constant(share + error) else scatter_interval(share, error)
+        constant = is_constant(share + error)
+        ends = UNKNOWN if constant else scatter_interval(share, error, sample.confidence)
         found[name] = Estimate(share, *ends)
-    return Indices({SHAPLEY: found})
+    idle = {name: paths for name in found if (paths := _paths_without_effect(sample, name))}
+    notes = tuple(
+        f"{name} does not change the output by itself in any of {paths} paths: its share is due to"
+        f" its correlation with {choices(sample.correlated[name])}"
+        for name, paths in idle.items()
+    )
+    return Indices({SHAPLEY: found}, notes, by_correlation=tuple(idle))
+
+
+def _paths_without_effect(sample: Sample, name: str) -> int:
+    """Return how many paths show that a correlated input has no effect of its own; else 0.
+
+    An input shows its own effect where it is the first to change. Only paths along which the output
+    changes say something.
+    """
+    if not sample.correlated.get(name):
+        return 0
+    whole = sample.whole
+    y, x = sample.grouped[whole], sample.inputs[name][sample.groups[whole]]
+    first = sample.direction[whole][:, 0, list(sample.inputs).index(name)] != 0
+    alone = first & (x[:, 1] != x[:, 0])
+    if (np.abs(y[:, 1] - y[:, 0])[alone] > ROUNDING * np.abs(y).max()).any():
+        return 0
+    moves = (y[:, -1] != y[:, 0]).reshape(len(y), -1).any(axis=1)  # some element of a whole output
+    seen = int((alone & moves).sum())
+    return seen if seen >= MIN_SEEN else 0

@@ -3,6 +3,7 @@
 import ctypes
 import os
 import resource
+import shutil
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -11,25 +12,51 @@ _PR_SET_CHILD_SUBREAPER = 36
 _SECONDS = 5.0
 
 LARGEST = 10_000_000_000
-"""Bytes of a file that a program may write."""
+"""Bytes of a file that a program may write, where the disk has room for several."""
+
+_SHARE = 4  # of the room that is left, for a file
 
 _adopting = False
+_judge = os.getpid()
 
 
 def adopt() -> None:
     """Become, on Linux, the parent of all descendants whose own parent ends.
 
     For a process whose descendants all belong to rows, so that `end_descendants` may end them.
-    Neither it nor they can write files larger than `LARGEST`.
     """
-    global _adopting
-    _adopting = True
-    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
-    own = LARGEST if most == resource.RLIM_INFINITY else min(LARGEST, most)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (own, most))
+    global _adopting, _judge
+    _adopting, _judge = True, os.getppid()
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
             ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def judge() -> int:
+    """Return the process that decides what becomes of a row with which this process ends."""
+    return _judge if _adopting else os.getpid()
+
+
+def bound_files(folder: Path) -> int:
+    """Bound the files that this process and its descendants can write, where it adopts.
+
+    Parameters
+    ----------
+    folder : Path
+        On the disk to which they write.
+
+    Returns
+    -------
+    int
+        The largest size [bytes].
+    """
+    most = min(LARGEST, shutil.disk_usage(folder).free // _SHARE)
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    if hard != resource.RLIM_INFINITY:
+        most = min(most, hard)
+    if _adopting:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most, hard))
+    return most
 
 
 def end_descendants() -> None:

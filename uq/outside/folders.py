@@ -1,5 +1,6 @@
 """Folders of rows: one for each, removed when the row is done and kept when it failed."""
 
+import atexit
 import hashlib
 import os
 import shutil
@@ -10,6 +11,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import psutil
+
+from uq.outside.descendants import judge
 
 _RUNNING = "running"
 _LARGEST_KEPT = 10_000_000  # bytes of a file of a row that failed
@@ -46,22 +49,29 @@ class Folders:
         if not self._tidied:
             self._tidied = True
             self._tidy()
-        folder = self._new()
+        folder = self._new(_digest(numbers))
         try:
             yield folder
         except Exception:
-            kept = self.kept(numbers)
-            shutil.rmtree(kept, ignore_errors=True)
-            with suppress(OSError):
-                _lighten(folder)
-                folder.rename(kept)
+            self._keep(folder, numbers)
             raise
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 
-    def _new(self) -> Path:
+    def of_process(self) -> Path:
+        """Return a folder, empty, that lasts as long as this process."""
+        folder = self._new("all")
+
+        def end() -> None:
+            shutil.rmtree(folder, ignore_errors=True)
+            self.leave()
+
+        atexit.register(end)
+        return folder
+
+    def _new(self, mark: str) -> Path:
         """Return a new folder of this process."""
-        mine = f"{_RUNNING}-{socket.gethostname()}-{os.getpid()}-"
+        mine = f"{_running_on_this()}{judge()}-{os.getpid()}-{mark}-"
         while True:
             self.root.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):  # another process has just left
@@ -75,12 +85,38 @@ class Folders:
 
     def kept(self, numbers: Sequence[float | int]) -> Path:
         """Return the folder in which a row is kept that failed."""
-        digest = hashlib.sha256(repr(list(numbers)).encode()).hexdigest()
-        return self.root / f"failed-{digest[:12]}"
+        return self.root / f"failed-{_digest(numbers)}"
+
+    def keep(self, numbers: Sequence[float | int]) -> Path | None:
+        """Keep the folder of a row with which a child of this process ended; return its place."""
+        kept = self.kept(numbers)
+        for folder in self.root.glob(f"{_running_on_this()}{os.getpid()}-*-{_digest(numbers)}-*"):
+            self._keep(folder, numbers)
+        return kept if kept.is_dir() else None
+
+    def _keep(self, folder: Path, numbers: Sequence[float | int]) -> None:
+        kept = self.kept(numbers)
+        shutil.rmtree(kept, ignore_errors=True)
+        with suppress(OSError):
+            _lighten(folder)
+            folder.rename(kept)
 
     def _tidy(self) -> None:
-        """Remove the folders of processes on this computer that were killed."""
-        for folder in self.root.glob(f"{_RUNNING}-{socket.gethostname()}-*"):
-            pid = folder.name.removeprefix(f"{_RUNNING}-{socket.gethostname()}-").split("-")[0]
-            if pid.isdigit() and not psutil.pid_exists(int(pid)):
+        """Remove the folders of processes on this computer that were killed.
+
+        While the process that judges a row lives, it may want to keep its folder.
+        """
+        for folder in self.root.glob(f"{_running_on_this()}*"):
+            judge, pid, *_ = folder.name.removeprefix(_running_on_this()).split("-")
+            mine = int(judge) == os.getpid()
+            if not psutil.pid_exists(int(pid)) and (mine or not psutil.pid_exists(int(judge))):
                 shutil.rmtree(folder, ignore_errors=True)
+
+
+def _running_on_this() -> str:
+    """Return how the names of folders of running rows begin on this computer."""
+    return f"{_RUNNING}-{socket.gethostname()}-"
+
+
+def _digest(numbers: Sequence[float | int]) -> str:
+    return hashlib.sha256(repr(list(numbers)).encode()).hexdigest()[:12]

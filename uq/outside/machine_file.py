@@ -1,21 +1,17 @@
 """A machine file: a program, its input and its results, described in TOML."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from math import inf, isfinite
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from uq.errors import InputError, nearest
-from uq.inputs.faults import Fault, fault_of
-from uq.literals import read_toml
+from uq.inputs.faults import Fault
+from uq.outside.machine_tables import MachineName, Name, Table, read_as, refuse
 from uq.outside.row_by_row import SEED
-from uq.places import node
 
-_LONGEST = 1_000_000  # bytes of a machine file
-_NAME = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=100)]
 _PLACE = r"\{(%s)(:[^{}]*)?\}"
 
 STDOUT = "stdout"
@@ -24,14 +20,10 @@ FOLDER = "machine_folder"
 """The place of the folder of the machine file, in a command or template."""
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-class MachineTable(_Table):
+class MachineTable(Table):
     """``[machine]``: the program, and how it is called."""
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+    name: MachineName
     command: Annotated[list[str], Field(min_length=1, description="program and arguments")]
     title: str = ""
     version: str = "1"
@@ -42,7 +34,7 @@ class MachineTable(_Table):
     exit_codes: Annotated[dict[str, str], Field(description="what exit codes mean")] = {}
 
 
-class ParameterTable(_Table):
+class ParameterTable(Table):
     """``[parameters.NAME]``: an input with its nominal value."""
 
     nominal: float
@@ -57,7 +49,7 @@ class ParameterTable(_Table):
         return self.bounds[0], self.bounds[1]
 
 
-class OutputTable(_Table):
+class OutputTable(Table):
     """``[outputs.NAME]``: a result, and where it stands: by json, csv, netcdf or pattern."""
 
     unit: str = "1"
@@ -88,20 +80,12 @@ class OutputTable(_Table):
         return self
 
 
-class MachineFile(_Table):
+class MachineFile(Table):
     """A machine file."""
 
     machine: MachineTable
-    parameters: Annotated[dict[_NAME, ParameterTable], Field(min_length=1)]
-    outputs: Annotated[dict[_NAME, OutputTable], Field(min_length=1)]
-
-
-def machine_schema() -> dict[str, Any]:
-    """Return the JSON Schema of machine files (draft 7)."""
-    schema = MachineFile.model_json_schema(ref_template="#/definitions/{model}")
-    schema["definitions"] = schema.pop("$defs")
-    head = {"$schema": "http://json-schema.org/draft-07/schema#"}
-    return head | schema | {"title": "Program as a machine of vibrolife"}
+    parameters: Annotated[dict[Name, ParameterTable], Field(min_length=1)]
+    outputs: Annotated[dict[Name, OutputTable], Field(min_length=1)]
 
 
 def read_machine(path: Path) -> MachineFile:
@@ -112,38 +96,9 @@ def read_machine(path: Path) -> MachineFile:
     InputError
         One line for each mistake.
     """
-    if what := node(path):
-        raise InputError(f"{path}: is {what}, not a machine file")
-    if not path.is_file():
-        there = [one.name for one in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-        raise InputError(f"{path}: no such file{nearest(path.name, there)}")
-    if path.stat().st_size > _LONGEST:
-        raise InputError(f"{path}: larger than a machine file can be")
-    try:
-        data = read_toml(path.read_text(encoding="utf-8"))
-    except (ValueError, OverflowError, RecursionError) as error:
-        raise InputError(f"{path}: not valid TOML: {' '.join(str(error).split())}") from None
-    if "study" in data and "machine" not in data:
-        raise InputError(f"{path}: is a study, not a machine file; it needs a table [machine]")
-    try:
-        found = MachineFile.model_validate(data)
-    except ValidationError as invalid:
-        faults = [fault_of(dict(one), _known) for one in invalid.errors(include_url=False)]
-        raise InputError(*(f"{path}: {fault.line}" for fault in faults)) from None
-    faults = list(_faults(found, path.parent))
-    if faults:
-        raise InputError(*(f"{path}: {fault.line}" for fault in faults))
+    found = read_as(MachineFile, path)
+    refuse(path, _faults(found, path.parent))
     return found
-
-
-def _known(path: Sequence[Any]) -> list[str]:
-    """Return what may stand in the place of an unknown key."""
-    if len(path) == 1:
-        return list(MachineFile.model_fields)
-    table: Any = {"machine": MachineTable, "parameters": ParameterTable, "outputs": OutputTable}[
-        path[0]
-    ]
-    return [field.alias or name for name, field in table.model_fields.items()]
 
 
 def template_of(machine: MachineTable, folder: Path) -> str:

@@ -7,12 +7,13 @@ import signal
 import subprocess
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from threading import Event, Timer
+from typing import Any, Self
 
 from uq.contract import Model, Parameter
-from uq.outside.descendants import LARGEST, end_descendants
+from uq.outside.descendants import bound_files, end_descendants
 from uq.outside.folders import Folders
 from uq.outside.machine_file import (
     FOLDER,
@@ -23,8 +24,8 @@ from uq.outside.machine_file import (
     template_of,
 )
 from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
-from uq.outside.returned import Returned
-from uq.outside.row_by_row import SEED, RowByRow, model_from
+from uq.outside.returned import Returned, checked
+from uq.outside.row_by_row import SEED, OverdueError, RowByRow, model_from
 
 _LAST = 300  # characters of what a failed program said
 _TRIES = 3  # of a program that is killed, before it is blamed
@@ -53,7 +54,8 @@ def program_of(path: Path) -> Model:
         for name, one in read.outputs.items()
     }
     folder = path.absolute().parent
-    runner = _Program(read, folder, Folders(folder / f"{read.machine.name}.rows"))
+    folders = Folders(folder / f"{read.machine.name}.rows")
+    runner = _Program(read, returned, folder, folders)
     fields = {
         name: (Parameter(name, one.unit, one.meaning or name, one.span, one.source), one.nominal)
         for name, one in read.parameters.items()
@@ -61,7 +63,7 @@ def program_of(path: Path) -> Model:
     texts = [*read.machine.command, template_of(read.machine, folder)]
     random = any(f"{{{SEED}" in text for text in texts)
     machine = read.machine
-    batch = RowByRow(runner, tuple(fields), returned, True, runner.folders.leave)
+    batch = RowByRow(runner, tuple(fields), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
     return model_from(machine.name, title, machine.version, fields, returned, batch, random)
 
@@ -94,19 +96,25 @@ class _Program:
     """What runs a row."""
 
     read: MachineFile
+    returned: Mapping[str, Returned]
     folder: Path
     folders: Folders
+    limit: float | None = None  # time for a row [s]
     template: str = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "template", template_of(self.read.machine, self.folder))
+
+    def limited(self, seconds: float) -> Self:
+        """Return a runner that stops rows after a time."""
+        return replace(self, limit=seconds)
 
     def __call__(self, **row: float | int) -> Mapping[str, Any]:
         """Run the program on a row; return its outputs.
 
         Raises
         ------
-        ProgramError, WrongReturnError
+        ProgramError, WrongReturnError, NonFiniteError, OverdueError
         """
         kept = self.folders.kept(list(row.values()))
         with self.folders.row(list(row.values())) as folder:
@@ -117,10 +125,12 @@ class _Program:
                         break
                 else:
                     self._run(folder, row)
-                return {
+                found = {
                     name: value_in(folder, name, output)
                     for name, output in self.read.outputs.items()
                 }
+                list(checked(found, self.returned))  # here: the folder of a failed row is kept
+                return found
             except Exception as error:
                 error.args = (f"{error}; see {kept}",)
                 raise
@@ -133,6 +143,7 @@ class _Program:
         program, *arguments = (filled(part, places) for part in machine.command)
         environment = dict(os.environ) | machine.environment
         path = _found(program, self.folder) or program
+        largest = bound_files(folder)
         with (
             (folder / STDOUT_FILE).open("wb") as out,
             (folder / STDERR_FILE).open("wb") as err,
@@ -148,19 +159,36 @@ class _Program:
                 )
             except OSError as error:
                 raise ProgramError(f"'{program}' cannot be started: {error.strerror}") from None
-            try:
-                code = process.wait()
-            finally:
-                end_descendants()
+            code = self._ended(process)
+        if code == -signal.SIGXFSZ:
+            raise ProgramError(f"was ended, as it wrote a file larger than {largest:.2g} bytes")
         if code:
             kind = _KilledError if code in _KILLED else ProgramError
             raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
 
+    def _ended(self, process: subprocess.Popen[bytes]) -> int:
+        """Return the exit code of a program, once it and all that descends from it has ended."""
+        late = Event()
+
+        def stop() -> None:
+            late.set()
+            process.kill()
+
+        timer = Timer(self.limit or 0.0, stop)
+        if self.limit:
+            timer.start()
+        try:
+            code = process.wait()
+        finally:
+            timer.cancel()
+            end_descendants()
+        if late.is_set():
+            raise OverdueError(f"did not end within {self.limit:g} s")
+        return code
+
 
 def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:
-    if code == -signal.SIGXFSZ:
-        text = f"was ended, as it wrote a file larger than {LARGEST:.0e} bytes"
-    elif code < 0:
+    if code < 0:
         text = f"was ended by signal {-code} ({signal.strsignal(-code)})"
     else:
         meaning = meanings.get(str(code))

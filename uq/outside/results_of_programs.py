@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from uq.errors import one_line
 from uq.outside.machine_file import STDOUT, OutputTable
 from uq.outside.returned import WrongReturnError
 
@@ -45,8 +46,7 @@ def value_in(folder: Path, name: str, output: OutputTable) -> Any:
             return _in_csv(text, output.csv)
         return _matched(text, output.pattern)
     except (KeyError, IndexError, ValueError, TypeError, OSError, RecursionError) as error:
-        reason = " ".join(str(error).split())
-        raise WrongReturnError(f"has no '{name}' in {where}: {reason}") from None
+        raise WrongReturnError(f"has no '{name}' in {where}: {one_line(error)}") from None
 
 
 def _in_json(text: str, path: str) -> Any:

@@ -98,6 +98,10 @@ class WrongReturnError(Exception):
     """A value that a machine must not return, in a sentence."""
 
 
+class NonFiniteError(Exception):
+    """A number that is not finite where it must be, in a sentence."""
+
+
 def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return a value as an array of floats, and which of them are `censored`.
 
@@ -173,6 +177,8 @@ def checked(
     ------
     WrongReturnError
         When the row returns anything else than `expected`.
+    NonFiniteError
+        When a number is NaN that may not be, or -inf.
     """
     if isinstance(returned, tuple) and len(returned) == len(expected):
         returned = dict(zip(expected, returned, strict=True))
@@ -191,7 +197,13 @@ def checked(
             raise WrongReturnError(f"returned '{name}' with {shape}")
         if not one.life and (cut.any() or np.isposinf(numbers).any()):
             raise WrongReturnError(
-                f"returned '{name}' as a life that has not ended; declare it in the decorator:"
-                f" returns={{'{name}': uq.Returned(life=True)}}"
+                f"returned '{name}' as a life that has not ended, which it is not declared to be;"
+                f" in Python: returns={{'{name}': uq.Returned(life=True)}}, in a machine file:"
+                " life = true"
             )
+        absent = one.output(name).is_absent(numbers)
+        if one.may_be_undefined:
+            absent &= ~np.isnan(numbers)
+        if absent.any():
+            raise NonFiniteError(f"'{name}' is {numbers[absent][0]}")
         yield name, numbers, cut

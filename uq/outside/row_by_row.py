@@ -2,16 +2,24 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
-from typing import Annotated, Any, NamedTuple
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
-from uq.errors import InputError
-from uq.outside.returned import Returned, WrongReturnError, checked, dimensions
+from uq.errors import InputError, described
+from uq.outside.returned import (
+    NonFiniteError,
+    Returned,
+    WrongReturnError,
+    checked,
+    dimensions,
+)
+from uq.written import fault_of_unit
 
 SEED = "seed"
 """The name by which the seed of a row is wanted."""
@@ -38,9 +46,10 @@ def model_from(
     Raises
     ------
     InputError
-        When a nominal value or a name cannot be used.
+        When a nominal value, a name or a unit cannot be used.
     """
-    if faults := [*_nominal_faults(fields), *_name_faults(fields, returned)]:
+    faults = [*_nominal_faults(fields), *_name_faults(fields, returned)]
+    if faults := [*faults, *_unit_faults(fields, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
     hints = [(one, Annotated[float, parameter]) for one, (parameter, _) in fields.items()]
     made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
@@ -73,6 +82,14 @@ def _nominal_faults(fields: Fields) -> Iterator[str]:
             yield f"nominal value {nominal:g} of '{name}' must be a finite number {within}"
 
 
+def _unit_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
+    units = {f"'{name}'": parameter.unit for name, (parameter, _) in fields.items()}
+    units |= {f"output '{name}'": one.unit for name, one in returned.items()}
+    for owner, unit in units.items():
+        if fault := fault_of_unit(unit):
+            yield f"unit '{unit}' of {owner}: {fault}"
+
+
 def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
     """Yield what is wrong with names, all of which stand side by side in a result."""
     taken = dict.fromkeys(_TAKEN, "of a result's own variables") | dict.fromkeys(
@@ -94,6 +111,10 @@ class _NoSettings:
     """There are none."""
 
 
+class OverdueError(Exception):
+    """A row that was stopped as its time was over, in a sentence."""
+
+
 @dataclass(frozen=True)
 class RowByRow:
     """A batch that computes rows one after the other, each with its own end.
@@ -109,6 +130,9 @@ class RowByRow:
         Whether the function takes the seed of the row too.
     leave : callable
         Called after some rows.
+    keep : callable
+        Called with the numbers of a row that was lost with its process: its parameters, then its
+        seed if it is wanted; returns the folder in which its files are kept, or None.
     """
 
     function: Callable[..., Any]
@@ -116,6 +140,17 @@ class RowByRow:
     returned: Mapping[str, Returned]
     wants_seed: bool
     leave: Callable[[], object] = lambda: None
+    keep: Callable[[list[float | int]], Path | None] = lambda numbers: None
+
+    @property
+    def stops_rows(self) -> bool:
+        """Whether it can stop a row whose time is over."""
+        return hasattr(self.function, "limited")
+
+    def limited(self, seconds: float) -> Self:
+        """Return a batch that stops rows after a time [s]; only one that `stops_rows` can."""
+        function: Any = self.function
+        return replace(self, function=function.limited(seconds))
 
     def __call__(
         self, x: Floats, seed: NDArray[np.uint64], settings: object
@@ -136,12 +171,19 @@ class RowByRow:
                         columns[censored_name(name)][i] = cut
             except WrongReturnError as error:
                 status[i], messages[i] = Status.BAD_SHAPE, str(error)
+            except NonFiniteError as error:
+                status[i], messages[i] = Status.NON_FINITE, str(error)
+            except OverdueError as error:
+                status[i], messages[i] = Status.TIMED_OUT, str(error)
             except (Exception, SystemExit) as error:
-                text = " ".join(str(error).split())
-                status[i] = Status.RAISED
-                messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
+                status[i], messages[i] = Status.RAISED, described(error)
         self.leave()
         return columns, status, messages
+
+    def kept(self, row: list[float], seed: int) -> str:
+        """Return where the files of a row that was lost with its process are, for its message."""
+        folder = self.keep([*row, seed] if self.wants_seed else row)
+        return f"; see {folder}" if folder else ""
 
     def row(self, row: list[float], seed: int) -> Any:
         """Return what the function returns on a row; the current folder stays as it was."""

@@ -4,10 +4,10 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
-from typing import Any
+from typing import Any, Self
 
 from uq.contract import Model, Parameter, censored_name
 from uq.errors import InputError
@@ -126,13 +126,18 @@ class _Evaluate:
     known: _Known
     names: tuple[str, ...]
     outputs: tuple[str, ...]
+    limit: float = inf  # time for a row [s]
+
+    def limited(self, seconds: float) -> Self:
+        """Return one that stops waiting for a row after a time."""
+        return replace(self, limit=seconds)
 
     def __call__(self, **row: float | int) -> dict[str, Any]:
         """Return the outputs of a row.
 
         Raises
         ------
-        ServerError
+        ServerError, OverdueError
         """
         flat = [float(row[name]) for name in self.names]
         vectors, first = [], 0
@@ -141,7 +146,7 @@ class _Evaluate:
             first += size
         config = {"seed": row["seed"]} if "seed" in row else {}
         body = {"name": self.known.name, "input": vectors, "config": config}
-        answer = call(self.known.server, "Evaluate", body)
+        answer = call(self.known.server, "Evaluate", body, limit=self.limit)
         output = answer.get("output") if isinstance(answer, dict) else None
         if not isinstance(output, list) or not all(isinstance(one, list) for one in output):
             raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")

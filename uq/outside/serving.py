@@ -1,6 +1,7 @@
 """A model offered to others by the protocol of UM-Bridge; see `uq.outside.um_bridge`."""
 
 import json
+import socket
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Lock
 from typing import Any
@@ -25,8 +26,24 @@ def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> Thread
         Loopback by default: whoever reaches it can have rows computed.
     port : int
         0 for any that is free.
+
+    Raises
+    ------
+    OSError
+        When it cannot be reached there.
     """
-    return ThreadingHTTPServer((host, port), _handler(_Offered(model)))
+    place: Any
+    family, _, _, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+
+    class Server(ThreadingHTTPServer):
+        address_family = family
+
+    return Server(place, _handler(_Offered(model)))
+
+
+def address_of(host: str, port: int, name: str) -> str:
+    """Return the address of a model on a server."""
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}/{name}"
 
 
 class _Offered:

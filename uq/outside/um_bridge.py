@@ -9,10 +9,12 @@ References
 import http.client
 import json
 import time
+from math import inf, isfinite
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
-from uq.errors import InputError
+from uq.errors import InputError, one_line
+from uq.outside.row_by_row import OverdueError
 
 VERSION = 1.0
 """Of the protocol."""
@@ -21,8 +23,11 @@ DESCRIBED = "described"
 """Entry of a server's model information with names, units and bounds, which UM-Bridge lacks."""
 
 _LONGEST = 100_000_000  # bytes of an answer
+_PART = 1_000_000  # of it, between looks at the clock
 _PATIENCE = 60.0  # seconds for which a server that does not answer is asked again
 _PAUSES = (0.1, 0.3, 1.0, 3.0)
+
+_silent = set[str]()  # servers that have not answered for that time: they are asked only once
 
 
 class ServerError(Exception):
@@ -48,7 +53,13 @@ def split_address(address: str) -> tuple[str, str]:
     return f"{parts.scheme}://{parts.netloc}", name
 
 
-def call(server: str, what: str, body: Any = None, patience: float = _PATIENCE) -> Any:
+def call(
+    server: str,
+    what: str,
+    body: Any = None,
+    patience: float | None = None,
+    limit: float = inf,
+) -> Any:
     """Ask a server and return its answer.
 
     Parameters
@@ -59,53 +70,86 @@ def call(server: str, what: str, body: Any = None, patience: float = _PATIENCE) 
         Such as ``Evaluate``.
     body : object, optional
         What is sent; nothing is asked for by GET.
-    patience : float
-        How long it is asked again if it does not answer [s].
+    patience : float, optional
+        How long it is asked again if it does not answer [s], by default a minute. A server that
+        has not answered for so long is asked only once from then on, until it answers: else each
+        row would wait.
+    limit : float
+        How long the call may take [s].
 
     Raises
     ------
-    ServerError
+    ServerError, OverdueError
     """
     began, tries = time.monotonic(), 0
+    until = began + limit
     while True:
         try:
-            return _answer(server, what, body)
+            answer = _answer(server, what, body, until)
+            _silent.discard(server)
+            return answer
         except (OSError, http.client.HTTPException) as error:
-            if time.monotonic() - began > patience:
-                reason = " ".join(str(error).split()) or type(error).__name__
+            now = time.monotonic()
+            if now > until:
+                raise OverdueError(f"{server} did not answer within {limit:g} s") from None
+            if server in _silent or now - began > (_PATIENCE if patience is None else patience):
+                _silent.add(server)
+                reason = one_line(error) or type(error).__name__
                 raise ServerError(f"{server} does not answer: {reason}") from None
-        time.sleep(_PAUSES[min(tries, len(_PAUSES) - 1)])
+        pause = _PAUSES[min(tries, len(_PAUSES) - 1)]
+        time.sleep(max(min(pause, until - time.monotonic()), 0.0))
         tries += 1
 
 
-def _answer(server: str, what: str, body: Any) -> Any:
+def _answer(server: str, what: str, body: Any, until: float) -> Any:
     parts = urlsplit(server)
     secure = parts.scheme == "https"
     kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
-    connection = kind(parts.hostname or "", parts.port)
+    connection = kind(parts.hostname or "", parts.port, timeout=_left(until))
     try:
         data = None if body is None else json.dumps(body)
         headers = {"Content-Type": "application/json", "Connection": "close"}
         connection.request("GET" if body is None else "POST", f"/{what}", data, headers)
         response = connection.getresponse()
-        text = response.read(_LONGEST + 1)
-        if len(text) > _LONGEST:
-            raise ServerError(f"{server} answers {what} with more than {_LONGEST:.0e} bytes")
+        text = bytearray()
+        while part := response.read1(_PART):
+            text += part
+            if len(text) > _LONGEST:
+                raise ServerError(f"{server} answers {what} with more than {_LONGEST:.0e} bytes")
+            _left(until)
         if response.length:
-            raise http.client.IncompleteRead(text, response.length)
+            raise http.client.IncompleteRead(bytes(text), response.length)
     finally:
         connection.close()
+    return _read(server, what, response.status, bytes(text))
+
+
+def _left(until: float) -> float | None:
+    """Return the time that is left for a call [s], None for any.
+
+    Raises
+    ------
+    TimeoutError
+    """
+    left = until - time.monotonic()
+    if left <= 0:
+        raise TimeoutError
+    return left if isfinite(left) else None
+
+
+def _read(server: str, what: str, status: int, text: bytes) -> Any:
+    """Return what an answer says."""
     try:
         answer = json.loads(text)
     except (ValueError, RecursionError):
         said = " ".join(text[:80].decode(errors="replace").split())
         raise ServerError(
-            f"{server} answers {what} with status {response.status} and no JSON ({said})"
+            f"{server} answers {what} with status {status} and no JSON ({said})"
         ) from None
     if isinstance(answer, dict) and "error" in answer:
         error = answer["error"]
         words = error.get("message") or error.get("type") if isinstance(error, dict) else error
         raise ServerError(f"{server} answers {what}: {' '.join(str(words).split())}")
-    if response.status != http.client.OK:
-        raise ServerError(f"{server} answers {what} with status {response.status}")
+    if status != http.client.OK:
+        raise ServerError(f"{server} answers {what} with status {status}")
     return answer

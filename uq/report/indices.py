@@ -1,7 +1,7 @@
 """Sensitivities in a report: one table for each target of each method."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import isfinite
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
 from uq.indices.targets import split_name
 from uq.keys import key_of
-from uq.methods.indices import S1, IndexKind, Null
+from uq.methods.indices import BY_CORRELATION, S1, IndexKind, Indices
 from uq.report.cells import SHARE, Cell, Table
 
 
@@ -100,7 +100,7 @@ def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     of = f"{Target(ds, name).name} by {method}"
     listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
-    tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)
+    tables = tuple(_table(caption, one, indices, traced) for caption, one in listed if one)
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
         tables += (Table(f"Share of noise in the variance of {of}", ("", "share"), line),)
@@ -126,7 +126,7 @@ def of_output(methods: Sequence[Method], output: str) -> list[Subject]:
 def _table(
     caption: str,
     values: Values,
-    nulls: Mapping[IndexKind, Null],
+    indices: Indices,
     traced: Callable[..., str],
 ) -> Table:
     def cells(label: str, estimates: Sequence[Estimate]) -> Iterator[Cell]:
@@ -134,7 +134,10 @@ def _table(
             dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
             yield _cell(kind, one, traced(*((kind.key, label) if label in values[kind] else dummy)))
 
-    rows = [(Cell(label), *cells(label, found)) for label, found in lines(values, nulls)]
+    rows = [
+        (Cell(label, BY_CORRELATION * (label in indices.by_correlation)), *cells(label, found))
+        for label, found in lines(values, indices.nulls)
+    ]
     return Table(caption, ("input", *(kind.words for kind in values)), rows)
 
 

@@ -17,11 +17,11 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.element import Element as Element
-from uq.rows.element import elements_in, places
+from uq.rows.element import elements_in, places, whole_name
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of
-from uq.rows.weights import largest_weight, row_weights
+from uq.rows.weights import has_rounds, largest_weight, row_weights
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -92,6 +92,8 @@ def are_independent(ds: xr.Dataset) -> bool:
 
 def has_independent_samples(ds: xr.Dataset) -> bool:
     """Whether samples are independent, however many rows each has."""
+    if has_rounds(ds):
+        return False
     design = DESIGNS[ds.attrs["design"]]
     return design.independent or (design.imported and study_file_of(ds).design.independent)
 
@@ -215,7 +217,8 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     ----------
     ds : xarray.Dataset
     name : str
-        ``time_to_depth`` for all its elements, ``time_to_depth[site=left,depth=0.00025]`` for one.
+        ``time_to_depth`` or ``time_to_depth[:]`` for all its elements,
+        ``time_to_depth[site=left,depth=0.00025]`` for one.
 
     Returns
     -------
@@ -233,7 +236,7 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
             f"'{output}' is a category, not a number; 'uq summary' shows the shares of regimes, and"
             f" 'uq sensitivity --output {output}' what determines them"
         )
-    if name == output:
+    if name == output or (name == whole_name(output) and len(found) > 1):
         return found
     chosen = [element for element in found if element.name == name]
     if not chosen:

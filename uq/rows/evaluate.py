@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Status
-from uq.errors import InputError
+from uq.errors import InputError, described
 from uq.rows.columns import Column, blank_rows, columns_of
 
 _WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
@@ -128,8 +128,7 @@ def _call(
         with np.errstate(all="ignore"):
             returned = model.batch(x, seed, settings)
     except Exception as error:
-        text = " ".join(str(error).split())
-        return Fault(Status.RAISED, f"{type(error).__name__}: {text}" if text else repr(error))
+        return Fault(Status.RAISED, described(error))
     if not isinstance(returned, tuple) or len(returned) not in (2, 3):
         raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
     outputs, status, messages = (*returned, {})[:3]

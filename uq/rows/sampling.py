@@ -5,6 +5,7 @@ and block b of its group. Where a sample has units and repeats, it has one block
 row = ((j * replicates + r) * units + u) * repeats + v for unit u and repeat v.
 """
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,7 +14,9 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.designs.levels import coordinates, dimension
 from uq.designs.registry import DESIGNS
-from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
+from uq.designs.streams import splitmix64
+from uq.inputs.conditional import conditional_paths
+from uq.inputs.conditioning import cell_of, factor_ends, ppf_between, ppf_within
 from uq.inputs.data_files import numbers
 from uq.inputs.dependence import correlated
 
@@ -107,7 +110,22 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
 
 def _drawn(study: "Study", start: int, stop: int) -> Floats:
     """Return the inputs of the rows start..stop, shape (n, all parameters)."""
-    return physical(study, unit_block(study, start, stop))
+    if study.dependence is None or not DESIGNS[study.design.method].layout.given_the_rest:
+        return physical(study, unit_block(study, start, stop))
+    size = group_size(study)
+    first, last = start // size, -(-stop // size)
+    unit = unit_block(study, size * first, size * last)
+    columns = _dependent(study)
+    laws = [study.uncertain[name] for name in study.dependence.parameters]
+    bounds = map(study.bounds, study.dependence.parameters)
+    cells = [
+        partial(cell_of, law, bounds=ends) if law.discrete else None
+        for law, ends in zip(laws, bounds, strict=True)
+    ]
+    paths = unit[:, columns].reshape(-1, size, len(columns))
+    found = conditional_paths(paths, study.dependence.rank_correlation, cells)
+    unit[:, columns] = found.reshape(-1, len(columns))
+    return _by_their_laws(study, unit[start - size * first : stop - size * first])
 
 
 def unit_block(study: "Study", start: int, stop: int) -> Floats:
@@ -155,10 +173,20 @@ def physical(study: "Study", unit: Floats) -> Floats:
         C-contiguous.
     """
     if study.dependence is not None:
-        columns = [list(study.uncertain).index(name) for name in study.dependence.parameters]
+        columns = _dependent(study)
         unit = unit.copy()
         unit[:, columns] = correlated(unit[:, columns], study.dependence.rank_correlation)
+    return _by_their_laws(study, unit)
 
+
+def _dependent(study: "Study") -> list[int]:
+    """Return the columns of the inputs that depend on each other, in the order of their matrix."""
+    assert study.dependence is not None
+    return [list(study.uncertain).index(name) for name in study.dependence.parameters]
+
+
+def _by_their_laws(study: "Study", unit: Floats) -> Floats:
+    """Map points of the unit cube, with their dependence, to all parameters of the model."""
     x = _constants(study, len(unit))
     names = study.model.parameter_names
     scaled = []
@@ -213,14 +241,5 @@ def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:
     """
     state = np.full(len(keys[0]), seed, np.uint64)
     for key in keys:
-        state = _splitmix64(state) ^ key.astype(np.uint64)
-    return _splitmix64(state)
-
-
-def _splitmix64(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    # One step of SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators",
-    # OOPSLA 2014, 453-472, constants as in java.util.SplittableRandom.
-    z = z + np.uint64(0x9E3779B97F4A7C15)
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return z ^ (z >> np.uint64(31))
+        state = splitmix64(state) ^ key.astype(np.uint64)
+    return splitmix64(state)

@@ -7,6 +7,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ from uq.compilation import compilation
 from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.descendants import adopt, end_descendants
+from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import evaluate
 from uq.study.registry import code_of, find_model
 
@@ -65,7 +67,8 @@ class ModelSpec(NamedTuple):
 
 
 READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
-"""Messages of a child; the last two come with a chunk or an exception."""
+"""Messages of a child; the last two come with a chunk or an exception, the first says whether it
+stops rows itself when their time is over."""
 
 
 def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.Thread:
@@ -100,13 +103,20 @@ def main(handle: str) -> None:
     adopt()
     end_with_parent(end_descendants)
     connection = Connection(int(handle))
-    spec: ModelSpec = connection.recv()
+    spec: ModelSpec
+    limit: float | None
+    spec, limit = connection.recv()
     try:
         model, settings = spec.load()
     except Exception as error:
         connection.send((REFUSED, error))
         return
-    connection.send((READY, None))
+    batch = model.batch
+    stops_rows = False
+    if limit is not None and isinstance(batch, RowByRow) and batch.stops_rows:
+        stops_rows = True
+        model = replace(model, batch=batch.limited(limit))
+    connection.send((READY, stops_rows))
     compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
     with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
         while True:

@@ -1,7 +1,10 @@
-"""What makes another process import and compile as this one."""
+"""Other processes, which import and compile as this one."""
 
 import os
+import subprocess
 import sys
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from typing import Any
 
 SINGLE_THREADED = {
@@ -43,3 +46,30 @@ def _numba_settings() -> dict[str, str]:
         "NUMBA_CPU_FEATURES": features,
         "NUMBA_CACHE_DIR": config.CACHE_DIR,
     }
+
+
+def started(module: str) -> tuple[subprocess.Popen[bytes], Connection]:
+    """Start a process with a connection to this one, the number of which is its argument.
+
+    It is in a session of its own: Ctrl-C reaches this process, which ends the other.
+
+    Raises
+    ------
+    OSError
+        When it cannot start.
+    """
+    here, there = Pipe()
+    with there:
+        try:
+            process = subprocess.Popen(
+                command(module, str(there.fileno())),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                pass_fds=(there.fileno(),),
+                start_new_session=True,
+                env=inherited(),
+            )
+        except OSError:
+            here.close()
+            raise
+    return process, here

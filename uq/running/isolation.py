@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from math import ceil
-from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, cast
 
@@ -23,9 +22,10 @@ from uq.contract import Floats, Status
 from uq.errors import RunError
 from uq.interrupts import undone
 from uq.outside.descendants import end_with_descendants
+from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
-from uq.running.environment import command, inherited
+from uq.running.environment import started
 from uq.study.registry import code_of
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ _PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash 
 _STARTS = 3
 _FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more on a busy computer
 _DYING_SECONDS = 5.0
+_STUCK_SECONDS = 5.0  # beyond its limit, after which a row is stopped that should stop itself
 _POLL_SECONDS = 0.2  # so that an interrupt is seen
 
 
@@ -72,7 +73,8 @@ def isolated(
     """
     process = Isolated(spec_of(workload), limit, compiling)
     with undone(process.close):
-        process.begin()
+        with suppress(OSError):  # it is tried again for the first rows
+            process.begin()
         yield process.evaluate
 
 
@@ -96,7 +98,7 @@ class Isolated:
         self._compiling = compiling
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._ready = False
+        self._ready = self._stops_rows = False
         self._grace = 0.0
         self._closed = threading.Event()
 
@@ -127,7 +129,12 @@ class Isolated:
                 return outcome
             if outcome.status is not Status.CRASHED:
                 break
-        return lost_rows(*self.spec.load(), 1, cast(Fault, outcome), start)
+        fault = cast(Fault, outcome)
+        model, settings = self.spec.load()
+        if isinstance(model.batch, RowByRow):
+            kept = model.batch.kept(x[0].tolist(), int(seed[0]))
+            fault = fault._replace(message=fault.message + kept)
+        return lost_rows(model, settings, 1, fault, start)
 
     def close(self) -> None:
         """End the process, whatever it is doing."""
@@ -138,7 +145,7 @@ class Isolated:
         try:
             connection = self.start()
             connection.send((x, seed, start))
-            answer = self._answer(connection, self.limit and self.limit + self._grace)
+            answer = self._answer(connection, self._patience(len(x)))
         except (EOFError, OSError):
             return Fault(Status.CRASHED, f"killed its process ({self._end()})")
         self._grace = 0.0
@@ -149,6 +156,14 @@ class Isolated:
         if kind == child.REFUSED:
             raise value
         return cast(Chunk, value)
+
+    def _patience(self, rows: int) -> float | None:
+        """Return how long rows that are computed together may take [s]."""
+        if self.limit is None:
+            return None
+        if self._stops_rows:
+            return rows * self.limit + _STUCK_SECONDS
+        return self.limit + self._grace
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
         """Return the answer of the process, or None when its time is over."""
@@ -170,17 +185,9 @@ class Isolated:
         """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
         if self._connection:
             return self._connection
-        self._connection, there = Pipe()
-        with there, suppress(OSError):
-            self._process = subprocess.Popen(
-                command("uq.running.child", str(there.fileno())),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                pass_fds=(there.fileno(),),
-                start_new_session=True,  # Ctrl-C reaches this process, which ends the other
-                env=inherited(),
-            )
-            self._connection.send(self.spec)
+        self._process, self._connection = started("uq.running.child")
+        with suppress(OSError):  # of a process that died: `start` sees it
+            self._connection.send((self.spec, self.limit))
         return self._connection
 
     def start(self) -> Connection:
@@ -207,7 +214,7 @@ class Isolated:
             if kind == child.REFUSED:
                 self._end()
                 raise value
-            self._grace, self._ready = _FIRST_SECONDS, True
+            self._grace, self._ready, self._stops_rows = _FIRST_SECONDS, True, value
             return connection
         raise RunError(f"a process for the rows could not start: {reason}")
 

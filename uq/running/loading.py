@@ -6,11 +6,9 @@ return is remembered on this computer until the function changes.
 
 import hashlib
 import json
-import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import suppress
-from multiprocessing import Pipe
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +17,7 @@ import numpy as np
 from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.returned import Returned, as_plain, from_plain, joined
-from uq.running.environment import command, inherited
+from uq.running.environment import started
 from uq.study.registry import code_of, find_model, located, with_returns
 from uq.study.sources import DISTRIBUTION
 
@@ -100,10 +98,10 @@ def _known(study: "Study") -> "Study":
 
 def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
-    numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
-    key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
     from platformdirs import user_cache_path
 
+    numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
+    key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
     kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
@@ -143,16 +141,7 @@ def _in_process(reference: str, todo: Iterator[tuple[int, Row]]) -> Iterator[tup
     """Yield the number of each row and what it did, until one kills the process."""
     from uq.running import probe
 
-    connection, there = Pipe()
-    with there:
-        process = subprocess.Popen(
-            command("uq.running.probe", str(there.fileno())),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            pass_fds=(there.fileno(),),
-            start_new_session=True,
-            env=inherited(),
-        )
+    process, connection = started("uq.running.probe")
     try:
         connection.send(reference)
         for i, row in todo:

@@ -4,7 +4,7 @@ import sys
 from multiprocessing.connection import Connection
 from typing import Any
 
-from uq.errors import InputError
+from uq.errors import InputError, described
 from uq.outside.returned import WrongReturnError, as_plain, seen_in
 from uq.running.child import end_with_parent
 from uq.study.registry import find_model
@@ -30,8 +30,7 @@ def main(handle: str) -> None:
         except WrongReturnError as error:
             answer = RAISED, str(error)
         except (Exception, SystemExit) as error:
-            text = " ".join(str(error).split())
-            answer = RAISED, f"raised {type(error).__name__}: {text}"
+            answer = RAISED, f"raised {described(error)}"
         connection.send(answer)
 
 

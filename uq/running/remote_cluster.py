@@ -7,7 +7,7 @@ from contextlib import ExitStack, contextmanager
 from distributed import Client
 from distributed.security import Security
 
-from uq.errors import InputError, RunError
+from uq.errors import InputError, RunError, one_line
 from uq.provenance import differences, versions
 from uq.running.dask_task import end_children
 from uq.running.workers import Workers, quiet
@@ -41,7 +41,7 @@ def remote_workers(address: str) -> Iterator[Workers]:
         try:
             client = Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
         except (OSError, ValueError) as error:
-            reason = " ".join(str(error).split())
+            reason = one_line(error)
             raise InputError(
                 f"{where}: cannot connect: {reason}; is a dask scheduler running there?"
             ) from None

@@ -156,31 +156,7 @@ class Study:
 
 
 def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
-    """Read and check a study file.
-
-    Parameters
-    ----------
-    path : path-like
-        A TOML file.
-    model : str, optional
-        Use this model (``"package.module:ATTRIBUTE"`` or an installed name) instead of the
-        file's.
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    InputError
-        Everything that is wrong with the file, one line per fault.
-
-    Examples
-    --------
-    >>> study = uq.load_study("studies/ishigami.toml")
-    >>> study.design.samples, list(study.uncertain)
-    (256, ['x1', 'x2', 'x3'])
-    """
+    """Read and check a study file, as `uq.running.loading.load_study`; a model stays unknown."""
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
 

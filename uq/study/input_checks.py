@@ -23,7 +23,7 @@ from uq.inputs.faults import Fault
 from uq.inputs.law import Law
 from uq.inputs.observed import Empirical, values_problem
 from uq.inputs.values import bounds_of
-from uq.methods.registry import fed_by, for_dependent_inputs
+from uq.methods.registry import fed_by
 from uq.study.file import ENTRY, Tied
 from uq.study.reading import parse, shape_faults, sound_entries
 
@@ -148,10 +148,18 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
     if method in IMPORTED:
         yield Fault(("dependence",), "imported rows carry their own dependence; leave it out")
     elif method is not None and not fed_by(DESIGNS[method], dependent=True):
-        able = [n for n, d in DESIGNS.items() if not d.imported and fed_by(d, dependent=True)]
+        able: dict[tuple[str, ...], list[str]] = {}
+        for name, design in DESIGNS.items():
+            if not design.imported:
+                able.setdefault(fed_by(design, dependent=True), []).append(name)
+        remedies = (
+            f"{' or '.join(designs)} for {' and '.join(feeds)}"
+            for feeds, designs in able.items()
+            if feeds
+        )
         problem = (
-            f"assumes independent inputs, and [dependence] says they are not; use"
-            f" {' or '.join(able)}, which feed {' and '.join(for_dependent_inputs())}"
+            "assumes independent inputs, and [dependence] says they are not; use"
+            f" {', or '.join(remedies)}"
         )
         yield Fault(("design", "method"), problem, method)
 

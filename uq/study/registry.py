@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from uq.contract import Model
-from uq.errors import InputError, choices, nearest
+from uq.errors import InputError, choices, described, nearest
 from uq.outside.function import is_machine, model_of
 from uq.outside.returned import Returned, as_plain, from_plain
 from uq.places import node
@@ -28,7 +28,7 @@ from uq.study.sources import fingerprint
 
 GROUP = "vibrolife.models"
 
-_PROGRAM = ".toml"
+_MACHINES = (".toml", ".fmu")
 _SERVERS = ("http://", "https://")
 _FILE = re.compile(r"(.+\.py)(?::(\w+))?")
 _KNOWN_TO_RETURN = "\n"  # what follows it in a reference is what a function returns
@@ -47,7 +47,8 @@ def find_model(reference: str) -> Model:
     reference : str
         The name of an installed model, ``"package.module:ATTRIBUTE"``, or ``"file.py"`` with a
         model or a function under `uq.outside.function.machine` (``"file.py:NAME"`` where there are
-        several), ``"file.toml"`` that describes a program, or ``"http://host:port/NAME"``.
+        several), ``"file.toml"`` that describes a program or FMU, ``"file.fmu"``, or
+        ``"http://host:port/NAME"``.
 
     Returns
     -------
@@ -59,10 +60,10 @@ def find_model(reference: str) -> Model:
         There is no such model, or its package cannot be imported. A broken model does not affect
         the others.
     """
-    if reference.endswith(_PROGRAM):
-        from uq.outside.program import program_of
+    if reference.endswith(_MACHINES):
+        from uq.outside.machine import machine_of
 
-        return program_of(Path(reference))
+        return machine_of(Path(reference))
     plain, _, known = reference.partition(_KNOWN_TO_RETURN)
     returned = from_plain(json.loads(known)) if known else None
     if plain.startswith(_SERVERS):
@@ -82,7 +83,7 @@ def located(reference: str) -> str:
     """Return a reference that holds in any folder of this computer."""
     if reference.startswith(_SERVERS):
         return reference
-    if reference.endswith(_PROGRAM):
+    if reference.endswith(_MACHINES):
         return str(Path(reference).absolute())
     found = _FILE.fullmatch(reference)
     if not found:
@@ -151,7 +152,7 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
     except InputError:
         raise
     except (Exception, SystemExit) as error:
-        problem = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        problem = described(error)
         if isinstance(error, ModuleNotFoundError):
             problem += "; install it, or name its folder in PYTHONPATH"
         place = f" from {point.value}" if attribute else ""
@@ -243,10 +244,10 @@ def code_of(reference: str) -> str:
     InputError
         No source was found.
     """
-    if reference.endswith(_PROGRAM):
-        from uq.outside.program import code_of_program
+    if reference.endswith(_MACHINES):
+        from uq.outside.machine import code_of_machine
 
-        return code_of_program(Path(reference))
+        return code_of_machine(Path(reference))
     if reference.startswith(_SERVERS):
         from uq.outside.server import code_of_server
 

@@ -94,7 +94,7 @@ def serve(
     ] = "127.0.0.1",
 ) -> None:
     """Offer a model to other programs (UM-Bridge)."""
-    from uq.outside.serving import server_of
+    from uq.outside.serving import address_of, server_of
     from uq.running.loading import load_model
 
     found = load_model(model)
@@ -104,7 +104,7 @@ def serve(
         raise InputError(f"uq: {host}:{port}: {error.strerror or error}") from None
     say_when_interrupted("stopped")
     with server:
-        print(f"http://{host}:{server.server_address[1]}/{found.name}", flush=True)
+        print(address_of(host, server.server_address[1], found.name), flush=True)
         server.serve_forever()
 
 
@@ -113,7 +113,7 @@ def schema(
 ) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
-    from uq.outside.machine_file import machine_schema
+    from uq.outside.machine import machine_schema
     from uq.study.schema import json_schema
 
     print_json(machine_schema() if machine else json_schema())

@@ -1,0 +1,246 @@
+"""An FMU as a machine: what a study makes of it, what goes wrong, what it leaves behind."""
+
+import sys
+from math import inf, nan
+from pathlib import Path
+
+import cooling_fmu
+import numpy as np
+import pytest
+from cooling_fmu import DESCRIPTION, EXPERIMENT
+
+import uq as package
+from uq.contract import Status
+from uq.outside.fmu import reduced
+from uq.outside.fmu_file import FmuOutputTable
+from uq.outside.fmu_said import cf_unit
+from uq.outside.returned import Censored
+
+STUDY = """
+[study]
+name = "own"
+model = "body"
+[design]
+method = "monte-carlo"
+samples = 20
+seed = 1
+[uncertain.{name}]
+distribution = "uniform"
+lower = {lower}
+upper = {upper}
+source = "assumed"
+"""
+
+MACHINE = """
+[machine]
+name = "body"
+fmu = "body.fmu"
+stop = 5.0
+step = 0.05
+[parameters.rate]
+variable = "body.rate"
+bounds = [0.0, 10.0]
+[parameters.fault]
+[outputs.last]
+variable = "T"
+[outputs.hottest]
+variable = "T"
+over_time = "max"
+[outputs.average]
+variable = "T"
+over_time = "mean"
+[outputs.life]
+variable = "T"
+below = 330.0
+[outputs.steps]
+unit = "1"
+"""
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory):
+    return cooling_fmu.compiled(tmp_path_factory.mktemp("fmu"))
+
+
+@pytest.fixture
+def body(folder, library):
+    """Write the FMU, a machine file that names it and nothing else."""
+    cooling_fmu.write(folder / "body.fmu", library)
+    (folder / "body.toml").write_text(MACHINE)
+
+
+def run(uq, model, *more, name="rate", lower=0.1, upper=2.0):
+    Path("own.toml").write_text(STUDY.format(name=name, lower=lower, upper=upper))
+    ended = uq("run", "own.toml", "--model", model, "-o", "own.nc", "--quiet", *more)
+    return ended, package.open_result("own.nc") if Path("own.nc").is_file() else None
+
+
+def test_an_fmu_alone_has_its_own_parameters_and_outputs(uq, body, folder):
+    ended, ds = run(uq, "body.fmu", name="body_rate")
+    assert ended.err == ""
+    assert np.allclose(ds["T"], 300 + 100 * np.exp(-4 * ds["body_rate"]), rtol=1e-12, atol=0)
+    assert ds["T"].attrs["units"] == ds["T0"].attrs["units"] == "K"
+    assert ds["body_rate"].attrs["units"] == "s-1"
+    assert ds["body_rate"].attrs["long_name"] == "rate of cooling"
+    assert ds.attrs["model_version"] == "FMI 2.0"
+    shown = uq("models", "body.fmu").out
+    assert "0 to 50" in shown and "label" not in shown
+    left = {"body.fmu", "body.toml", "own.toml", "own.nc"}
+    assert {one.name for one in folder.iterdir()} == left
+
+
+def test_variables_are_reduced_over_time(uq, body):
+    _, ds = run(uq, "body.toml")
+    rate = ds["rate"].values
+    assert (ds["status"] == 0).all() and (ds["hottest"] == 400).all()
+    assert np.allclose(ds["last"], 300 + 100 * np.exp(-5 * rate), rtol=1e-12, atol=0)
+    mean = 300 + 100 * (1 - np.exp(-5 * rate)) / (5 * rate)
+    assert np.allclose(ds["average"], mean, rtol=1e-4, atol=0)
+    life = -np.log(0.3) / rate
+    cut = ds["life_censored"].values.astype(bool)
+    assert (cut == (life > 5)).all() and cut.any() and not cut.all()
+    assert np.allclose(ds["life"].values[~cut], life[~cut], rtol=0, atol=0.05**2)
+    assert (ds["life"].values[cut] == 5).all() and ds["life"].attrs["units"] == "s"
+
+
+def test_each_row_has_an_instance_of_its_own(uq, body):
+    _, ds = run(uq, "body.toml")
+    assert (ds["steps"] == 100).all()  # the library counts those of all its instances
+
+
+@pytest.mark.slow
+def test_rows_are_equal_to_the_bit_in_processes_of_their_own(uq, body):
+    _, here = run(uq, "body.toml", "--workers", "0")
+    _, there = run(uq, "body.toml", "--workers", "2", "--fresh")
+    assert here.equals(there)
+
+
+FAULTS = {
+    1: ("raised", "fmi2DoStep failed with status 3 (error). (no heat is left); see "),
+    2: ("raised", "fmi2DoStep failed with status 4 (fatal). (no heat is left); see "),
+    3: ("non_finite", "'last' is nan; see "),
+    4: ("crashed", "killed its process (Aborted); see "),
+    5: ("timed_out", "did not end within 1 s; see "),
+}
+
+
+@pytest.mark.parametrize(
+    "fault", [1, 2, 3, *(pytest.param(n, marks=pytest.mark.slow) for n in (4, 5))]
+)
+def test_a_fault_costs_its_row_and_keeps_its_folder(uq, body, folder, fault):
+    limits = {"name": "fault", "lower": fault - 0.5, "upper": fault + 0.5}
+    ended, ds = run(uq, "body.toml", "--row-limit", "1", "--samples", "2", **limits)
+    label, words = FAULTS[fault]
+    struck = ds["fault"].values >= fault
+    assert struck.any() and "Traceback" not in ended.err
+    lost = ds["status"].values[struck]
+    assert {Status(code).name.lower() for code in lost} == {label}
+    said = ds["status"].attrs[f"example_{label}"]
+    assert words in said
+    kept = Path(said.rpartition("; see ")[2])
+    assert kept.is_dir() and kept.parent == folder / "body.rows"
+    if label == "raised":
+        assert (kept / "log.txt").read_text() == "no heat is left"
+        assert (kept / "trace.txt").is_file()
+    assert all(one.name.startswith("failed-") for one in kept.parent.iterdir())
+
+
+def test_another_fmu_is_noticed(uq, body, library):
+    run(uq, "body.toml")
+    other = DESCRIPTION.replace("temperature", "heat")
+    cooling_fmu.write("body.fmu", library, other)
+    assert "other code" in run(uq, "body.toml")[0].err
+
+
+MISTAKES = {
+    ('"body.fmu"', '"bodi.fmu"'): "bodi.fmu: no such file; did you mean 'body.fmu'?",
+    ('"body.rate"', '"body.rat"'): "no such parameter of the FMU; did you mean 'body.rate'?",
+    ('"body.rate"', '"label"'): "no such parameter of the FMU",
+    ("[outputs.steps]", "[outputs.stepz]"): "no such variable of the FMU; did you mean 'steps'?",
+    ("stop = 5.0", "stop = -5.0"): "[machine] stop = -5.0: must be greater than 0",
+    ("stop = 5.0", "stopp = 5.0"): "[machine] stopp = 5.0: no such key; did you mean 'stop'?",
+    ('"mean"', '"average"'): "[outputs] average.over_time",
+    ("below = 330.0", 'below = 330.0\nover_time = "end"'): "one of over_time, above and below",
+    ("below = 330.0", 'below = 330.0\nunit = "h"'): "at which a level is reached is in s",
+    ("[0.0, 10.0]", "[1.0, 10.0]"): "nominal value 0.5 of 'rate' must be",
+}
+
+
+@pytest.mark.parametrize("change", MISTAKES)
+def test_a_mistake_in_a_machine_file_is_one_line(uq, body, folder, change):
+    (folder / "body.toml").write_text(MACHINE.replace(*change))
+    ended = uq("models", "body.toml")
+    assert (ended.code, ended.out) == (2, "")
+    assert MISTAKES[change] in ended.err and ended.err.count("\n") == 1
+
+
+OLD = DESCRIPTION.replace(
+    'fmiVersion="2.0"',
+    'fmiVersion="1.0" numberOfContinuousStates="0" numberOfEventIndicators="0"',
+).replace('declaredType="Rate"', "")
+ODD_STEP = EXPERIMENT.replace("0.01", "0.03")
+BAD = {
+    "no archive": (None, "is no FMU: BadZipFile"),
+    "no description": ({"description": "<x/>"}, "is no FMU"),
+    "of FMI 1.0": (
+        {"description": OLD},
+        "is of FMI 1.0; 2.0 and 3.0 are supported",
+    ),
+    "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
+    "endless": ({"experiment": ""}, "does not say how long it is to be simulated"),
+    "in whole steps": (
+        {"description": DESCRIPTION.replace("true", "false"), "experiment": ODD_STEP},
+        "does whole steps of 0.03 s only; they do not end at 4 s",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_a_bad_fmu_is_one_line(uq, folder, library, what):
+    change, words = BAD[what]
+    if change is None:
+        Path("bad.fmu").write_text("no archive")
+    else:
+        cooling_fmu.write(folder / "bad.fmu", library, **change)
+    ended = uq("models", "bad.fmu")
+    assert (ended.code, ended.out) == (2, "")
+    assert words in ended.err and ended.err.count("\n") == 1
+
+
+def test_without_fmpy_it_is_said_what_to_install(uq, folder, monkeypatch):
+    Path("body.fmu").write_text("")
+    monkeypatch.setitem(sys.modules, "fmpy", None)
+    assert "needs FMPy: pip install 'vibrolife[fmu]'" in uq("models", "body.fmu").err
+
+
+TIME, HEAT = np.array([1.0, 2.0, 2.0, 4.0]), np.array([0.0, 1.0, 3.0, 2.0])
+REDUCED = {
+    "end": ({"over_time": "end"}, 2.0),
+    "max": ({"over_time": "max"}, 3.0),
+    "min": ({"over_time": "min"}, 0.0),
+    "mean": ({"over_time": "mean"}, (0.5 + 5.0) / 3),
+    "a level between two values": ({"above": 0.25}, 0.25),
+    "a level that is jumped over": ({"above": 2.0}, 1.0),
+    "a level that is reached in the end": ({"above": 3.0}, 1.0),
+    "a level that is never reached": ({"above": 3.5}, Censored(3.0)),
+    "a level reached from the start": ({"below": 0.0}, 0.0),
+}
+
+
+@pytest.mark.parametrize("what", REDUCED)
+def test_a_history_becomes_a_number(what):
+    how, expected = REDUCED[what]
+    assert reduced(FmuOutputTable(**how), TIME, HEAT) == expected
+
+
+@pytest.mark.parametrize("bad", [nan, inf])
+def test_a_history_with_a_number_that_is_none_has_no_life(bad):
+    assert np.isnan(reduced(FmuOutputTable(above=0.5), TIME, np.array([0.0, 1.0, bad, 2.0])))
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [("W/(m2.K)", "W m-2 K-1"), ("rad/s", "rad s-1"), ("m3/s", "m3 s-1"), ("", "1"), ("%", "%")],
+)
+def test_units_of_modelica_are_those_of_cf(unit, expected):
+    assert cf_unit(unit) == expected
