@@ -38,7 +38,7 @@ from uq.rows.elements import (
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
 from uq.rows.variables import outputs_of
-from uq.rows.weights import has_weights, refuse_weights
+from uq.rows.weights import ONLY_INSPECTED, has_weights, refuse_weights
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
@@ -283,7 +283,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
         place = nesting_of(ds)
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
-    notes += filter(None, [why_no_intervals(ds)])
+    notes += filter(None, [ds.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(ds)])
     return notes
 
 
