@@ -52,7 +52,7 @@ def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = 
     grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
     regimes = {REGIME: summary.regimes} if summary.regimes else {}
     for name, shares in (regimes | summary.categories).items():
-        heading(f"\n{name}", str(ds[name].attrs["long_name"]))
+        heading(f"\n{name}", str(ds[name.partition("[")[0]].attrs["long_name"]))
         lines = [_share(one) for one in shares.values()]
         grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
         if name == REGIME and boundary is not None and boundary.estimate.has_interval:

@@ -1,5 +1,6 @@
 """Which targets a user means: those that suit a method, or those of some names."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 import xarray as xr
@@ -97,7 +98,7 @@ def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
 
 def output_in(inside: str) -> str:
     """Return the output or element that the name of a target is about."""
-    return inside if "[" in inside else inside.partition("=")[0]
+    return re.sub(r"=[^\]]*$", "", inside)
 
 
 def _elements(ds: xr.Dataset, name: str) -> list[Element]:
@@ -119,9 +120,9 @@ def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Targe
     Returns
     -------
     iterator of Target
-        Of a category without dimensions, whether a row is in each that occurs.
+        Of a category, or an element of one, whether a row is in each that occurs.
     """
-    if is_category(ds, name) and ds[name].ndim == 1:
+    if is_category(ds, name.partition("[")[0]):
         return category_targets(ds, name)
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
     return targets.targets(known, analysis_of(ds).thresholds, every)

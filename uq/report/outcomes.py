@@ -46,7 +46,8 @@ def category_table(name: str, shares: Shares) -> Table:
         for one in shares.values()
         for count in [one.facts["count"]]
     ]
-    return Table(f"{name.capitalize()}, with 95 % intervals", (name, "rows", "share"), rows)
+    title = f"{name[:1].upper()}{name[1:]}, with 95 % intervals"
+    return Table(title, (name, "rows", "share"), rows)
 
 
 def regime_tables(findings: Findings) -> list[Table]:

@@ -86,7 +86,7 @@ def states_of(element: Element) -> dict[str, int]:
 def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
     known, output = output_names(ds), _output(path)
     if path[:1] == ("categories",):
-        output = path[1] if path[1:] else ""
+        output = path[1].partition("[")[0] if path[1:] else ""
     elif path and path[0] != "outputs":
         output = next(iter(known))  # counts and regimes need no output
     analysis = analysis_of(ds, output if output in known else None)
