@@ -5,6 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 from benchmarks.coverage import (
+    basins,
     curves,
     dependent,
     differences,
@@ -22,6 +23,7 @@ from benchmarks.coverage import (
     scaled,
     stopping,
     tails,
+    whole,
 )
 from benchmarks.coverage.tally import Line
 
@@ -68,6 +70,8 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "whole": Part(partial(whole.whole, "saltelli"), 1000),
+    "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
     "shapley-dependent": Part(dependent.shapley, 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
@@ -96,4 +100,5 @@ PARTS = {
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
     "fleet-shared": Part(fleets.shared_scale, 1000),
+    "basins": Part(basins.exponents, 1000),
 }

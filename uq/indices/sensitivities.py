@@ -113,11 +113,13 @@ def sensitivities(
         By default the first of `methods`.
     output : str or sequence of str, optional
         An output, one element of it, or one of the names that this function returns; by default
-        the outputs that the study wants to see. Of a category, such as the regime, the targets
-        are ``P(regime=label)``: whether a row is in each that occurs. For a lifetime they are its
-        logarithm, or its rank where rows never end or are censored, and ``P(life<t)``; its rate
-        1/T is ``rate(life)``. A value with a heavy tail is by default replaced by its logarithm or
-        rank; its own name gives the value itself. Of several names, unknown ones are skipped.
+        the outputs that the study wants to see. All elements of an output together are a target of
+        their own, ``output[:]``, where the method adds them up. Of a category, such as the regime,
+        the targets are ``P(regime=label)``: whether a row is in each that occurs. For a lifetime
+        they are its logarithm, or its rank where rows never end or are censored, and ``P(life<t)``;
+        its rate 1/T is ``rate(life)``. A value with a heavy tail is by default replaced by its
+        logarithm or rank; its own name gives the value itself. Of several names, unknown ones are
+        skipped.
     regime : str, optional
         Use the rows in this regime only. Among them the inputs depend on each other.
 
@@ -190,7 +192,7 @@ def indices_of_target(
     try:
         if target.refused:
             raise RefusedError(target.refused)
-        if method.of_variance and not target.event and lacks_variance(target.values):
+        if method.of_variance and not target.event and lacks_variance(target.sizes):
             raise RefusedError(_no_variance(target))
         few = few_hits(ds, target)
         found = method.indices(sample)
@@ -212,13 +214,15 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        One sentence or none.
+        One sentence or none; none for all elements of an output together.
 
     Raises
     ------
     RefusedError
         Fewer than `FEWEST_HITS` in each replicate.
     """
+    if target.values.ndim > 1:
+        return ()
     values, replicates = target.values, int(ds.attrs.get("replicates", 1))
     if not why_no_statistics(ds):
         values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values

@@ -96,15 +96,15 @@ def effective_rows(deviations: Floats) -> float:
 
     Parameters
     ----------
-    deviations : ndarray, shape (n,)
-        From the mean.
+    deviations : ndarray, shape (n,) or (n, e)
+        From the mean, of each element.
 
     Returns
     -------
     float
         n over the kurtosis: n/3 for a normal law, about the number of hits for a rare event.
     """
-    squares = deviations**2
+    squares = _squares(deviations)
     return float(squares.sum() ** 2 / (squares**2).sum())
 
 
@@ -115,8 +115,8 @@ def one_more_row(
 
     Parameters
     ----------
-    deviations : ndarray, shape (n,)
-        Of the independent rows from their mean, of variance 1.
+    deviations : ndarray, shape (n,) or (n, e)
+        Of the independent rows from their mean, of variance 1, all elements together.
     groups, replicates : int
         All groups of all replicates.
     confidence : float, optional
@@ -130,7 +130,12 @@ def one_more_row(
     if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
     wide = student(upper_probability(confidence), replicates - 1)
-    return float(wide * (deviations**2).max() / groups)
+    return float(wide * _squares(deviations).max() / groups)
+
+
+def _squares(deviations: Floats) -> Floats:
+    squares = deviations**2
+    return squares if squares.ndim == 1 else np.asarray(squares.sum(axis=1))
 
 
 def widened(estimate: Estimate, by: float) -> Estimate:

@@ -39,6 +39,7 @@ METHODS = {
         kinds=(S1,),
         source="random balance, bias corrected",
         most_rows=200_000,
+        aggregates=True,
     ),
     "delta": _of_any_inputs(
         "how much the whole distribution moves",
@@ -89,6 +90,7 @@ METHODS = {
         source="Saltelli et al. (2010), on standardised outputs",
         intervals="Student's t from replicates",
         least=MIN_GROUPS,
+        aggregates=True,
         noise="the model is random, and the rows of a group share a seed: S1 excludes noise, ST"
         " includes its interaction with the input, and 'noise' is the share of the variance that"
         " remains once all inputs are known",
@@ -113,6 +115,7 @@ METHODS = {
         intervals="Student's t of independent paths",
         least=MIN_PATHS,
         assumes_independence=False,
+        aggregates=True,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
     ),
     "fast": Method(
@@ -122,6 +125,7 @@ METHODS = {
         (S1, ST),
         source="extended FAST, Saltelli et al. (1999)",
         least=0,  # it asks for a whole curve of each input
+        aggregates=True,
         noise=f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
     ),
 }

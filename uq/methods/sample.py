@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.intervals import CONFIDENCE
+from uq.intervals import CONFIDENCE, is_constant
 
 
 @dataclass(frozen=True)
 class Sample:
-    """The rows of a result and one number for each.
+    """The rows of a result and one number for each, or one for each element of an output.
 
     Attributes
     ----------
-    values : ndarray, shape (n,)
-        The output, NaN where a row has none.
+    values : ndarray, shape (n,) or (n, e)
+        The output, NaN where a row has none; of a whole output, a column for each element.
     inputs : dict of str to ndarray, shape (n,)
         The inputs that vary by a law of their own.
     groups : ndarray of int, shape (R, N, k)
@@ -60,13 +60,19 @@ class Sample:
 
     @property
     def grouped(self) -> Floats:
-        """The output by replicate, group and row, shape (R, N, k)."""
+        """The output by replicate, group and row, shape (R, N, k), with (e,) of a whole output."""
         return self.values[self.groups]
 
     @cached_property
     def whole(self) -> Mask:
         """Which groups have a value in each of their rows, shape (R, N)."""
-        return np.asarray(np.isfinite(self.grouped).all(axis=-1))
+        known = np.isfinite(self.grouped)
+        return np.asarray(known.all(axis=tuple(range(2, known.ndim))))
+
+    def is_constant(self, values: Floats) -> bool:
+        """Whether each element is constant over these values of some rows, the last axis (e,)."""
+        elements = self.values.shape[1] if self.values.ndim > 1 else 1
+        return all(is_constant(one) for one in values.reshape(-1, elements).T)
 
     def rows(self, kept: NDArray[np.intp]) -> Self:
         """Return some rows of a plain sample."""

@@ -57,10 +57,11 @@ def shapley_indices(sample: Sample) -> Indices:
     """
     whole = sample.whole
     y = sample.grouped[whole]
-    if is_constant(y):
+    if sample.is_constant(y):
         raise RefusedError(NO_VARIANCE)
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
+    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)  # over the elements of a whole output
     parts = np.einsum("ns,nsp->np", steps, sample.direction[whole] != 0)
     total = parts.sum(axis=1)
     if is_constant(y - y[:, :1]):
@@ -101,5 +102,6 @@ def _paths_without_effect(sample: Sample, name: str) -> int:
     alone = first & (x[:, 1] != x[:, 0])
     if (np.abs(y[:, 1] - y[:, 0])[alone] > ROUNDING * np.abs(y).max()).any():
         return 0
-    seen = int((alone & (y[:, -1] != y[:, 0])).sum())
+    moves = (y[:, -1] != y[:, 0]).reshape(len(y), -1).any(axis=1)  # some element of a whole output
+    seen = int((alone & moves).sum())
     return seen if seen >= MIN_SEEN else 0

@@ -9,6 +9,9 @@ from uq.errors import InputError
 WEIGHT = "weight"
 """The variable with the weight of each row."""
 
+ONLY_INSPECTED = "only_inspected"
+"""Attribute of a result: why no row stands for a unit that was not inspected."""
+
 MOST = "largest_possible"
 """Its attribute: the largest weight that a row can have, where that is known."""
 
