@@ -143,8 +143,8 @@ WIDENED = (
     " widened by the effect of one more such row"
 )
 REPLICATES = (
-    "conservative: the scatter of replicates of 64 groups includes errors of higher order, which the"
-    " estimate from all of them has not"
+    "conservative: the scatter of replicates of 64 groups includes errors of higher order, which"
+    " the estimate from all of them has not"
 )
 REASONS = {"S1 x1": REPLICATES, "rate(never)": WIDENED, f"P(never<{SOONER!r})": WIDENED}
 """Quantity -> why its coverage is not 95 %."""
