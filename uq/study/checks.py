@@ -48,6 +48,9 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         for one in (value if isinstance(value, list) else [value]) * (not faults):
             yield from _unit_faults(model, name, path, one)
+    for name, side in analysis.get("joint_bounds", {}).items():
+        path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
+        yield from _output_faults(model, name, path, side, no_number)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
@@ -156,16 +159,18 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     for key, problem in problems.items():
         yield Fault(("design", key), problem, True if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
-    if "tolerance" in asks and several:
-        problem = f"refused: its confidence assumes independent rows, {_SEVERAL}"
-        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
-    elif "tolerance" in asks and not design.independent and not stated:
-        able = independent + ", independent = true if they are" * design.imported
-        problem = (
-            f"refused: its confidence assumes independent rows, and those of '{method}' are not;"
-            f" use method = {able}, or leave the bound out"
-        )
-        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
+    for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
+        why = ""
+        if several:
+            why = f"independent rows, {_SEVERAL}"
+        elif not design.independent and not stated:
+            able = independent + ", independent = true if they are" * design.imported
+            why = (
+                f"independent rows, and those of '{method}' are not; use method = {able}, or leave"
+                " the bound out"
+            )
+        if why:
+            yield Fault(("analysis", key), f"refused: its confidence assumes {why}", analysis[key])
     if "twin" in asks and several:
         problem = f"needs independent rows, {_SEVERAL}"
         yield Fault(("analysis", "twin"), problem, analysis["twin"])

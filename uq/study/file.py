@@ -7,7 +7,7 @@ comes from them (`uq.study.schema`).
 import re
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import (
     AfterValidator,
@@ -317,6 +317,12 @@ class AnalysisTable(_Table):
             }
         ),
     ] = Field(None, description="bounds that cover a share of all values, monte-carlo only")
+    joint_bounds: dict[str, Literal["lower", "upper", "both"]] = Field(
+        {},
+        description='output = "lower", "upper" or "both": bounds that hold for all of these outputs'
+        " at once, with the coverage and confidence of `tolerance` (0.95 if not given),"
+        " monte-carlo only",
+    )
     thresholds: dict[
         str,
         Annotated[
