@@ -67,6 +67,7 @@ PARTS = {
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
     "shapley-dependent": Part(dependent.shapley, 1000),
+    "shapley-neighbours": Part(dependent.neighbours, 100),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
