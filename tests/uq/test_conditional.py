@@ -1,5 +1,7 @@
 """Dependent inputs drawn given some of them, and the Shapley effects of such paths."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from asked_indices import sensitivities
@@ -18,7 +20,10 @@ from uq.conclusions.rankings import ranking_of
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices import sensitivities as module
+from uq.indices.samples import sample_of
 from uq.inputs.conditional import conditional_paths
+from uq.methods.indices import SHAPLEY
+from uq.methods.registry import METHODS
 from uq.report.indices import sensitivity_of
 from uq.rows.sampling import row_block, rows
 
@@ -277,6 +282,19 @@ def test_the_additive_part_leaves_what_interacts_to_the_paths():
     assert sum(one["value"] for one in controlled.values()) == pytest.approx(1.0)
     widths = [[one["high"] - one["low"] for one in of.values()] for of in (controlled, plain)]
     assert sum(widths[0]) < 0.8 * sum(widths[1])
+
+
+def test_elements_of_an_output_add_up():
+    # Of x1 + x2 + 2 x3, and of x3 alone, whose correlated inputs are x2 and x3.
+    r = 0.6
+    ds = weighted(r, 512)
+    both = np.stack([ds["weighted"].values, ds["x3"].values], axis=1)
+    found = METHODS["shapley-additive"].indices(replace(sample_of(ds), values=both))
+    sizes = 6.0 + 4.0 * r, 1.0
+    alone = {"x2": r**2 / 2, "x3": 1 - r**2 / 2}
+    for name, value in dependent.of_normal(r).items():
+        truth = (sizes[0] * value + sizes[1] * alone.get(name, 0.0)) / sum(sizes)
+        assert found.values[SHAPLEY][name].value == pytest.approx(truth, abs=1e-9)
 
 
 def test_the_additive_part_of_discrete_inputs_stays_with_the_paths():

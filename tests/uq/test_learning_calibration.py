@@ -106,6 +106,39 @@ def test_it_agrees_with_a_random_walk_that_runs_the_model():
     assert abs(chain.mean() - exact[0]) < 0.05 * cov[0, 0] ** 0.5  # the chain itself is right
 
 
+@pytest.mark.slow
+def test_it_agrees_with_openturns():
+    """Its random walk in the physical inputs, with its laws and its likelihood."""
+    ot = pytest.importorskip("openturns")
+    lives, error = [6e5, 1e6, 1.2e6], np.log1p(0.2**2) ** 0.5
+    laws = [ot.LogNormal(np.log(median), sigma) for median, sigma in (RATE, DEPTH, DEPTH, DEPTH)]
+    of_unit = "is_1 * depth_1 + is_2 * depth_2 + is_3 * depth_3"
+    names = ["is_1", "is_2", "is_3", "rate", "depth_1", "depth_2", "depth_3"]
+    link = ot.SymbolicFunction(names, [f"log(({of_unit}) / rate)", f"{error}", "0"])
+    _, cov = exactly(lives, cv=0.2, shared_rate=True)
+    middle = np.array([RATE[0], *[DEPTH[0]] * 3])
+    ot.RandomGenerator.SetSeed(1)
+    moves = ot.Normal([0.0] * 4, list(0.9 * np.diag(cov) ** 0.5 * middle), ot.CorrelationMatrix(4))
+    chain = ot.RandomWalkMetropolisHastings(ot.JointDistribution(laws), list(middle), moves)
+    one_hot = ot.ParametricFunction(link, [0, 1, 2], [0.0] * 3)
+    seen = ot.Sample([[life] for life in lives])
+    chain.setLikelihood(ot.LogNormal(), seen, one_hot, ot.Sample(np.eye(3).tolist()))
+    theirs = np.log(np.asarray(chain.getSample(60_000))[5_000:])
+
+    rows = wear(20_000, 4, rate="shared", units=3)
+    found = posterior(rows, read_tables(measured(*lives, cv=0.2), "test"))
+    for column, name, one in (
+        (0, "rate", found.any_unit),
+        (1, "depth", found.units["A"]),
+        (3, "depth", found.units["C"]),
+    ):
+        logs = np.log(rows[name].values[one.rows])
+        mean = np.average(logs, weights=one.weights.weights)
+        sd = np.average((logs - mean) ** 2, weights=one.weights.weights) ** 0.5
+        assert abs(mean - theirs[:, column].mean()) < 0.1 * theirs[:, column].std()
+        assert sd == pytest.approx(theirs[:, column].std(), rel=0.1)
+
+
 def random_walk(lives, steps):
     """Return states (log rate, log depths) of a Metropolis chain, the model run at each step."""
     rng = np.random.default_rng(6)

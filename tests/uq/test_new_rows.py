@@ -1,5 +1,9 @@
 """New rows where inspections point: the right posterior, resumed to the bit, or a refusal."""
 
+import subprocess
+import sys
+import time
+
 import numpy as np
 import pytest
 from command_line import everything, strict_json
@@ -7,7 +11,6 @@ from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
 
 from uq.errors import InputError, RunError
-from uq.exploring import new_rows
 from uq.exploring.updating import update
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.importance import own_rows
@@ -18,41 +21,56 @@ from uq.store.files import write_result
 FAR = measured(2e7, cv=0.05)
 """Five standard deviations from what the study expects."""
 
+SMALL = {"rows": 8000, "workers": 0}
+
 
 @pytest.fixture(scope="module")
 def result():
-    return wear(samples=2000)
+    return wear(samples=400)
 
 
 @pytest.fixture(scope="module")
 def found(result):
-    return update(result, FAR, rows=8000, workers=0)
+    return update(result, FAR, **SMALL)
 
 
-def log_rate_and_depth(ds):
-    """Return means and standard deviations of the logarithms of rate and depth of unit A."""
-    unit = as_unit(ds, "A")
+def log_rate_and_depth(ds, unit="A"):
+    """Return means and standard deviations of the logarithms of rate and depth of a unit."""
+    unit = as_unit(ds, unit)
     weights = unit["weight"].values
     logs = np.log([unit["rate"].values, unit["depth"].values])
     mean = np.average(logs, axis=1, weights=weights)
     return mean, np.average((logs - mean[:, None]) ** 2, axis=1, weights=weights) ** 0.5
 
 
-def test_what_contradicts_the_rows_ends_in_the_right_posterior(result, found):
-    with pytest.raises(RunError, match=r"Pareto k.*or update the result with --rows N"):
-        update(result, FAR)
-    mean, cov = exactly([2e7], cv=0.05)
+def assert_exact(ds, mean, cov, unit="A"):
+    """Compare the logarithms of rate and depth with the closed form, of 400 effective rows."""
     sd = np.diag(cov) ** 0.5
-    means, sds = log_rate_and_depth(found)
-    assert np.abs((means - mean) / sd).max() < 0.15  # of 400 effective rows or more
-    assert np.abs(sds / sd - 1).max() < 0.1
+    means, sds = log_rate_and_depth(ds, unit)
+    assert np.abs((means - mean) / sd).max() < 0.2
+    assert np.abs(sds / sd - 1).max() < 0.15
+
+
+def test_what_contradicts_the_rows_ends_in_the_right_posterior(result, found):
+    with pytest.raises(RunError, match=r"or update the result with --rows N"):
+        update(result, FAR)
+    assert_exact(found, *exactly([2e7], cv=0.05))
     answer = learnt_json(learnt(found))
     assert answer["effective_rows"] >= 400 and answer["pareto_k"] < 0.7
     assert answer["strangeness"] < 0.01
     # The laws before the inspections are those of the study, whatever the rows were drawn from.
     before = answer["inputs"]["rate[unit=A]"]["prior"]
-    assert before["mean"] == pytest.approx(RATE[0] * np.exp(RATE[1] ** 2 / 2), rel=0.05)
-    assert before["sd"] == pytest.approx(before["mean"] * np.expm1(RATE[1] ** 2) ** 0.5, rel=0.1)
+    assert before["mean"] == pytest.approx(RATE[0] * np.exp(RATE[1] ** 2 / 2), rel=0.1)
+    assert before["sd"] == pytest.approx(before["mean"] * np.expm1(RATE[1] ** 2) ** 0.5, rel=0.2)
+
+
+def test_intervals_rest_on_independent_repetitions(result, found):
+    assert np.unique(found["replicate"]).tolist() == list(range(8))
+    assert found.attrs["replicates"] == 8
+    after = learnt_json(learnt(found))["inputs"]["rate[unit=A]"]["posterior"]
+    assert after["mean_low"] < after["mean"] < after["mean_high"]
+    assert after["sd_low"] < after["sd"] < after["sd_high"]
+    assert own_rows(prior_of(found)).identical(result)
 
 
 def test_bits_taught_are_exact(found):
@@ -61,15 +79,13 @@ def test_bits_taught_are_exact(found):
     far = (mean - start) @ np.linalg.solve(prior, mean - start)
     volume = np.log(np.linalg.det(prior) / np.linalg.det(cov))
     bits = (np.trace(np.linalg.solve(prior, cov)) + far - 2 + volume) / 2 / np.log(2)
-    assert [one.bits for one in learnt(found).taught] == [pytest.approx(bits, rel=0.03)]
+    assert [one.bits for one in learnt(found).taught] == [pytest.approx(bits, rel=0.05)]
 
 
 @pytest.mark.slow
 def test_a_second_update_draws_its_own_rows(result, found):
-    assert own_rows(prior_of(found)).identical(result)
     more = [{"unit": "A", "output": "life", "kind": "survived", "time": 1.9e7}]
-    twice = update(found, more, rows=8000, workers=0)
-    assert twice.identical(update(result, FAR + more, rows=8000, workers=0))
+    assert update(found, more, **SMALL).identical(update(result, FAR + more, **SMALL))
 
 
 @pytest.mark.slow
@@ -102,40 +118,69 @@ def test_a_posterior_in_two_regimes():
     assert share == pytest.approx(exact, abs=0.08)
 
 
-@pytest.mark.slow
-def test_killed_and_resumed_to_the_same_bits(tmp_path, monkeypatch):
-    result = wear(samples=1000)
-    calls, run = [], new_rows.run_study
+def test_several_units_of_a_sample():
+    """Two units, far off each in its own way, whose depth is shared and integrated."""
+    lives = [1.5e7, 2e7]
+    ds = wear(depth="shared", samples=200, units=2)
+    with pytest.raises(RunError, match="or update the result with --rows N"):
+        update(ds, measured(*lives, cv=0.05))
+    found = update(ds, measured(*lives, cv=0.05), **SMALL)
+    prior = np.diag([RATE[1] ** 2] * 2 + [DEPTH[1] ** 2])
+    start = np.log([RATE[0]] * 2 + [DEPTH[0]])
+    look = np.hstack([-np.eye(2), np.ones((2, 1))])
+    gain = prior @ look.T @ np.linalg.inv(look @ prior @ look.T + np.log1p(0.05**2) * np.eye(2))
+    mean, cov = start + gain @ (np.log(lives) - look @ start), prior - gain @ look @ prior
+    for i, unit in enumerate("AB"):
+        assert_exact(found, mean[[i, 2]], cov[np.ix_([i, 2], [i, 2])], unit)
+    assert own_rows(prior_of(found)).identical(ds)
 
-    def killed(*asked):
-        calls.append(asked)
-        if len(calls) == 3:
-            raise KeyboardInterrupt
-        return run(*asked)
 
-    options = {"rows": 8000, "workers": 0}
-    at_once = update(result, FAR, tmp_path / "once.nc", **options)
-    monkeypatch.setattr(new_rows, "run_study", killed)
-    with pytest.raises(KeyboardInterrupt):
-        update(result, FAR, tmp_path / "posterior.nc", **options)
-    assert len(list(tmp_path.glob("posterior-*-round-*.nc"))) == 2
-    assert update(result, FAR, tmp_path / "posterior.nc", **options).identical(at_once)
-    assert open_result(tmp_path / "posterior.nc").identical(open_result(tmp_path / "once.nc"))
-    assert sorted(everything(tmp_path)) == ["once.nc", "posterior.nc"]
+@pytest.mark.parametrize("method", ["sobol", pytest.param("monte-carlo", marks=pytest.mark.slow)])
+def test_designs_with_replicates(method):
+    ds = wear(samples=64, method=method, replicates=8)
+    found = update(ds, FAR, **SMALL)
+    assert_exact(found, *exactly([2e7], cv=0.05))
+    assert own_rows(prior_of(found)).identical(ds)
+
+
+def test_an_input_that_is_a_multiple_of_another():
+    tables = {
+        "study": {"name": "multiple", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 400, "seed": 3},
+        "uncertain": {
+            "rate": lognormal(*RATE),
+            "depth": lognormal(*DEPTH),
+            "threshold": {"distribution": "uniform", "lower": 0.1, "upper": 0.5, "times": "rate"},
+        },
+    }
+    found = update(computed(study_of(tables)), FAR, **SMALL)
+    assert_exact(found, *exactly([2e7], cv=0.05))
+    factor = found["threshold"].values / found["rate"].values
+    assert 0.1 <= factor.min() and factor.max() <= 0.5
+
+
+UNSUITED = {
+    "two units share rate": ({"rate": "shared", "units": 2}, "units share rate, and may share"),
+    "repeats": ({"repeats": 2}, "each unit has 2 repeats, not one"),
+    "one Sobol' sequence": ({"method": "sobol", "samples": 512}, r"set \[design\] replicates = 8"),
+    "crossed": ({"method": "saltelli", "samples": 512}, "the design is 'saltelli', not 'monte-"),
+}
+
+
+@pytest.mark.parametrize("case", UNSUITED)
+def test_rows_that_cannot_be_drawn_are_refused(case):
+    design, why = UNSUITED[case]
+    ds = wear(**{"samples": 500} | design)
+    with pytest.raises(InputError, match=f"^new rows cannot be drawn: .*{why}"):
+        update(ds, measured(2e7, cv=0.01), rows=1000)
 
 
 def test_a_budget_that_is_too_small_is_refused(result, tmp_path):
-    with pytest.raises(InputError, match="rows = 499: a round of new rows takes 500"):
-        update(result, FAR, tmp_path / "posterior.nc", rows=499, workers=0)
-    with pytest.raises(RunError, match="after 500 new rows: unit A: "):
-        update(result, measured(1e8, cv=0.01), tmp_path / "posterior.nc", rows=500, workers=0)
+    with pytest.raises(InputError, match="rows = 99: a round of new rows takes 104"):
+        update(result, FAR, tmp_path / "posterior.nc", rows=99, workers=0)
+    with pytest.raises(RunError, match="after 104 new rows: unit A: "):
+        update(result, measured(1e8, cv=0.01), tmp_path / "posterior.nc", rows=150, workers=0)
     assert not (tmp_path / "posterior.nc").exists()
-
-
-def test_rows_that_cannot_be_drawn_are_refused():
-    ds = wear(samples=500, rate="shared", units=2)
-    with pytest.raises(InputError, match="only for a 'monte-carlo' design without replicates, and"):
-        update(ds, measured(1e8, 1e8, cv=0.01), rows=1000)
 
 
 def test_the_command(uq, folder, result):
@@ -147,25 +192,35 @@ def test_the_command(uq, folder, result):
     assert ended.code == 0, ended.err
     assert strict_json(ended.out)["effective_rows"] >= 400
     assert sorted(everything(folder)) == ["found.csv", "posterior.nc", "prior.nc"]
-    assert uq("summary", "posterior.nc").code == 0
+    summary = uq("summary", "posterior.nc")
+    assert summary.code == 0 and "No intervals" not in summary.out
+
+
+@pytest.mark.slow
+def test_the_report_of_new_rows(uq, folder, found):
+    write_result(found, folder / "posterior.nc")
     assert uq("report", "posterior.nc").code == 0
 
 
 @pytest.mark.slow
-def test_the_sampler_is_as_exact_as_its_effective_rows_say():
-    """Of independent repetitions: the scatter of the mean, and coverage of its interval."""
-    mean, cov = exactly([2e7], cv=0.05)
-    off = []
-    for seed in range(1000):
-        found = update(wear(samples=2000, seed=seed), FAR, rows=8000, workers=0)
-        rows = learnt_effective(found)
-        means, sds = log_rate_and_depth(found)
-        off.append((means[0] - mean[0]) / (sds[0] / rows**0.5))
-    inside = np.mean(np.abs(off) < 1.96)
-    assert 0.93 <= inside <= 0.975
-    assert abs(np.mean(off)) < 0.15
+def test_killed_and_resumed_to_the_same_bits(tmp_path, result):
+    """The process itself is killed, twice, once it has kept one and three rounds."""
+    write_result(result, tmp_path / "prior.nc")
+    (tmp_path / "found.csv").write_text("unit,output,kind,value,cv\nA,life,measured,2e7,0.05\n")
 
+    def started(output):
+        asked = ("update", "prior.nc", "found.csv", "-o", output, "--rows", "8000")
+        command = [sys.executable, "-m", "uq", *asked, "--workers", "0", "--quiet"]
+        return subprocess.Popen(command, cwd=tmp_path)
 
-def learnt_effective(found):
-    weights = as_unit(found, "A")["weight"].values
-    return weights.sum() ** 2 / (weights**2).sum()
+    for rounds in (1, 3):
+        process = started("killed.nc")
+        while len(list(tmp_path.glob("killed-*-round-?.nc"))) < rounds:
+            assert process.poll() is None, "ended before it was killed"
+            time.sleep(0.001)
+        process.kill()
+        process.wait()
+        assert not (tmp_path / "killed.nc").exists()
+    assert [started(name).wait() for name in ("killed.nc", "once.nc")] == [0, 0]
+    assert open_result(tmp_path / "killed.nc").identical(open_result(tmp_path / "once.nc"))
+    assert everything(tmp_path) == ["found.csv", "killed.nc", "once.nc", "prior.nc"]

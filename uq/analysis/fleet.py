@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from uq.analysis.fleet_numbers import Banded, FleetNumbers
+from uq.analysis.summary import why_no_intervals
 from uq.designs.levels import SHARED
 from uq.errors import InputError, choices
 from uq.population.fleets import Units, units_of
@@ -194,7 +195,7 @@ def fleet_of(
         notes.append(f"{place.samples - enough} samples have too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
-    notes += filter(None, [units.why_not_more])
+    notes += filter(None, [units.why_not_more, why_no_intervals(ds)])
     assumed = {one.assumes for both in of.ends for one in both if one.assumes}
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)

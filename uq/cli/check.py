@@ -3,6 +3,7 @@
 from itertools import combinations
 
 from uq.cli.printing import grid, heading, number
+from uq.cli.progress import say
 from uq.designs.levels import OWN
 from uq.designs.registry import DESIGNS
 from uq.methods.registry import fed_by
@@ -16,7 +17,7 @@ from uq.wording import in_brackets, law
 
 def check(path: str, model: str | None) -> None:
     """Print what a study would run, if it is valid."""
-    study = load_study(path, model)
+    study = load_study(path, model, say)
     design = study.design
     heading(f"{path}: valid", study.description)
     kind = DESIGNS[design.method]

@@ -77,7 +77,7 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
     for unit, inputs in of_unit.items():
         if not unit or len(of_unit) <= MOST_UNITS:
             heading(f"\nInputs of unit {unit}" if unit else "\nInputs that units share")
-            grid(_inputs(inputs), header=("", "before", "sd", "after", "sd", ""))
+            grid(_inputs(inputs), header=("", "before", "sd", "after", "error", "sd", ""))
     if found.confounded:
         heading("\nConfounded by the inspections", "rank correlation")
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])
@@ -87,6 +87,8 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
         grid([(_what(one.inspection), f"{one.bits:.2f}") for one in most])
     for output in dict.fromkeys(one.output for one in found.lives):
         _show_lives([one for one in found.lives if one.output == output])
+    if any(one.posterior.mean.has_interval for one in found.inputs):
+        note("error: how far, with 95 % confidence, the rows may be off the mean after.")
     for text in found.notes:
         note(text)
     worst = found.worst
@@ -102,9 +104,19 @@ def _what(one: Inspection) -> str:
 
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
     for one in shown:
-        moments = (x for spread in (one.prior, one.posterior) for x in (spread.mean, spread.sd))
-        unit = "" if one.units == "1" else one.units
-        yield one.name.partition("[")[0], *(f"{x:.4g}" for x in moments), unit
+        before, after = one.prior, one.posterior
+        half = (after.mean.high - after.mean.low) / 2
+        yield (
+            one.name.partition("[")[0],
+            *(_digits(x.value) for x in (before.mean, before.sd, after.mean)),
+            f"{half:.1g}" if isfinite(half) else "-",
+            _digits(after.sd.value),
+            "" if one.units == "1" else one.units,
+        )
+
+
+def _digits(value: float) -> str:
+    return f"{value:.4g}" if isfinite(value) else "-"
 
 
 def _show_lives(lives: Sequence[Remaining]) -> None:

@@ -12,22 +12,21 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
-from uq.errors import InputError, RunError
-from uq.learning.evidence import wide
-from uq.learning.importance import with_rounds
+from uq.designs.registry import DESIGNS
+from uq.errors import InputError, RunError, choices
+from uq.exploring.given_rows import computed, with_given_rows
+from uq.learning.importance import repetitions_of, with_rounds
 from uq.learning.inspections import Inspection
-from uq.learning.posterior import Posterior, posterior
-from uq.learning.proposal import Proposal, fitted, log_importance, tempered
+from uq.learning.posterior import Posterior, on_wide_grids, posterior, shared_inputs
+from uq.learning.repetition import Repetition
 from uq.learning.result import digest
 from uq.learning.trust import censoring, distrust
-from uq.literals import read_toml, toml
-from uq.rows.nesting import is_nested
-from uq.rows.sampling import physical, unit_block
-from uq.rows.workload import workload_of
+from uq.rows.nesting import nesting_of
+from uq.rows.sampling import unit_block
+from uq.rows.weights import IMPORTANCE, ROUND
 from uq.running.again import study_here
 from uq.running.options import RunOptions
-from uq.running.runner import carry_out, run_study
-from uq.study.definition import Study, study_from_text
+from uq.study.definition import Study
 
 ENOUGH = 400.0
 """Effective rows after which no more are drawn."""
@@ -86,7 +85,7 @@ def enlarged(
     Parameters
     ----------
     own : xarray.Dataset
-        A Monte Carlo result with one unit in each sample.
+        A result.
     found : Posterior
         What the inspections leave of it.
     inspections : sequence of Inspection
@@ -106,44 +105,54 @@ def enlarged(
 
     Notes
     -----
-    Adaptive importance sampling: each round is drawn from a mixture of Student laws around the rows
-    so far, weighted with as much of the likelihood as they bear. A row of any round counts by the
-    density of the laws over that of the mixture of all that was drawn [1]_. The likelihood may
-    jump. An integrated input keeps its law.
+    Adaptive importance sampling in independent repetitions, whose scatter gives the intervals of
+    all that is read from the rows. Each begins with its part of the rows (`repetitions_of`) and
+    draws its part of each round from a mixture of Student laws around its own rows so far, weighted
+    with as much of the likelihood as they bear. A row of any round counts by the density of the
+    laws over that of the mixture of all that its repetition has drawn [1]_. The likelihood may
+    jump. An integrated input keeps its law. Of several units, the mixture is that around the rows
+    of each.
 
     References
     ----------
     .. [1] J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, "Adaptive multiple importance
        sampling", Scand. J. Stat. 39, 798-812 (2012).
     """
-    study = _study_of(own, budget.model)
-    n, inputs = own.sizes["sample"], len(study.uncertain)
-    each = max(n // _SHARE, _FEWEST)
+    study = _study_of(own, found, budget.model)
+    n, of = own.sizes["sample"], repetitions_of(own)
+    count = len(np.unique(of))
+    step = count * nesting_of(own).units
+    each = -(-max(n // _SHARE, _FEWEST) // step) * step
     if budget.rows < each:
         raise InputError(f"rows = {budget.rows}: a round of new rows takes {each}")
     name = _digest(own, inspections, model_cv)
     scores = special.ndtri(unit_block(study, 0, n))
+    repetitions = [Repetition(scores[of == r], each // count) for r in range(count)]
     rows, rounds, kept = own, list[xr.Dataset](), list[Path]()
-    proposals: list[Proposal] = []
-    counts = np.zeros(n)
     why = distrust(found)
     while why or min(one.effective for one in found.weights) < ENOUGH:
         if (len(rounds) + 1) * each > budget.rows:
             if not why:
                 break
             raise RunError(f"after {len(rounds) * each} new rows: {why}")
-        rng = np.random.default_rng((study.design.seed, _SEED, len(rounds)))
-        weights = tempered(counts, _log_likelihood(found) - counts)
-        proposals.append(fitted(scores, weights, _columns(study, found), rng))
-        new = proposals[-1].drawn(each, inputs, rng)
+        likelihoods, columns = _log_likelihoods(found), _columns(study, found)
+        new = [
+            one.drawn([log[of == r] for log in likelihoods], columns, _rng(study, len(rounds), r))
+            for r, one in enumerate(repetitions)
+        ]
+        number = len(rounds) + 1
         path = budget.output and budget.output.with_name(
-            f"{budget.output.stem}-{name}-round-{len(proposals)}.nc"
+            f"{budget.output.stem}-{name}-round-{number}.nc"
         )
-        rounds.append(_computed(_study_at(study, new, len(proposals)), path, budget.options))
+        seed = int(np.random.SeedSequence((study.design.seed, _SEED, number)).generate_state(1)[0])
+        given = with_given_rows(study, np.concatenate(new), f"round {number}", seed)
+        rounds.append(computed(given, path, budget.options))
         kept += [path] if path else []
-        scores = np.concatenate([scores, new])
-        counts = log_importance(proposals, n, each, scores)
-        rows = with_rounds(own, rounds, counts)
+        of = np.append(of, np.repeat(np.arange(count, dtype=of.dtype), each // count))
+        log_importance = np.empty(len(of))
+        for r, one in enumerate(repetitions):
+            log_importance[of == r] = one.log_importance
+        rows = with_rounds(own, rounds, log_importance, of)
         found = posterior(rows, inspections, model_cv)
         if censored := censoring(found):
             raise RunError(censored)
@@ -151,27 +160,37 @@ def enlarged(
     return Enlarged(rows, found, kept)
 
 
-def can_be_drawn(own: xr.Dataset) -> bool:
-    """Whether new rows of a result can be drawn, as far as its design goes."""
-    plain = own.attrs["design"] == "monte-carlo" and int(own.attrs["replicates"]) == 1
-    return plain and not is_nested(own)
+def why_no_new_rows(own: xr.Dataset, found: Posterior) -> str:
+    """Return why new rows of a result cannot be drawn, or ""."""
+    method, place = own.attrs["design"], nesting_of(own)
+    design = DESIGNS[method]
+    if not design.nests:
+        able = " or ".join(f"'{name}'" for name, one in DESIGNS.items() if one.nests)
+        return f"the design is '{method}', not {able}"
+    if not design.independent and int(own.attrs["replicates"]) == 1:
+        return f"a '{method}' design shows errors only by replicates: set [design] replicates = 8"
+    if place.repeats > 1:
+        return f"each unit has {place.repeats} repeats, not one"
+    if place.units > 1 and (shared := shared_inputs(own, found.scale)):
+        return f"units share {choices(shared)}, and may share only what scales lives"
+    if taken := [name for name in (IMPORTANCE, ROUND) if name in own.variables]:
+        return f"the model has a '{taken[0]}', which is what a variable of new rows is called"
+    return ""
 
 
-def _study_of(own: xr.Dataset, model: str | None) -> Study:
+def _study_of(own: xr.Dataset, found: Posterior, model: str | None) -> Study:
     """Return the study of a result, if more rows can be drawn from its laws."""
-    remedy = "run it with more samples, or with a law that allows for what was found"
-    if not can_be_drawn(own):
+    if why := why_no_new_rows(own, found):
         raise InputError(
-            "new rows can be drawn only for a 'monte-carlo' design without replicates, and where a"
-            f" sample has one unit and one repeat: {remedy}"
+            f"new rows cannot be drawn: {why}; run the study with more samples, or with a law that"
+            " allows for what was found"
         )
     attrs = own.attrs
     recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
-    study, change = study_here(*recorded, own.sizes["sample"], "result", model)
+    samples = nesting_of(own).samples // int(attrs["replicates"])
+    study, change = study_here(*recorded, samples, "result", model)
     if change:
         raise InputError(f"the result was computed with another model ({change}): run it again")
-    if any(law.times is not None for law in study.uncertain.values()):
-        raise InputError(f"new rows cannot be drawn where a law has 'times': {remedy}")
     return study
 
 
@@ -182,37 +201,21 @@ def _columns(study: Study, found: Posterior) -> NDArray[np.intp]:
     return np.array([i for i, name in enumerate(names) if name != integrated], dtype=np.intp)
 
 
-def _log_likelihood(found: Posterior) -> Floats:
-    """Return that of all inspections, times what rows count, were the one unit each of the rows."""
-    quantiles = found.scale.quantiles if found.scale else None
-    grid = wide(found.evidence.grids[0], quantiles)
-    joint = found.likelihoods.of(0, grid.values) + grid.log_share
-    return np.asarray(special.logsumexp(joint, axis=1))
+def _log_likelihoods(found: Posterior) -> list[Floats]:
+    """Return the likelihood of each row as each inspected unit, given all other inspections."""
+    grids, evidence = on_wide_grids(found)
+    likelihoods = []
+    for unit, (grid, rest) in enumerate(zip(grids, evidence.rest, strict=True)):
+        block = found.likelihoods.blocks[unit]
+        joint = rest[found.world[block]] + found.likelihoods.of(unit, grid.values)
+        counted, log_before = special.logsumexp(joint, axis=1), found.likelihoods.log_before(unit)
+        known = np.isfinite(log_before)
+        likelihoods.append(np.where(known, counted - np.where(known, log_before, 0.0), -np.inf))
+    return likelihoods
 
 
-def _study_at(study: Study, scores: Floats, number: int) -> Study:
-    """Return a study with given rows."""
-    names = study.model.parameter_names
-    x = physical(study, special.ndtr(scores))
-    columns = {
-        name: " ".join(map(repr, x[:, names.index(name)].tolist())) for name in study.uncertain
-    }
-    tables = {
-        name: table
-        for name, table in read_toml(study.text).items()
-        if name not in ("analysis", "dependence")
-    }
-    seed = int(np.random.SeedSequence((study.design.seed, _SEED, number)).generate_state(1)[0])
-    tables["design"] = {"method": "imported", "file": "new rows", "seed": seed}
-    tables["data"] = tables.get("data", {}) | {"new rows": columns}
-    text = "\n".join(f"{name} = {toml(table)}" for name, table in tables.items())
-    return study_from_text(text, f"round {number}", study.model_reference)
-
-
-def _computed(study: Study, path: Path | None, options: RunOptions) -> xr.Dataset:
-    if path is None:
-        return carry_out(workload_of(study), options)
-    return run_study(study, path, options)
+def _rng(study: Study, number: int, repetition: int) -> np.random.Generator:
+    return np.random.default_rng((study.design.seed, _SEED, number, repetition))
 
 
 def _digest(own: xr.Dataset, inspections: Sequence[Inspection], model_cv: float) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from uq.errors import InputError, RunError
-from uq.exploring.new_rows import Budget, can_be_drawn, enlarged
+from uq.exploring.new_rows import Budget, enlarged, why_no_new_rows
 from uq.learning.importance import own_rows
 from uq.learning.inspections import Inspection
 from uq.learning.ledger import Given, all_of, read
@@ -153,7 +153,7 @@ def learn(
         raise RunError(why)
     if why := distrust(found):
         if budget is None:
-            raise RunError(why + (_HINT if can_be_drawn(rows) else ""))
+            raise RunError(why + ("" if why_no_new_rows(rows, found) else _HINT))
         rows, found, kept = enlarged(rows, found, inspections, cv, budget)
     result = as_result(rows, found, inspections, cv)
     if output is not None:

@@ -13,6 +13,7 @@ Reading order; a module imports only those above it:
     posterior         the rows as the inspections leave them
     trust             whether rows can represent that
     proposal          where to draw new rows if they cannot
+    repetition        one independent repetition of the sampler that draws them
     result            the posterior as a result, and the rows of one unit
     ledger            each measurement used once
     inputs_learnt     inputs before and after, and what is confounded

@@ -80,7 +80,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         list(remaining(ds, by)),
         list(taught(found)),
         strange,
-        [*_warnings(strange), *_interpolated(found)],
+        [*_warnings(strange), *_interpolated(found), *filter(None, [found.only_inspected])],
     )
 
 
@@ -111,8 +111,9 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
     -------
     dict
         ``effective_rows``, ``pareto_k``; ``inputs``: name -> ``prior`` and ``posterior``, each with
-        ``mean``, ``sd`` and ``quantiles``, those of a unit as ``NAME[unit=LABEL]``; ``confounded``:
-        pairs with their rank correlation; ``taught``: of each inspection the ``bits`` that it adds
+        ``mean``, ``sd`` (of the posterior with intervals, ``mean_low``, ...) and ``quantiles``; of
+        a unit as ``NAME[unit=LABEL]``; ``confounded``: pairs with their rank correlation;
+        ``taught``: of each inspection the ``bits`` that it adds
         to all others; ``strangeness``: the probability, before them, of inspections at least as
         strange; ``notes``; ``units``: label -> life -> ``seen`` (when it was last
         seen running), ``runs``, ``remaining`` (quantiles from then on), ``by`` (probability to have
@@ -146,7 +147,11 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
 
 def _spread(one: Spread) -> dict[str, Any]:
     quantiles = {repr(p): value for p, value in one.quantiles.items()}
-    return {"mean": one.mean, "sd": one.sd, "quantiles": quantiles}
+    found: dict[str, Any] = {}
+    for name, of in (("mean", one.mean), ("sd", one.sd)):
+        found[name] = json_form.number(of.value)
+        found |= {f"{name}_{end}": value for end, value in json_form.ends(of).items()}
+    return found | {"quantiles": quantiles}
 
 
 def _life(one: Remaining) -> dict[str, Any]:

@@ -1,16 +1,20 @@
-"""Rows that were not drawn from the laws of the study, and so count unequally from the start."""
+"""Rows not drawn from the laws of the study, and how much they count before any inspection."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
+from uq.rows.nesting import is_nested, nesting_of
+from uq.rows.weights import IMPORTANCE, ROUND, has_rounds
 
-IMPORTANCE, ROUND = "importance", "round"
-"""Variables of each row: how much it counts before any inspection, of mean 1 in expectation; and
-the round in which it was drawn, 0 of the study's own rows."""
+REPETITIONS = 8
+"""Independent repetitions of the sampler, where the design has no replicates of its own."""
+
+_OWN = "own_samples_and_replicates"
 
 
 class Importance(NamedTuple):
@@ -34,37 +38,59 @@ class Importance(NamedTuple):
 
 def importance_of(rows: xr.Dataset) -> Importance:
     """Return how much the rows of a result count before any inspection."""
-    if ROUND not in rows:
+    if not has_rounds(rows):
         equal = np.ones(rows.sizes["sample"])
         return Importance(equal, equal > 0)
     return Importance(rows[IMPORTANCE].values, rows[ROUND].values == 0)
 
 
+def repetitions_of(own: xr.Dataset) -> NDArray[np.int32]:
+    """Return the repetition of the sampler that begins with each row of a result, shape (n,).
+
+    The replicate of a design that has several, else an eighth of the samples.
+    """
+    if int(own.attrs["replicates"]) > 1:
+        return np.asarray(own["replicate"].values)
+    return np.asarray(nesting_of(own).sample % REPETITIONS, dtype=np.int32)
+
+
 def own_rows(rows: xr.Dataset) -> xr.Dataset:
     """Return the rows drawn from the laws of the study alone, as they were."""
-    if ROUND not in rows:
+    if not has_rounds(rows):
         return rows
     found = rows.isel(sample=importance_of(rows).own).drop_vars([IMPORTANCE, ROUND])
-    return found.assign_attrs(samples=found.sizes["sample"])
+    attrs = dict(found.attrs)
+    samples, replicates = map(int, attrs.pop(_OWN))
+    found.attrs = attrs | {"samples": samples, "replicates": replicates}
+    if replicates > 1:
+        return found
+    of = found["replicate"]
+    return found.assign_coords(replicate=of.copy(data=np.zeros_like(of.values)))
 
 
 def with_rounds(
-    own: xr.Dataset, rounds: Sequence[xr.Dataset], log_importance: Floats
+    own: xr.Dataset,
+    rounds: Sequence[xr.Dataset],
+    log_importance: Floats,
+    repetition: NDArray[np.int32],
 ) -> xr.Dataset:
     """Return the rows of a study with those of further rounds.
 
     Parameters
     ----------
     own : xarray.Dataset
-        Independent rows of the study.
+        Rows of the study.
     rounds : sequence of xarray.Dataset
-        Results of the same model.
+        Results of the same model; where samples have several rows, of a multiple of their number.
     log_importance : ndarray, shape (n,)
         Of all rows.
+    repetition : ndarray of int, shape (n,)
+        The independent repetition of the sampler to which each row belongs: its replicate.
     """
+    n = own.sizes["sample"]
     names = list(own.data_vars)
-    found = xr.concat(
-        [own, *(one[names] for one in rounds)],
+    new = xr.concat(
+        [one[names].drop_vars(("replicate", "group", "block")) for one in rounds],
         "sample",
         data_vars="minimal",
         coords="minimal",
@@ -72,17 +98,53 @@ def with_rounds(
         join="override",
         combine_attrs="override",
     )
-    number = np.arange(found.sizes["sample"])
-    of_round = np.repeat(
-        np.arange(len(rounds) + 1), [one.sizes["sample"] for one in (own, *rounds)]
+    new = new.assign_coords(
+        {name: ("sample", values) for name, values in _places(own, new.sizes["sample"]).items()}
     )
-    about = {"role": "importance", "units": "1"}
+    found = xr.concat(
+        [own, new],
+        "sample",
+        data_vars="minimal",
+        coords="minimal",
+        compat="override",
+        join="override",
+        combine_attrs="override",
+    )
+    sizes = [n, *(one.sizes["sample"] for one in rounds)]
+    about = {"role": IMPORTANCE, "units": "1"}
     meaning = "how much the row counts before the inspections"
     found = found.assign(
         {
             IMPORTANCE: ("sample", np.exp(log_importance), about | {"long_name": meaning}),
-            ROUND: ("sample", of_round, about | {"long_name": "0: a row of the study"}),
+            ROUND: (
+                "sample",
+                np.repeat(np.arange(len(sizes)), sizes),
+                about | {"long_name": "0: a row of the study"},
+            ),
         }
     )
-    places = {name: found[name].copy(data=number) for name in ("sample", "group")}
-    return found.assign_coords(places).assign_attrs(samples=len(number))
+    size = int(own.attrs["samples"]), int(own.attrs["replicates"])
+    count = len(np.unique(repetition))
+    return found.assign_coords(
+        sample=found["sample"].copy(data=np.arange(found.sizes["sample"])),
+        replicate=found["replicate"].copy(data=repetition),
+    ).assign_attrs({"samples": len(repetition) // count, "replicates": count, _OWN: size})
+
+
+def _places(own: xr.Dataset, count: int) -> dict[str, NDArray[np.integer]]:
+    """Return the places of new rows in the design, after those of the study."""
+    place = nesting_of(own)
+    number = np.arange(count)
+    sample, unit = np.divmod(number, place.units)
+    found = {
+        "replicate": np.zeros(count, own["replicate"].dtype),
+        "group": own["group"].values.max() + 1 + sample,
+        "block": np.zeros(count, own["block"].dtype),
+    }
+    if is_nested(own):
+        found |= {
+            "world": own["world"].values.max() + 1 + sample,
+            "unit": unit.astype(own["unit"].dtype),
+            "repeat": np.zeros(count, own["repeat"].dtype),
+        }
+    return found

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.designs.levels import SHARED
+from uq.estimate import Estimate
 from uq.learning.importance import importance_of
 from uq.learning.result import as_unit, prior_of
-from uq.rows.elements import analysis_of
+from uq.population.means import weighted_moments
+from uq.rows.elements import analysis_of, replicates_of
 from uq.rows.nesting import levels_of
-from uq.rows.weights import WEIGHT
+from uq.rows.weights import WEIGHT, largest_weight
 
 QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 
@@ -27,12 +29,14 @@ class Spread:
 
     Attributes
     ----------
-    mean, sd : float
+    mean, sd : Estimate
+        Of the posterior with intervals, which say how well the rows determine them; or why the
+        weights do not allow a number.
     quantiles : dict of float to float
     """
 
-    mean: float
-    sd: float
+    mean: Estimate
+    sd: Estimate
     quantiles: dict[float, float]
 
 
@@ -83,14 +87,14 @@ def inputs_learnt(ds: xr.Dataset) -> Iterator[InputLearnt]:
     levels, before = levels_of(ds), prior_of(ds)
     asked = tuple(sorted({*QUANTILES, *analysis_of(ds).quantiles}))
     counted = importance_of(before).of_rows
-    prior = {name: _spread(before[name].values, counted, asked) for name in levels}
+    prior = {name: _before(before[name].values, counted, asked) for name in levels}
     for name in (one for one, level in levels.items() if level == SHARED):
-        after = _spread(ds[name].values, ds[WEIGHT].values, asked)
+        after = _after(ds, name, asked)
         yield InputLearnt(name, str(ds[name].attrs["units"]), prior[name], after)
     for label in map(str, ds["inspected"].values):
         unit = as_unit(ds, label)
         for name in (one for one, level in levels.items() if level != SHARED):
-            after = _spread(unit[name].values, unit[WEIGHT].values, asked)
+            after = _after(unit, name, asked)
             units = str(ds[name].attrs["units"])
             yield InputLearnt(f"{name}[unit={label}]", units, prior[name], after)
 
@@ -148,9 +152,18 @@ def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Float
     return order, np.cumsum(worth) - worth / 2
 
 
-def _spread(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread:
+def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread:
     mean = float(np.average(values, weights=weights))
     sd = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
+    return Spread(Estimate(mean), Estimate(sd), _quantiles(values, weights, asked))
+
+
+def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
+    values, weights = ds[name].values, ds[WEIGHT].values
+    moments = weighted_moments(values, weights, replicates_of(ds), largest_weight(ds))
+    return Spread(*moments, _quantiles(values, weights, asked))
+
+
+def _quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:
     order, share = _ascending(values, weights)
-    found = np.interp(asked, share, values[order])
-    return Spread(mean, sd, dict(zip(asked, found.tolist(), strict=True)))
+    return dict(zip(asked, np.interp(asked, share, values[order]).tolist(), strict=True))

@@ -13,17 +13,23 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.evidence import Evidence, Grid, weigh
+from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at
+from uq.learning.own_rows_out import log_worth
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.population.smoothing import Smoothed, smoothed
 from uq.rows.elements import replicates_of
-from uq.rows.nesting import Nesting, levels_of, nesting_of
+from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
 
 Rows = NDArray[np.intp]
+
+NO_OTHERS = (
+    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
+    " stands for an inspected one; set [design] units = {} or more"
+)
 
 _GOLDEN = (5**0.5 - 1) / 2
 _HUGE = 700.0
@@ -66,6 +72,9 @@ class Posterior:
         Of each row.
     importance : Importance
         Of each row.
+    only_inspected : str
+        Why no row stands for a unit that was not inspected, or "": `any_unit` then tells what
+        units share, and nothing of their own.
     """
 
     any_unit: Weighted
@@ -76,6 +85,7 @@ class Posterior:
     looks: Mapping[Inspection, Look]
     world: Rows
     importance: Importance
+    only_inspected: str = ""
 
     @property
     def weights(self) -> list[Smoothed]:
@@ -132,8 +142,31 @@ def posterior(
         label: _inspected(found, unit, likelihoods, world, scale, part)
         for unit, label in enumerate(labels)
     }
-    everyone = _uninspected(found, importance, world, place, scale, replicates_of(rows))
-    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance)
+    logs, why = found.log_worlds[world], ""
+    with np.errstate(divide="ignore"):
+        logs = logs - np.log(np.bincount(world, importance.of_rows))[world, None]
+        logs = logs + np.log(importance.of_rows)[:, None]
+    if worlds > 1 and _units_differ(rows, scale):
+        apart = log_worth(found, likelihoods, place, scale is None or scale.is_own)
+        why = "" if np.isfinite(apart).any() else NO_OTHERS.format(len(labels) + 1)
+        logs = logs if why else apart
+    everyone = _uninspected(logs, found, scale, place, replicates_of(rows))
+    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance, why)
+
+
+def _units_differ(rows: xr.Dataset, scale: Scale | None) -> bool:
+    """Return whether units of a world differ in more than the integrated input."""
+    return bool({*levels_that_vary(rows, () if scale is None else (scale.name,))} - {SHARED})
+
+
+def on_wide_grids(found: Posterior) -> tuple[list[Grid], Evidence]:
+    """Return grids from end to end of the prior, of each inspected unit, and the evidence there."""
+    scale, of = found.scale, found.likelihoods
+    grids = [wide(grid, scale.quantiles if scale else None) for grid in found.evidence.grids]
+    worlds = [found.world[block] for block in of.blocks]
+    each = [partial(of.of, unit) for unit in range(len(grids))]
+    count, own = int(found.world.max()) + 1, bool(scale and scale.is_own)
+    return grids, weigh_on(grids, each, worlds, count, own)[1]
 
 
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
@@ -155,12 +188,18 @@ def _worlds(rows: xr.Dataset, place: Nesting, scale: Scale | None) -> tuple[Rows
 
     All rows are of one world where nothing is shared but what is integrated.
     """
-    shared = {name for name, level in levels_of(rows).items() if level == SHARED}
-    if scale is not None and not scale.is_own:
-        shared -= {scale.name, *(a for a, b in scale.inputs.tied.items() if b == scale.name)}
-    if not shared:
+    if not shared_inputs(rows, scale):
         return np.zeros(len(place.sample), np.intp), 1
     return place.sample, place.samples
+
+
+def shared_inputs(rows: xr.Dataset, scale: Scale | None) -> list[str]:
+    """Return the inputs that units share, without the integrated one and those equal to it."""
+    shared = [name for name, level in levels_of(rows).items() if level == SHARED]
+    if scale is None or scale.is_own:
+        return shared
+    tied = {a for a, b in scale.inputs.tied.items() if b == scale.name}
+    return [name for name in shared if name not in {scale.name, *tied}]
 
 
 def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
@@ -173,25 +212,19 @@ def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
 
 
 def _uninspected(
-    found: Evidence,
-    importance: Importance,
-    world: Rows,
-    place: Nesting,
-    scale: Scale | None,
-    part: Replicates,
+    log_rows: Floats, found: Evidence, scale: Scale | None, place: Nesting, part: Replicates
 ) -> Weighted:
-    """Return all rows, as units that share their world with the inspected ones."""
-    worth = np.exp(found.log_worlds)
-    rows = np.arange(len(world))
-    size = np.bincount(world, importance.of_rows, len(worth))
-    with np.errstate(divide="ignore"):
-        of_rows = worth.sum(axis=1)[world] * importance.of_rows / size[world]
-        weights = smoothed(np.log(of_rows), part)
+    """Return all rows, as units that share their world with the inspected ones.
+
+    Rows of a sample with the same law of the integrated input have the same value of it.
+    """
+    rows = np.arange(len(log_rows))
+    weights = smoothed(special.logsumexp(log_rows, axis=1), part)
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
-    _, first = np.unique(place.sample, return_index=True)
-    of_samples = _drawn(found.grids[0], worth[world[first]], scale)
-    return Weighted(rows, weights, of_samples[place.sample])
+    worth = np.exp(log_rows - log_rows.max())
+    at = np.modf((place.sample + 1) * _GOLDEN)[0]
+    return Weighted(rows, weights, _drawn(found.grids[0], worth, scale, at))
 
 
 def _inspected(
@@ -225,18 +258,20 @@ def _inspected(
     return Weighted(rows, weights, _drawn(grid, worth, scale) if scale else None)
 
 
-def _drawn(grid: Grid, worth: Floats, scale: Scale) -> Floats:
-    """Draw the integrated input of each row or sample from its law given the inspections.
+def _drawn(grid: Grid, worth: Floats, scale: Scale, at: Floats | None = None) -> Floats:
+    """Draw the integrated input of each row from its law given the inspections.
 
-    The numbers drawn with are evenly spread over the rows, in their order.
+    The numbers drawn with are evenly spread over the rows, in their order, unless given.
 
     Parameters
     ----------
     grid : Grid
     worth : ndarray, shape (n, g)
     scale : Scale
+    at : ndarray, shape (n,), optional
     """
-    at = np.modf((np.arange(len(worth)) + 1) * _GOLDEN)[0]
+    if at is None:
+        at = np.modf((np.arange(len(worth)) + 1) * _GOLDEN)[0]
     above = np.cumsum(worth, axis=1)
     wanted = at * above[:, -1]
     node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)

@@ -16,7 +16,7 @@ from uq.learning.posterior import Posterior, Weighted
 from uq.population.scaling import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.variables import error_name, outputs_of
-from uq.rows.weights import MOST, WEIGHT, has_weights
+from uq.rows.weights import MOST, ONLY_INSPECTED, WEIGHT, has_weights
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
@@ -75,6 +75,8 @@ def as_result(
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
     units, count = len(found.units), len(inspections)
     given = f"given {count} inspection{'s' * (count > 1)} of {units} unit{'s' * (units > 1)}"
+    if found.only_inspected:
+        ds = ds.assign_attrs({ONLY_INSPECTED: found.only_inspected})
     found_attrs = {
         "title": f"{_prior_title(rows)}, {given}",
         INTEGRATED: found.scale.name if found.scale else "",
@@ -104,7 +106,7 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
     return found
 
 
-_OF_POSTERIOR = (INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, "prior_title")
+_OF_POSTERIOR = (INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, ONLY_INSPECTED, "prior_title")
 
 
 def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:

@@ -1,16 +1,14 @@
 """How much each inspection taught: its information gain beside all others."""
 
 from collections.abc import Iterator
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy import special
 
 from uq.contract import Floats
-from uq.learning.evidence import weigh_on, wide
 from uq.learning.inspections import Inspection
-from uq.learning.posterior import Posterior
+from uq.learning.posterior import Posterior, on_wide_grids
 
 
 class Taught(NamedTuple):
@@ -38,13 +36,10 @@ def taught(found: Posterior) -> Iterator[Taught]:
     .. [1] D. V. Lindley, "On a measure of the information provided by an experiment", Ann. Math.
        Stat. 27, 986-1005 (1956).
     """
-    scale, of = found.scale, found.likelihoods
-    grids = [wide(grid, scale.quantiles if scale else None) for grid in found.evidence.grids]
-    worlds = [found.world[block] for block in of.blocks]
-    count = int(found.world.max()) + 1
-    each = [partial(of.of, unit) for unit in range(len(grids))]
-    _, all_told = weigh_on(grids, each, worlds, count, bool(scale and scale.is_own))
-    for unit, (grid, world) in enumerate(zip(grids, worlds, strict=True)):
+    of, count = found.likelihoods, int(found.world.max()) + 1
+    grids, all_told = on_wide_grids(found)
+    for unit, grid in enumerate(grids):
+        world = found.world[of.blocks[unit]]
         size = np.bincount(world, minlength=count)[world]
         rest = all_told.rest[unit][world] + (of.log_before(unit) - np.log(size))[:, None]
         single = {one: of.of_one(one, unit, grid.values) for one in of.of_unit[unit]}

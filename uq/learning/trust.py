@@ -1,10 +1,12 @@
 """Whether the rows of a result can represent what inspections leave of it."""
 
 from collections.abc import Iterator
+from math import ceil
 
 import numpy as np
 
 from uq.learning.posterior import Posterior, Weighted
+from uq.population.means import FEW
 from uq.population.smoothing import refusal
 
 HOPELESS = (
@@ -51,4 +53,10 @@ def _reasons(found: Posterior) -> Iterator[str]:
 
 
 def _why(one: Weighted) -> str:
-    return refusal(one.weights.k, one.weights.rows, HOPELESS)
+    found = one.weights
+    if why := refusal(found.k, found.rows, HOPELESS):
+        return why
+    if found.effective >= FEW:
+        return ""
+    more = ceil(found.rows * (FEW / found.effective - 1))
+    return f"worth {found.effective:.1f} samples of equal weight, below {FEW}: add {more} samples"

@@ -62,12 +62,13 @@ def additive_shapley(sample: Sample) -> Indices:
     if not degrees or not len(used):
         return indices_from(sample, parts)
     terms = _hermite(sample.scores[sample.whole][..., used], degrees)
+    y = y.reshape(*y.shape[:2], -1)  # with the elements of a whole output
     control, exact = np.empty_like(y), np.empty_like(parts)
     half = np.arange(len(y)) % 2 == 0
     for on in (half, ~half):
-        weights = np.zeros((degrees, parts.shape[1]))
+        weights = np.zeros((degrees, parts.shape[1], y.shape[2]))
         weights[:, used] = _fit(terms[:, ~on], y[~on])
-        control[on] = np.einsum("tnkp,tp->nk", terms[:, on], weights[:, used])
+        control[on] = np.einsum("tnkp,tpe->nke", terms[:, on], weights[:, used])
         exact[on] = _exact(weights, sample.matrix)
     return indices_from(sample, parts - parts_of(sample, control) + exact, _EXACT)
 
@@ -80,6 +81,7 @@ def _used(sample: Sample) -> NDArray[np.intp]:
     """
     y = sample.grouped[sample.whole]
     moved = np.abs(y[:, 1] - y[:, 0]) > ROUNDING * np.abs(y).max()
+    moved = moved.reshape(len(y), -1).any(axis=1)
     first = sample.direction[sample.whole][:, 0] != 0
     known = np.isfinite(sample.scores[0, 0, 0])
     sizes = np.array([len(_together(sample.matrix, i)) for i in range(len(known))])
@@ -95,10 +97,12 @@ def _hermite(z: Floats, degrees: int) -> Floats:
 
 
 def _fit(terms: Floats, y: Floats) -> Floats:
-    """Return the coefficients of least squares, shape (degrees, inputs); that of 1 is left out."""
-    columns = terms.transpose(1, 2, 0, 3).reshape(y.size, -1)
-    found = np.linalg.lstsq(np.column_stack([np.ones(y.size), columns]), y.ravel(), rcond=None)[0]
-    return np.asarray(found[1:].reshape(terms.shape[0], terms.shape[3]))
+    """Return the coefficients of least squares, shape (degrees, inputs, e), but for that of 1."""
+    values = y.reshape(-1, y.shape[-1])
+    columns = terms.transpose(1, 2, 0, 3).reshape(len(values), -1)
+    columns = np.column_stack([np.ones(len(values)), columns])
+    found = np.linalg.lstsq(columns, values, rcond=None)[0]
+    return np.asarray(found[1:].reshape(terms.shape[0], terms.shape[3], -1))
 
 
 def _together(matrix: Floats, place: int) -> tuple[int, ...]:
@@ -110,7 +114,7 @@ def _together(matrix: Floats, place: int) -> tuple[int, ...]:
 
 
 def _exact(weights: Floats, matrix: Floats) -> Floats:
-    """Return the Shapley values of the variance of a sum of Hermite polynomials, shape (d,)."""
+    """Return the Shapley values of the variance of sums of Hermite polynomials, shape (d,)."""
     found = np.zeros(len(matrix))
     for block in {_together(matrix, i) for i in range(len(matrix))}:
         own, places = matrix[np.ix_(block, block)], list(block)
@@ -135,8 +139,8 @@ def _of_block(weights: Floats, matrix: Floats) -> Floats:
 
 
 def _explained(weights: Floats, matrix: Floats, some: list[int]) -> float:
-    """Return the variance of the mean given some scores."""
+    """Return the variance of the mean given some scores, summed over elements."""
     if not some:
         return 0.0
     shared = matrix[:, some] @ np.linalg.solve(matrix[np.ix_(some, some)], matrix[some])
-    return float(sum(one @ shared ** (n + 1) @ one for n, one in enumerate(weights)))
+    return float(sum((one * (shared ** (n + 1) @ one)).sum() for n, one in enumerate(weights)))

@@ -40,6 +40,7 @@ METHODS = {
         kinds=(S1,),
         source="random balance, bias corrected",
         most_rows=200_000,
+        aggregates=True,
     ),
     "delta": _of_any_inputs(
         "how much the whole distribution moves",
@@ -90,6 +91,7 @@ METHODS = {
         source="Saltelli et al. (2010), on standardised outputs",
         intervals="Student's t from replicates",
         least=MIN_GROUPS,
+        aggregates=True,
         noise="the model is random, and the rows of a group share a seed: S1 excludes noise, ST"
         " includes its interaction with the input, and 'noise' is the share of the variance that"
         " remains once all inputs are known",
@@ -114,6 +116,7 @@ METHODS = {
         intervals="Student's t of independent paths",
         least=MIN_PATHS,
         assumes_independence=False,
+        aggregates=True,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
     ),
     "shapley-additive": Method(
@@ -126,6 +129,7 @@ METHODS = {
         least=MIN_PATHS,
         assumes_independence=False,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+        aggregates=True,
     ),
     "fast": Method(
         "how much of the variance, alone and with others, without intervals",
@@ -134,6 +138,7 @@ METHODS = {
         (S1, ST),
         source="extended FAST, Saltelli et al. (1999)",
         least=0,  # it asks for a whole curve of each input
+        aggregates=True,
         noise=f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
     ),
 }
@@ -173,3 +178,13 @@ def designs_for(method: str) -> tuple[str, ...]:
 def for_dependent_inputs() -> tuple[str, ...]:
     """Return the methods that do not assume independent inputs."""
     return tuple(name for name, method in METHODS.items() if not method.assumes_independence)
+
+
+def kinds_with_intervals(design: Design) -> dict[str, tuple[IndexKind, str]]:
+    """Return the indices of single inputs that have intervals: key -> kind and method."""
+    found: dict[str, tuple[IndexKind, str]] = {}
+    for name in fed_by(design):
+        for kind in METHODS[name].kinds if METHODS[name].intervals else ():
+            if not kind.of_pairs:
+                found.setdefault(kind.key, (kind, name))
+    return found

@@ -9,16 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
+from uq.intervals import CONFIDENCE, is_constant
 
 
 @dataclass(frozen=True)
 class Sample:
-    """The rows of a result and one number for each.
+    """The rows of a result and one number for each, or one for each element of an output.
 
     Attributes
     ----------
-    values : ndarray, shape (n,)
-        The output, NaN where a row has none.
+    values : ndarray, shape (n,) or (n, e)
+        The output, NaN where a row has none; of a whole output, a column for each element.
     inputs : dict of str to ndarray, shape (n,)
         The inputs that vary by a law of their own.
     groups : ndarray of int, shape (R, N, k)
@@ -40,6 +41,10 @@ class Sample:
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
         Name -> probability of each quantile that indices of quantiles are about.
+    confidence : float
+        Of intervals.
+    difference : tuple of str, optional
+        Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
     """
 
     values: Floats
@@ -52,6 +57,8 @@ class Sample:
     matrix: Floats = field(default_factory=lambda: np.empty(0))
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
+    confidence: float = CONFIDENCE
+    difference: tuple[str, str] | None = None
 
     @classmethod
     def plain(cls, values: Floats, inputs: Mapping[str, Floats], **more: Any) -> Self:
@@ -60,13 +67,19 @@ class Sample:
 
     @property
     def grouped(self) -> Floats:
-        """The output by replicate, group and row, shape (R, N, k)."""
+        """The output by replicate, group and row, shape (R, N, k), with (e,) of a whole output."""
         return self.values[self.groups]
 
     @cached_property
     def whole(self) -> Mask:
         """Which groups have a value in each of their rows, shape (R, N)."""
-        return np.asarray(np.isfinite(self.grouped).all(axis=-1))
+        known = np.isfinite(self.grouped)
+        return np.asarray(known.all(axis=tuple(range(2, known.ndim))))
+
+    def is_constant(self, values: Floats) -> bool:
+        """Whether each element is constant over these values of some rows, the last axis (e,)."""
+        elements = self.values.shape[1] if self.values.ndim > 1 else 1
+        return all(is_constant(one) for one in values.reshape(-1, elements).T)
 
     def rows(self, kept: NDArray[np.intp]) -> Self:
         """Return some rows of a plain sample."""

@@ -66,8 +66,8 @@ def parts_of(sample: Sample, y: Floats) -> Floats:
     Parameters
     ----------
     sample : Sample
-    y : ndarray, shape (n, k)
-        Any function of the rows of whole paths.
+    y : ndarray, shape (n, k) or (n, k, e)
+        Any function of the rows of whole paths; its elements add up.
 
     Returns
     -------
@@ -76,6 +76,7 @@ def parts_of(sample: Sample, y: Floats) -> Floats:
     """
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
+    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)
     return np.asarray(np.einsum("ns,nsp->np", steps, sample.direction[sample.whole] != 0))
 
 
@@ -95,7 +96,7 @@ def indices_from(sample: Sample, parts: Floats, rounding: float = 0.0) -> Indice
     RefusedError
     """
     y = sample.grouped[sample.whole]
-    if is_constant(y):
+    if sample.is_constant(y):
         raise RefusedError(NO_VARIANCE)
     if is_constant(y - y[:, :1]):
         raise RefusedError(ALL_NOISE)
@@ -103,9 +104,15 @@ def indices_from(sample: Sample, parts: Floats, rounding: float = 0.0) -> Indice
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
     found = {}
-    for name, share, error in zip(sample.inputs, shares.tolist(), errors.T, strict=True):
+    names = list(sample.inputs)
+    terms = list(zip(names, shares.tolist(), errors.T, strict=True))
+    if sample.difference:
+        one, other = (terms[names.index(name)] for name in sample.difference)
+        terms.append((" - ".join(sample.difference), one[1] - other[1], one[2] - other[2]))
+    for name, share, error in terms:
         # Errors of rounding alone give no interval.
-        ends = UNKNOWN if is_constant(share + error) else scatter_interval(share, error)
+        constant = is_constant(share + error)
+        ends = UNKNOWN if constant else scatter_interval(share, error, sample.confidence)
         if rounding:
             ends = np.fmin(ends[0], share - rounding), np.fmax(ends[1], share + rounding)
         found[name] = Estimate(share, *ends)
@@ -132,5 +139,6 @@ def _paths_without_effect(sample: Sample, name: str) -> int:
     alone = first & (x[:, 1] != x[:, 0])
     if (np.abs(y[:, 1] - y[:, 0])[alone] > ROUNDING * np.abs(y).max()).any():
         return 0
-    seen = int((alone & (y[:, -1] != y[:, 0])).sum())
+    moves = (y[:, -1] != y[:, 0]).reshape(len(y), -1).any(axis=1)  # some element of a whole output
+    seen = int((alone & moves).sum())
     return seen if seen >= MIN_SEEN else 0

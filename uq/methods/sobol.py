@@ -1,14 +1,20 @@
 """Sobol' indices of a crossed design, with intervals from the replicates."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import combinations
 
 import numpy as np
 
 from uq.designs.layouts import NOISE
-from uq.intervals import is_constant
-from uq.methods.groups import Values, effective_rows, one_more_row, pooled_with_intervals, widened
+from uq.methods.groups import (
+    Values,
+    effective_rows,
+    one_more_row,
+    pooled_with_intervals,
+    widened,
+    with_difference,
+)
 from uq.methods.indices import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
@@ -18,14 +24,21 @@ MIN_GROUPS = 8
 
 _NOISE = IndexKind(NOISE, "share of noise", "variance")
 
+Estimates = Callable[[Sequence[str], Floats], Values]
+"""Names of the blocks, and groups of shape (n, blocks), standardised -> indices."""
 
-def sobol_indices(sample: Sample) -> Indices:
+
+def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices:
     """Estimate first-order, total and, where the design has them, second-order indices.
+
+    Those of a whole output are aggregated [2]_: parts of the variance are summed over its elements.
 
     Parameters
     ----------
     sample : Sample
         Of a crossed design.
+    estimates : callable, optional
+        Estimators to compare with those below.
 
     Returns
     -------
@@ -48,25 +61,29 @@ def sobol_indices(sample: Sample) -> Indices:
 
     References
     ----------
-    A. Saltelli et al., "Variance based sensitivity analysis of model output. Design and estimator
-    for the total sensitivity index", Comput. Phys. Commun. 181, 259-270 (2010).
+    .. [1] A. Saltelli et al., "Variance based sensitivity analysis of model output. Design and
+       estimator for the total sensitivity index", Comput. Phys. Commun. 181, 259-270 (2010).
+    .. [2] F. Gamboa, A. Janon, T. Klein, A. Lagnoux, "Sensitivity analysis for multidimensional
+       and functional outputs", Electron. J. Stat. 8, 575-603 (2014).
     """
     y, whole = sample.grouped, sample.whole
     ends = [sample.blocks.index("A"), sample.blocks.index("B")]
     independent = y[whole][:, ends]
-    if is_constant(independent):
+    if sample.is_constant(independent):
         raise RefusedError(NO_VARIANCE)
     # The estimators lose digits, and scatter more, for values far from zero (Sobol' 2001).
-    y = (y - independent.mean()) / independent.std()
+    y = (y - independent.mean(axis=(0, 1))) / np.sqrt(independent.var(axis=(0, 1)).sum())
 
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
-    few = any(len(own) < 2 or is_constant(own[:, ends]) for own in replicates)
+    few = any(len(own) < 2 or sample.is_constant(own[:, ends]) for own in replicates)
     lacking = "in some replicates too few rows differ" if few else ""
+    of_blocks = partial(estimates or _estimates, sample.blocks)
+    estimate = with_difference(of_blocks, sample.difference)
     found, notes = pooled_with_intervals(
-        partial(_estimates, sample.blocks), y[whole], replicates, "indices", lacking
+        estimate, y[whole], replicates, "indices", lacking, sample.confidence
     )
-    independent = y[whole][:, ends].ravel()
-    more = one_more_row(independent, int(whole.sum()), len(replicates))
+    independent = y[whole][:, ends].reshape(-1, *y.shape[3:])
+    more = one_more_row(independent, int(whole.sum()), len(replicates), sample.confidence)
     if more and not notes:
         rows = effective_rows(independent) / len(replicates)
         notes += (
@@ -89,8 +106,8 @@ def _parameters(blocks: Sequence[str]) -> list[str]:
 
 
 def _estimates(blocks: Sequence[str], y: Floats) -> Values:
-    """Return each index from groups y, shape (n, blocks)."""
-    block = dict(zip(blocks, y.T, strict=True))
+    """Return each index from groups y, shape (n, blocks) or (n, blocks, e)."""
+    block = dict(zip(blocks, np.moveaxis(y, 1, 0), strict=True))
     a, b, names = block["A"], block["B"], _parameters(blocks)
     found = {
         S1: {name: first_order(a, block[f"AB_{name}"], b) for name in names},
@@ -110,24 +127,24 @@ def _estimates(blocks: Sequence[str], y: Floats) -> Values:
 
 def first_order(a: Floats, ab: Floats, b: Floats) -> float:
     """Return S1 from the blocks A, AB_i and B: Saltelli et al. (2010), Table 2 (b)."""
-    return _share(float(np.mean(b * (ab - a))), a, b)
+    return _share(np.mean(b * (ab - a), axis=0), a, b)
 
 
 def total_order(a: Floats, ab: Floats, b: Floats) -> float:
     """Return ST from the blocks A, AB_i and B: Jansen (1999), Table 2 (f) there."""
-    return _share(0.5 * float(np.mean((a - ab) ** 2)), a, b)
+    return _share(0.5 * np.mean((a - ab) ** 2, axis=0), a, b)
 
 
 def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
     """Return S2 from the blocks A, AB_i, AB_j, BA_i and B: Saltelli (2002)."""
-    both = _share(float(np.mean(ba * ab_other - a * b)), a, b)
+    both = _share(np.mean(ba * ab_other - a * b, axis=0), a, b)
     return both - first_order(a, ab, b) - first_order(a, ab_other, b)
 
 
-def _share(part: float, a: Floats, b: Floats) -> float:
+def _share(part: Floats, a: Floats, b: Floats) -> float:
     """Return a part of the variance over all of it; 0 where there is none but by rounding."""
-    variance = np.var(np.r_[a, b])
-    return float(part / variance) if variance > np.finfo(float).eps else 0.0
+    variance = np.var(np.r_[a, b], axis=0).sum()
+    return float(part.sum() / variance) if variance > np.finfo(float).eps else 0.0
 
 
 def pilot(sample: Sample) -> dict[IndexKind, float]:

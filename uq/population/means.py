@@ -12,6 +12,7 @@ from scipy import special
 from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import (
+    CONFIDENCE,
     ROUNDING,
     Replicates,
     binomial_interval,
@@ -48,6 +49,7 @@ def weighted_share(
     weights: Floats | None = None,
     part: Replicates = None,
     cautious: bool | None = None,
+    confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Estimate the mean of numbers between 0 and 1.
 
@@ -60,6 +62,7 @@ def weighted_share(
         The independent part of each row.
     cautious : bool, optional
         Whether few rows carry the mean; by default `rests_on_few`.
+    confidence : float, optional
 
     Returns
     -------
@@ -82,12 +85,12 @@ def weighted_share(
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
-    low, high = _of_logit(mean, found)
+    low, high = _of_logit(mean, found, confidence)
     if 0 < mean < 1:
         outlier = 2 * ((found.max() - mean) - (mean - found.min())) / parts
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
     if cautious or (cautious is None and rests_on_few(numbers, weights, part)):
-        of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)))
+        of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)), confidence)
         low, high = min(low, of_hits[0]), max(high, of_hits[1])
     return Estimate(mean, float(low), float(high))
 
@@ -123,12 +126,13 @@ def share_to_compare(
     return Estimate(mean, low, high)
 
 
-def _of_logit(mean: float, found: Floats) -> tuple[float, float]:
+def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
     """Return Student's interval of the logit of a mean, from what each part says of it."""
     if not 0 < mean < 1:
         return mean, mean
     error = found.std(ddof=1) / len(found) ** 0.5
-    half = student(upper_probability(), len(found) - 1) * error / (mean * (1 - mean))
+    wide = student(upper_probability(confidence), len(found) - 1)
+    half = wide * error / (mean * (1 - mean))
     low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
     return low, high
 
@@ -141,7 +145,7 @@ def rests_on_few(numbers: Floats, weights: Floats | None, part: Replicates) -> b
 
 
 def weighted_moments(
-    values: Floats, weights: Floats, part: Replicates = None
+    values: Floats, weights: Floats, part: Replicates = None, most: float = inf
 ) -> tuple[Estimate, Estimate]:
     """Estimate mean and standard deviation from rows with weights.
 
@@ -149,6 +153,8 @@ def weighted_moments(
     ----------
     values, weights : ndarray, shape (n,)
     part : ndarray of int, shape (n,), optional
+    most : float, optional
+        The largest weight that a row can have, where no value is farther out than those here.
 
     Returns
     -------
@@ -163,7 +169,9 @@ def weighted_moments(
     found = Estimate(mean, *scatter_interval(mean, pulls(values, weights, part)))
     ends = np.asarray(scatter_interval(0.0, pulls(squares, weights, part) / max(variance, 1e-300)))
     spread = Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
-    return trusted(found, values, weights, part), trusted(spread, squares, weights, part)
+    both = zip((found, spread), (np.abs(values), squares), strict=True)
+    parts = [trusted(one, of / max(of.max(), 1e-300), weights, part, most) for one, of in both]
+    return parts[0], parts[1]
 
 
 def trusted(

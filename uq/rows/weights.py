@@ -9,13 +9,27 @@ from uq.errors import InputError
 WEIGHT = "weight"
 """The variable with the weight of each row."""
 
+ONLY_INSPECTED = "only_inspected"
+"""Attribute of a result: why no row stands for a unit that was not inspected."""
+
 MOST = "largest_possible"
 """Its attribute: the largest weight that a row can have, where that is known."""
+
+
+IMPORTANCE, ROUND = "importance", "round"
+"""Variables of each row, if a sampler has added rows to those of a design: how much it counts
+before any inspection, of mean 1 in expectation; and the round in which it was drawn, 0 by the
+design."""
 
 
 def has_weights(ds: xr.Dataset) -> bool:
     """Whether inspections have weighted the rows of a result."""
     return WEIGHT in ds.variables and ds[WEIGHT].attrs.get("role") == WEIGHT
+
+
+def has_rounds(ds: xr.Dataset) -> bool:
+    """Whether a sampler has added rows to those of a design; replicates are its repetitions."""
+    return ROUND in ds.variables and ds[ROUND].attrs.get("role") == IMPORTANCE
 
 
 def row_weights(ds: xr.Dataset) -> Floats | None:

@@ -1,0 +1,81 @@
+"""One of the independent repetitions of the sampler of new rows."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats
+from uq.learning.proposal import Proposal, fitted, tempered
+
+
+class Repetition:
+    """The rows of one repetition, in the order of their rounds, and how much they count.
+
+    Parameters
+    ----------
+    scores : ndarray, shape (own, inputs)
+        Normal scores of the rows of the study with which it begins.
+    each : int
+        Rows that it draws in a round.
+
+    Attributes
+    ----------
+    log_importance : ndarray, shape (n,)
+        How much its rows count before the inspections: the density before the inspections over the
+        mixture of all that they were drawn from [1]_, each in proportion to its rows. At most
+        n / `own`.
+
+    References
+    ----------
+    .. [1] A. Owen, Y. Zhou, "Safe and effective importance sampling", J. Am. Stat. Assoc. 95,
+       135-143 (2000).
+    """
+
+    def __init__(self, scores: Floats, each: int):
+        self.log_importance = np.zeros(len(scores))
+        self._scores, self._each, self._own = scores, each, len(scores)
+        self._proposals: list[Proposal] = []
+        self._log_mixture = np.full(len(scores), np.log(len(scores)))
+
+    def drawn(
+        self,
+        log_likelihoods: Sequence[Floats],
+        columns: NDArray[np.intp],
+        rng: np.random.Generator,
+    ) -> Floats:
+        """Draw a round around the rows so far, weighted with as much likelihood as they bear.
+
+        Parameters
+        ----------
+        log_likelihoods : sequence of ndarray, shape (n,)
+            Of its rows as each inspected unit.
+        columns : ndarray of int
+            The scores to draw from a law of their own.
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        ndarray, shape (each, inputs)
+            Normal scores.
+        """
+        weights = np.zeros(len(self._scores))
+        for one in log_likelihoods:
+            possible = one if np.isfinite(one).any() else np.zeros(len(one))
+            of_unit = tempered(self.log_importance, possible)
+            weights += of_unit / of_unit.sum()
+        proposal = fitted(self._scores, weights, columns, rng)
+        new = proposal.drawn(self._each, self._scores.shape[1], rng)
+        self._add(proposal, new)
+        return new
+
+    def _add(self, proposal: Proposal, new: Floats) -> None:
+        log_each = np.log(self._each)
+        mixture = np.full(len(new), np.log(self._own))
+        for one in self._proposals:
+            mixture = np.logaddexp(mixture, log_each + one.log_ratio(new))
+        self._scores = np.concatenate([self._scores, new])
+        self._proposals.append(proposal)
+        before = np.concatenate([self._log_mixture, mixture])
+        self._log_mixture = np.logaddexp(before, log_each + proposal.log_ratio(self._scores))
+        self.log_importance = np.log(len(self._scores)) - self._log_mixture
