@@ -32,6 +32,7 @@ from uq.drawing.response_plot import bifurcation as bifurcation
 from uq.drawing.response_plot import curve as curve
 from uq.drawing.scatter_plot import pairs as pairs
 from uq.drawing.scatter_plot import scatter as scatter
+from uq.drawing.shares_plot import shares as shares
 from uq.errors import InputError
 from uq.places import refuse_standard_output
 
@@ -44,6 +45,7 @@ FIGURES: dict[str, Entry] = {
     "quantiles": Entry(
         quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
     ),
+    "shares": Entry(shares, of.categories, "Shares of {name}", section=""),
     "events": Entry(
         event_probability,
         of.decided_events,
@@ -91,10 +93,9 @@ FIGURES: dict[str, Entry] = {
     ),
     "inputs": Entry(
         inputs,
-        of.the_result,
+        of.inputs,
         "Inputs: stated laws and sampled values",
         section="inputs",
-        applies=(of.follows_laws,),
     ),
 }
 """Figures of a result, in the order of `uq plot`; keys are the first words of file names."""

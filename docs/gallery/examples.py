@@ -158,6 +158,14 @@ EXAMPLES = (
         "beam-sensitivity",
     ),
     _of_result(
+        "shares",
+        INPUTS,
+        "The shares of a category",
+        "How many rows are in each regime, with 95 % intervals; any other category is drawn alike.",
+        'shares(ds, "regime")',
+        "beam-lifetime",
+    ),
+    _of_result(
         "index-curves",
         INPUTS,
         "Sensitivity indices along a curve",

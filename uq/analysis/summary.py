@@ -26,6 +26,7 @@ from uq.rows.elements import (
     Element,
     Mask,
     analysis_of,
+    category_codes,
     flags,
     has_independent_samples,
     independent_rows,
@@ -119,8 +120,8 @@ class Summary:
     status : dict of str to int
         Number of rows with each status, of all rows.
     shares : dict of str to dict
-        Of each category that is shown, such as the period, and of the regime in any case: label ->
-        `Statistic` of its share, with ``count`` among its facts.
+        Of each element of a category that is shown, such as the period, and of the regime in any
+        case: label -> `Statistic` of its share, with ``count`` among its facts.
     outputs : dict of str to Described
         By name of the element.
     most_failed : int
@@ -229,18 +230,22 @@ def status_counts(ds: xr.Dataset) -> dict[str, int]:
 
 
 def _categories(ds: xr.Dataset, shown: Collection[str]) -> list[str]:
-    """Return the categories without dimensions that are shown, and the regime."""
+    """Return the elements of the categories that are shown, and the regime."""
     return [
-        name
+        element
         for name, output in outputs_of(ds).items()
-        if output.is_category and not output.dims and (name in shown or name == REGIME)
+        if output.is_category and (name in shown or name == REGIME)
+        for element in category_codes(ds, name)
     ]
 
 
 def category_shares(
     rows: xr.Dataset, name: str, weights: Smoothed | None = None
 ) -> dict[str, Statistic]:
-    """Return the share of each label of a category among the independent rows that did not fail."""
+    """Return the share of each label of a category among the independent rows that did not fail.
+
+    The name is that of an output, or of one element of it.
+    """
     replicate = replicates_of(rows)
 
     def estimate(hits: Mask, kept: Mask) -> Estimate:

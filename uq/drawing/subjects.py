@@ -18,6 +18,8 @@ from uq.rows.elements import analysis_of, shown_outputs
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
 
+_MOST_INPUTS = 6
+
 
 def the_result(findings: Findings) -> Iterator[Subject]:
     """Yield the result itself."""
@@ -30,6 +32,24 @@ def outputs(findings: Findings) -> Iterator[Subject]:
         known, ds = outputs_of(findings.ds), findings.ds
         shown = shown_outputs(ds, analysis_of(ds))
         yield from (Subject(output) for output in shown if not known[output].is_category)
+
+
+def inputs(findings: Findings) -> Iterator[Subject]:
+    """Yield the inputs with laws, as many at a time as fit a quarter of a page."""
+    names = list(laws_and_values(findings.ds))
+    count = -(-len(names) // _MOST_INPUTS)
+    for i in range(count):
+        part = f"{i + 1} of {count}" if count > 1 else ""
+        own = names[i * len(names) // count : (i + 1) * len(names) // count]
+        yield Subject(part=part, keywords={"names": own})
+
+
+def categories(findings: Findings) -> Iterator[Subject]:
+    """Yield each category that occurs, the regime among them."""
+    if findings.rows.sizes["sample"]:
+        shares = findings.summary.shares.items()
+        occur = (name for name, of in shares if any(one.facts["count"] for one in of.values()))
+        yield from map(Subject, dict.fromkeys(name.partition("[")[0] for name in occur))
 
 
 def targets(findings: Findings) -> Iterator[Subject]:
@@ -102,11 +122,6 @@ def has_plain_rows(findings: Findings, name: str) -> bool:
 def has_several_inputs(findings: Findings, name: str) -> bool:
     """Whether at least two inputs vary independently."""
     return len(independent_inputs(findings.rows)) > 1
-
-
-def follows_laws(findings: Findings, name: str) -> bool:
-    """Whether the rows follow the laws of the inputs."""
-    return bool(laws_and_values(findings.ds))
 
 
 def has_running_estimate(findings: Findings, name: str) -> bool:

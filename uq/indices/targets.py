@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from uq.indices.transforms import heaviness, logarithm, rank, rate
-from uq.rows.elements import Element, Floats, flags
+from uq.rows.elements import Element, Floats, category_codes, flags
 from uq.rows.results import failed
 from uq.written import read_quantity
 
@@ -204,22 +204,23 @@ def _event(element: Element, threshold: float) -> Target:
 
 
 def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
-    """Yield whether a category, such as the regime, is each of those that occur.
+    """Yield whether a category, such as the regime, has each of the labels that occur.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result, or some rows of one.
     output : str
-        An output of kind ``category`` without dimensions.
+        An output of kind ``category``, or one element of it.
 
     Yields
     ------
     Target
         NaN for rows that failed before they had a category; a sound row of no category has none.
     """
-    codes, lost = ds[output].values, failed(ds)
-    for code, label in flags(ds[output]):
-        if code >= 0 and (hits := codes == code).any():
-            values = np.where((codes < 0) & lost, np.nan, hits)
-            yield Target(f"P({output}={label})", None, values, event=True)
+    lost = failed(ds)
+    for name, codes in category_codes(ds, output).items():
+        for code, label in flags(ds[output.partition("[")[0]]):
+            if code >= 0 and (hits := codes == code).any():
+                values = np.where((codes < 0) & lost, np.nan, hits)
+                yield Target(f"P({name}={label})", None, values, event=True)
