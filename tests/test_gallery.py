@@ -18,7 +18,12 @@ sys.path.insert(0, str(HOUSE / "docs"))
 import gallery  # noqa: E402
 
 EXAMPLES = {one.name: one for one in gallery.EXAMPLES}
-FEWER = {"beam-lifetime": 600, "beam-sensitivity": 16, "vibrator-tolerances": 200}
+FEWER = {
+    "beam-depths": 8,
+    "beam-lifetime": 600,
+    "beam-sensitivity": 16,
+    "vibrator-tolerances": 200,
+}
 """Study -> rows (or rows of a replicate) that draw its figures in a test."""
 
 

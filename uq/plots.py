@@ -20,6 +20,7 @@ from uq.drawing.distribution_plots import lifetime as lifetime
 from uq.drawing.distribution_plots import quantile_table as quantile_table
 from uq.drawing.event_plot import event_probability as event_probability
 from uq.drawing.figure import write
+from uq.drawing.index_curve_plot import index_curves as index_curves
 from uq.drawing.index_plot import index_bars as index_bars
 from uq.drawing.input_plot import inputs as inputs
 from uq.drawing.motion_plot import history as history
@@ -31,6 +32,7 @@ from uq.drawing.response_plot import bifurcation as bifurcation
 from uq.drawing.response_plot import curve as curve
 from uq.drawing.scatter_plot import pairs as pairs
 from uq.drawing.scatter_plot import scatter as scatter
+from uq.drawing.shares_plot import shares as shares
 from uq.errors import InputError
 from uq.places import refuse_standard_output
 
@@ -43,6 +45,7 @@ FIGURES: dict[str, Entry] = {
     "quantiles": Entry(
         quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
     ),
+    "shares": Entry(shares, of.categories, "Shares of {name}", section=""),
     "events": Entry(
         event_probability,
         of.decided_events,
@@ -76,6 +79,11 @@ FIGURES: dict[str, Entry] = {
         section="",
         file=("method", "name"),
     ),
+    "index-curves": Entry(
+        index_curves,
+        of.curves,
+        "Sensitivity indices of {name} by {method}, along its dimension",
+    ),
     "convergence-indices": Entry(
         index_convergence,
         of.crossed_targets,
@@ -85,10 +93,9 @@ FIGURES: dict[str, Entry] = {
     ),
     "inputs": Entry(
         inputs,
-        of.the_result,
+        of.inputs,
         "Inputs: stated laws and sampled values",
         section="inputs",
-        applies=(of.follows_laws,),
     ),
 }
 """Figures of a result, in the order of `uq plot`; keys are the first words of file names."""

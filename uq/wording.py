@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from math import floor, inf, isfinite, isnan, log10
+from math import floor, inf, isclose, isfinite, isnan, log10
 from typing import Any
 
 from uq.estimate import Estimate
@@ -92,11 +92,16 @@ def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
 def threshold(value: float, units: str) -> str:
     """Return a threshold [units, as in CF] as it was written: ``24 hours``, ``12°``.
 
-    One without a unit of its own is in the unit in which it is read.
+    One without a unit of its own is in the unit in which it is read, or as it was written where
+    five digits do not tell it from others.
     """
     if isinstance(value, Written):
         return beside(value.number, value.unit.name)
-    return quantity(value, units)
+    unit = unit_of(units, value)
+    read = float(number(value / unit.size))
+    if not isclose(read * unit.size, value, rel_tol=1e-12):
+        read, unit = value, Unit(units, 1.0)
+    return beside(f"{read:.15g}", unit.name)
 
 
 def compared(name: str, is_angle: bool) -> str:

@@ -1,4 +1,4 @@
-"""Twins, runs that stop when an interval is narrow enough, and rare events."""
+"""Twins and rare events."""
 
 from functools import partial
 
@@ -13,13 +13,9 @@ from benchmarks.coverage.problems import (
     JUMP,
     NAME,
     TAIL_INDEX,
-    computed,
     ishigami_cdf,
-    jump,
-    jump_ppf,
     repeated,
     study_of,
-    with_seed,
 )
 from benchmarks.coverage.tally import Tally
 from uq.analysis.twin import with_twin
@@ -27,7 +23,6 @@ from uq.estimate import NOTHING
 from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.subset_simulation import subset_interval, subset_simulation
 from uq.intervals import UNKNOWN, log_scatter_interval
-from uq.rows import stopping
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
@@ -50,29 +45,6 @@ def twin(repetitions):
         tally.estimate("mean by the twin", ISHIGAMI_MEAN, mean)
         above = found["P(>9.0)"].estimate
         tally.estimate("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), above)
-    return tally.lines()
-
-
-UNTIL = {
-    "mean": ({"output": "ishigami", "half_width": 0.25}, lambda: ISHIGAMI_MEAN),
-    "median": ({"output": "jump", "quantile": 0.5, "half_width": 0.08}, lambda: jump_ppf(0.5)),
-    "P(> 2.5)": ({"output": "jump", "above": 2.5, "half_width": 0.04}, lambda: jump()["share"]),
-}
-
-
-def stopped(repetitions):
-    """Count the intervals at which runs stop."""
-    tally = Tally("runs that stop at one of 7 checks, at most 2048 independent rows", REASONS)
-    for what, (until, truth) in UNTIL.items():
-        study = study_of("monte-carlo", 2048, laws=UNIFORMS, design={"until": until})
-        for seed in range(repetitions):
-            one = with_seed(study, seed)
-            ds = computed(one)
-            for size in stopping.interim_sizes(one.design):
-                seen = stopping.interim_estimate(one.design, ds.isel(sample=slice(None, size)))
-                if seen.reached:
-                    break
-            tally.add(f"{what} when stopped", truth(), seen.estimate.low, seen.estimate.high)
     return tally.lines()
 
 
@@ -197,7 +169,4 @@ def _sampled(margin):
 FLAT = "conservative by design: no more than the independent rows of the first level support"
 REASONS = {
     **{f"P = {share:g}": FLAT for share in PLATEAU},
-    "mean when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
-    "median when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
-    "P(> 2.5) when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
 }

@@ -5,6 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 from benchmarks.coverage import (
+    basins,
     curves,
     dependent,
     differences,
@@ -13,13 +14,16 @@ from benchmarks.coverage import (
     fewer_rows,
     fleets,
     indices,
+    joint,
     known_indices,
     lives,
     nested,
     noise,
     plain,
     scaled,
+    stopping,
     tails,
+    whole,
 )
 from benchmarks.coverage.tally import Line
 
@@ -66,7 +70,10 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "whole": Part(partial(whole.whole, "saltelli"), 1000),
+    "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
     "shapley-dependent": Part(dependent.shapley, 1000),
+    "shapley-neighbours": Part(dependent.neighbours, 100),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
@@ -76,12 +83,16 @@ PARTS = {
     "effects": Part(effects.average),
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences),
+    "joint-bounds": Part(joint.bounds),
     "twin": Part(fewer_rows.twin),
     "few-shares": Part(few.shares, 1000),
     "few-indices": Part(few.indices, 1000),
     "few-twin": Part(few.twin, 1000),
     "failed": Part(few.failed, 1000),
-    "stopped": Part(fewer_rows.stopped),
+    "stopped": Part(partial(stopping.rows, "monte-carlo", 2048, 1)),
+    "stopped-replicates": Part(partial(stopping.rows, "halton", 256, 8)),
+    "stopped-integrated": Part(stopping.integrated),
+    **{f"stopped-{name}": Part(partial(stopping.indices, name)) for name in stopping.INDICES},
     "subset": Part(fewer_rows.subset),
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),
@@ -90,4 +101,5 @@ PARTS = {
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
     "fleet-shared": Part(fleets.shared_scale, 1000),
+    "basins": Part(basins.exponents, 1000),
 }

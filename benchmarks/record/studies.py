@@ -9,12 +9,15 @@ from uq.methods.registry import fed_by
 SHIPPED = Path("studies")
 SAMPLES = {  # of each replicate
     "beam-basins": 16,
+    "beam-depths": 2,
     "beam-lifetime-561": 8,
+    "beam-outcome": 8,
     "beam-random-load": 4,
     "beam-sensitivity": 2,
     "exponential-wear": 1000,
     "mole-circuit": 4,
     "mole-frequency": 16,
+    "mole-outcome": 16,
     "mole-progression": 100,
     "vibrator-feed": 16,
     "vibrator-startup": 32,

@@ -158,6 +158,22 @@ EXAMPLES = (
         "beam-sensitivity",
     ),
     _of_result(
+        "shares",
+        INPUTS,
+        "The shares of a category",
+        "How many rows are in each regime, with 95 % intervals; any other category is drawn alike.",
+        'shares(ds, "regime")',
+        "beam-lifetime",
+    ),
+    _of_result(
+        "index-curves",
+        INPUTS,
+        "Sensitivity indices along a curve",
+        "The index of each depth, with its band; in the legend, that of all depths together.",
+        'index_curves(ds, "first_time_to_depth")',
+        "beam-depths",
+    ),
+    _of_result(
         "pairs",
         INPUTS,
         "Regimes over the inputs that separate them",

@@ -103,7 +103,10 @@ def methods() -> str:
         most = "" if method.most_rows is None else f"{method.most_rows:,}"
         how = method.intervals or f"none{null}"
         lines.append((f"`{name}`", gives.replace("*", "\\*"), method.source, how, most))
-    return table(("method", "index", "estimator", "interval", "rows at most"), lines)
+    together = [f"`{name}`" for name, method in METHODS.items() if method.aggregates]
+    return table(("method", "index", "estimator", "interval", "rows at most"), lines) + (
+        f"\n\n{', '.join(together)} also give one index of all elements of an output together."
+    )
 
 
 def questions() -> str:

@@ -7,6 +7,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import cooling_fmu
 import psutil
 import pytest
 from their_server import TheirServer
@@ -56,7 +57,18 @@ pattern = '(.+)'
 PROGRAM = "sleep 0.02\necho {x1} > part.txt\nsleep 0.02\nmv part.txt y.txt\n"
 
 SERVER = "time.sleep(0.02)\nreturn [[parameters[0][0] ** 3]]"
-MODELS = {"function": "slow.py", "program": "slow.toml", "server": ""}
+MODELS = {"function": "slow.py", "program": "slow.toml", "server": "", "fmu": "body.toml"}
+
+FMU = """
+[machine]
+name = "slow"
+fmu = "body.fmu"
+step = 0.4
+[parameters.x1]
+variable = "body.rate"
+[outputs.y]
+variable = "T"
+"""
 
 
 def start(*arguments):
@@ -80,16 +92,20 @@ def descendants(process):
 
 @pytest.fixture
 def files(folder):
-    """Write a study, a function and a program into an empty folder."""
-    texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM}
+    """Write a study, a function and a program into an empty folder; return it."""
+    texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM, "body.toml": FMU}
     for name, text in {**texts, "own.toml": STUDY.format(one=1)}.items():
         (folder / name).write_text(text)
+    return folder
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", MODELS)
 def test_kills_leave_no_trace(files, kind):
     chance = random.Random(kind)
+    if kind == "fmu":
+        slow = cooling_fmu.SOURCE.replace("int fault", "usleep(4000); int fault")
+        cooling_fmu.write("body.fmu", cooling_fmu.compiled(files, slow))
     server = TheirServer(".", SERVER, "slow") if kind == "server" else None
     if server:
         server.start()

@@ -7,7 +7,7 @@ import numpy as np
 import uq.report
 from uq.analysis.findings import Findings
 from uq.report.embedded import rows_inside
-from uq.report.page import templates
+from uq.report.layout import templates
 
 CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(line => [
   line.dataset.key,

@@ -1,6 +1,7 @@
 """Every sentence of the answer against the numbers under it, on studies of different kinds."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from uq.conclusions.answer import answer
 from uq.conclusions.contributions import Change, Ranking
 from uq.conclusions.parts import Event
 from uq.conclusions.promises import Promise
+from uq.conclusions.remedies import Tightened
 from uq.conclusions.tightening import halved
 from uq.conclusions.words import Unit, called_together, rounded, rows_in_words
 from uq.contract import Status
@@ -169,10 +171,10 @@ def test_an_angle_is_promised_by_its_magnitude_in_degrees():
     )
     assert np.degrees(found.promise.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
     share, _, _, at = numbers(
-        r"# % \(# to # %\) exceed #° in magnitude\.", found.events[0].sentence
+        r"# % \(# to # %\) exceed # rad in magnitude\.", found.events[0].sentence
     )
     assert share == pytest.approx(100 * (abs(turn) > 0.4).mean(), abs=0.05)
-    assert at == pytest.approx(np.degrees(0.4), rel=5e-3)
+    assert at == 0.4  # as the study has it
 
 
 def test_rows_that_are_not_independent_give_a_cautious_quantile_and_the_reason():
@@ -253,6 +255,42 @@ def test_a_rare_event_asks_for_more_rows():
     half = (share.high - share.low) / 2
     (rows,) = [one for one in found.advice if one.rule == "rows"]
     assert rows.rows == pytest.approx(200 * (half / 0.01) ** 2, rel=0.01)
+
+
+def with_valley(samples=400):
+    """Return a result in which y is high where x4 is far from its middle."""
+    ds = linear(samples=samples)
+    far = (ds["x4"].values - 0.5) ** 2 + 1e-4 * ds["x1"].values
+    return asking(with_output(ds, "far", far), outputs=["far"], thresholds={"far": 0.01})
+
+
+def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_input():
+    ds = with_valley()
+    found = answer(ds)
+    assert [one.rule for one in found.advice][:1] == ["keep"]
+    event = found.lead.events[0]
+    assert event.share.value > 0.5
+    share, low, high = numbers(
+        r"So that more exceed 10 mm, keep x4 [^:]*: # % \(# to # %\) do there\.",
+        found.advice[0].text,
+    )
+    most = event.curve.shares[event.curve.most]
+    assert [share, low, high] == pytest.approx([100 * one for one in most.numbers], abs=0.05)
+    assert most.low > event.share.high
+
+
+def test_more_successes_and_fewer_other_ends_are_better():
+    lives = np.random.default_rng(0).uniform(1, 9, 64)
+    ds = with_output(linear(samples=64), "life", lives, "lifetime")
+    asked = {"outputs": ["life"], "thresholds": {"life": 8.0}}
+    lead = answer(asking(ds, **asked)).lead
+    assert not lead.wants_more(lead.events[0])
+    ds["life"].attrs["success"] = "the lock has closed"
+    lead = answer(asking(ds, **asked)).lead
+    assert lead.wants_more(lead.events[0])
+    better = Tightened(("x",), "", Estimate(0.5), Estimate(0.6), wants_more=True)
+    assert better.helps and not replace(better, wants_more=False).helps
+    assert replace(better, wants_more=None).helps
 
 
 def test_an_effect_without_a_direction_has_no_size():

@@ -9,8 +9,10 @@ from asked_indices import sensitivities
 from computed import asking, compared, linear, summarised, with_status
 from scipy import stats
 
-from uq import compare, summary
+from uq import compare, plots, summary
+from uq.analysis.findings import Findings
 from uq.contract import Status
+from uq.drawing.catalogue import drawables
 from uq.errors import InputError
 from uq.report import write_report
 from uq.rows.row_choice import lowest_row
@@ -103,6 +105,50 @@ def test_indices_are_those_of_each_label():
     ds, _ = with_period(2000)
     found = sensitivities(ds, "regional", "period")["outputs"]
     assert list(found) == ["P(period=aperiodic)", "P(period=1)", "P(period=2)"]
+
+
+def with_sites(samples=200):
+    """Return a result with a period at each of two sites."""
+    ds, codes = with_period(samples)
+    both = np.column_stack([codes, codes[::-1]]).astype(np.int8)
+    ds = ds.assign({"period": (("sample", "site"), both, ds["period"].attrs)})
+    return ds.assign_coords(site=["left", "right"]), both
+
+
+def test_a_category_with_dimensions_has_shares_of_each_element(uq, folder):
+    ds, both = with_sites()
+    found = summarised(ds)["categories"]
+    assert list(found) == ["period[site=left]", "period[site=right]"]
+    for i, of in enumerate(found.values()):
+        assert of["1"]["share"] == (both[:, i] == 1).mean()
+    one = traced(ds, "categories/period[site=left]/1")
+    assert one.equal and one.numbers["share"] == (both[:, 0] == 1).mean()
+    assert list(compared(ds, ds)["categories"]) == list(found)
+    indices = sensitivities(ds, "regional", "period[site=left]")["outputs"]
+    assert list(indices) == [f"P(period[site=left]={one})" for one in LABELS[:3]]
+    assert len(sensitivities(ds, "regional", "period")["outputs"]) == 6
+    with pytest.raises(InputError, match=r"no such element 'period\[site=up\]'"):
+        sensitivities(ds, "regional", "period[site=up]")
+    write_result(ds, folder / "out.nc")
+    assert "\nperiod[site=right]" in uq("summary", "out.nc").out
+    write_report(folder / "out.nc", folder / "out.html")
+    page = (folder / "out.html").read_text()
+    assert page.count("<caption>Period") == 2
+
+
+def test_a_figure_shows_the_shares_of_each_label():
+    ds, both = with_sites()
+    for output, shown in (("period", 2), ("period[site=right]", 1)):
+        (axes,) = plots.shares(ds, output).axes
+        labels = [one.get_text() for one in axes.get_yticklabels()]
+        assert labels == list(LABELS[:3]) and len(axes.patches) == 3 * shown
+    left = [(both[:, 1] == code).mean() for code in range(3)]
+    assert [bar.get_width() for bar in axes.patches] == pytest.approx(left)
+    with pytest.raises(InputError, match="'y' is no category"):
+        plots.shares(ds, "y")
+    assert {"shares-period"} == {
+        one.file for one in drawables({"shares": plots.FIGURES["shares"]}, Findings(ds))
+    }
 
 
 def test_it_has_no_thresholds_quantiles_or_lowest_row():

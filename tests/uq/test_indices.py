@@ -46,7 +46,7 @@ def test_outputs_can_be_named_in_every_way():
     assert list(indices(ds)["outputs"])[:2] == ["work[side=left]", "work[side=right]"]
     assert list(indices(ds, output="angle")["outputs"]) == ["angle"]
     assert list(indices(ds, output="work[side=left]")["outputs"]) == ["work[side=left]"]
-    assert len(indices(ds, output="life")["outputs"]) == 8
+    assert len(indices(ds, output="life")["outputs"]) == 9
     assert list(indices(ds, output="life")["outputs"])[0] == "rank(life[side=left,depth=0.5])"
     name = "P(life[side=left,depth=0.5]<1.0)"
     assert list(indices(ds, output=name)["outputs"]) == [name]

@@ -6,14 +6,20 @@ import xarray as xr
 from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import study, tables
 
-from uq.rows import stopping
+from uq import interim_levels
+from uq.analysis import stopping
 from uq.running import runner
 
 
 def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
-    assert stopping.interim_sizes(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
+    assert stopping.interim_sizes(study(0.1, samples=1000).design) == (250, 500, 1000)
     assert stopping.interim_sizes(study(0.1, samples=20).design) == (20,)
-    assert stopping.confidence(study(0.1, samples=1000).design) == pytest.approx(1 - 0.05 / 6)
+    replicated = study(0.1, samples=250, method="halton", replicates=8).design
+    assert stopping.interim_sizes(replicated) == (32, 63, 125, 250)
+    design = study(0.1, samples=1000).design
+    assert stopping.confidence(design) == interim_levels.of_independent_rows(3)
+    design = study(0.1, samples=1000, method="halton", replicates=8).design
+    assert stopping.confidence(design) == interim_levels.of_replicates(8, 6)
 
 
 def look_at(ds, **until):
@@ -58,4 +64,4 @@ def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
 def test_it_is_said_at_which_look_a_run_knew_enough(tmp_path):
     ds = runner.run(study(10.0, samples=500), tmp_path / "out.nc", workers=0)
     (note,) = summarised(ds)["notes"]
-    assert "was reached at interim estimate 1 of at most 5" in note
+    assert "was reached at interim estimate 1 of at most 2" in note

@@ -10,6 +10,7 @@ from uq.analysis.lifetime import survival
 from uq.analysis.pairing import Kinship, kinship
 from uq.analysis.sampled_inputs import drawn_inputs, laws_and_values
 from uq.analysis.statistics.between_regimes import between_share
+from uq.analysis.stopping import interim_estimate
 from uq.clusters import Clusters, dealt, linearised_means
 from uq.errors import InputError
 from uq.indices.sensitivities import ONE_ROW, sensitivities
@@ -18,7 +19,6 @@ from uq.moments import sd_interval
 from uq.order_statistics import quantile_interval
 from uq.rows.elements import are_independent, replicates_of
 from uq.rows.nesting import one_of_each_sample
-from uq.rows.stopping import interim_estimate
 
 SHARED_ALONE = {"x1": "shared"}
 

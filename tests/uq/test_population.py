@@ -156,6 +156,9 @@ def test_what_cannot_be_integrated_is_not_and_says_why():
     assert rows.element.law is None and "censored, which gives bounds only" in why
     rows, why = populated(computed(scaled_study(WHOLE | {"z": {"equals": "a"}})))
     assert rows.element.law is None and "z has the same value" in why
+    leader = {"z": {"distribution": "uniform", "lower": 0.5, "upper": 2.0}, "a": {"equals": "z"}}
+    rows, why = populated(computed(scaled_study(leader)))
+    assert rows.element.law is None and why == "z not integrated: it does more than scale lives"
     beside = WHOLE | {"b": lognormal(0.01, times="a")}
     rows, why = populated(computed(scaled_study(beside)))
     assert rows.element.law.inputs == ("b",) and "b is a multiple of it" in why

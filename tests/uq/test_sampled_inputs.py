@@ -54,5 +54,7 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
     bell = figure.axes[0].patches[1].get_data()
     law = np.diff(stats.norm(0.5, 0.05).cdf(bell.edges))
     np.testing.assert_allclose(bell.values, law, rtol=1e-6)
+    (alone,) = plots.inputs(computed(study_of(tables(entries, "sobol", 64))), names=["x2"]).axes
+    assert alone.get_xlabel() == "Independent input: factor on x1"
     with pytest.raises(InputError, match="'morris' design do not follow the laws"):
         plots.inputs(computed(study_of(tables({"x1": BELL}, "morris", 4))))

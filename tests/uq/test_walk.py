@@ -18,6 +18,7 @@ from computed import (
 )
 
 import uq
+from uq.analysis import stopping
 from uq.analysis.as_json import twin_json
 from uq.analysis.convergence import enough, running_estimates
 from uq.analysis.twin import with_twin
@@ -26,7 +27,6 @@ from uq.errors import InputError
 from uq.exploring.rare_events import ESTIMATORS as RARE
 from uq.exploring.rare_events import rare_event
 from uq.methods.registry import fed_by
-from uq.rows import stopping
 from uq.rows.elements import study_file_of
 
 DRAWN = [name for name, design in DESIGNS.items() if getattr(design, "draw", None) is not None]

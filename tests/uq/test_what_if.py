@@ -15,7 +15,8 @@ from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
 from uq.population.functionals import Population
-from uq.population.smoothing import largest_shape, smoothed
+from uq.population.means import weighted_moments
+from uq.population.smoothing import largest_shape, smoothed, tail_shape
 from uq.rows.element import Element
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
@@ -169,6 +170,66 @@ def test_where_no_row_can_be_is_refused(result):
         what_if(result, {"uncertain.a.times": "z"})
     with pytest.raises(InputError, match="must be uncertain.NAME.KEY=VALUE"):
         read_changes(["uncertain.z.sd"])
+    with pytest.raises(InputError, match="uncertain.z.sd is changed twice"):
+        read_changes(["uncertain.z.sd=1.0", "uncertain.z.sd = 2.0"])
+    with pytest.raises(InputError, match=r"this study has no \[dependence\]"):
+        what_if(result, {"dependence.rank_correlation": [[1.0, 0.1], [0.1, 1.0]]})
+    screened = computed(study(samples=8, design={"method": "morris"}))
+    with pytest.raises(InputError, match="rows of a 'morris' design do not follow the laws"):
+        what_if(screened, {"uncertain.z.sd": 0.9})
+
+
+def test_a_scale_may_leave_the_values_of_the_rows():
+    """It is integrated; outputs that depend on it otherwise are left out."""
+    rows = computed(
+        study({"a": {"distribution": "uniform", "lower": 1.0, "upper": 2.0}, "z": NORMAL})
+    )
+    found = answer(rows, {"uncertain.a.upper": 4.0})
+    life = what_if_json(found)["outputs"]["life"]
+    least = 0.8 * np.exp(-rows["z"].values / 2)
+    below = ((least - 1) / 3).clip(0, 1).mean()
+    assert life["thresholds"]["0.8"]["below"]["value"] == pytest.approx(below)
+    assert life["mean"] is None and "no row is there" in life["reasons"]["mean"]
+    assert any(note.startswith("y: uncertain.a: has 0.67") for note in found.summary.notes)
+
+
+def test_a_law_that_is_replaced_keeps_its_level():
+    shared = {"a": lognormal(0.5), "z": NORMAL | {"level": "shared"}}
+    rows = computed(study(shared, samples=200, design={"units": 2}))
+    changes = ({"uncertain.z": NORMAL | {"sd": 0.9}}, {"uncertain.z.sd": 0.9})
+    first, second = (what_if(rows, one) for one in changes)
+    assert first.equals(second)
+
+
+def test_listed_values_are_no_tail():
+    """A few values that many rows have are no law of Pareto; rare ones are not trusted."""
+    few = np.repeat([1e-3, 0.01, 0.02, 0.05, 0.4, 1.0], 150) * (1 + 1e-13 * np.arange(900))
+    assert tail_shape(few) == -np.inf
+    assert tail_shape(np.append(few, [2.0, 3.0, 8.0])) > 0.7
+
+
+def test_the_interval_of_a_weighted_mean_holds_the_truth():
+    """Weights times values are skewed, and samples without an outlier scatter too little."""
+    rng, held = np.random.default_rng(4), []
+    for _ in range(400):
+        z, rest = rng.standard_normal((2, 100))
+        by = smoothed(0.6 * z)
+        mean = weighted_moments(np.exp(0.5 * z + 0.25 * rest), by.weights)[0]
+        held += [mean.low < np.exp(0.3 + (0.5**2 + 0.25**2) / 2) < mean.high] * (not mean.reason)
+    assert len(held) > 200 and 0.9 < np.mean(held) < 0.98
+
+
+def test_a_probability_that_is_refused_says_why():
+    rows = computed(study({"z": NORMAL}, samples=300))
+    found = what_if_json(answer(rows, {"uncertain.z.truncate": [-0.45, 3.0]}))["outputs"]["life"]
+    one = found["thresholds"]["0.8"]
+    assert one["below"]["value"] is None and "fewer than 5 samples have weight" in one["reason"]
+
+
+def test_rows_that_all_failed_say_nothing():
+    rows = computed(study(samples=20, settings={"fail_above": -99.0}))
+    found = what_if_json(answer(rows, {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
+    assert found["failed"] == 20 and found["thresholds"]["0.8"]["below"]["value"] is None
 
 
 def test_smoothed_weights_follow_the_published_algorithm():

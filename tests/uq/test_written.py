@@ -9,6 +9,7 @@ from computed import asking, linear, study_of, summarised, with_output
 
 from uq.errors import InputError
 from uq.store.files import write_result
+from uq.wording import threshold
 from uq.written import misfit, read_quantity, read_threshold
 
 
@@ -78,6 +79,23 @@ def wear(thresholds):
         "analysis": {"thresholds": {"life": thresholds}},
     }
     return study_of(tables)
+
+
+@pytest.mark.parametrize(
+    ("value", "units", "text"),
+    [
+        (1000000.0005, "1", "1000000.0005"),
+        (1e6, "1", "1000000"),
+        (86400.0, "s", "24 hours"),
+        (1e6, "s", "1000000 s"),
+        (86400.5, "s", "86400.5 s"),
+        (0.4, "rad", "0.4 rad"),
+        (np.pi / 15, "rad", "12°"),
+        (0.00025, "m", "250 µm"),
+    ],
+)
+def test_two_thresholds_never_read_alike(value, units, text):
+    assert threshold(value, units) == text
 
 
 def test_a_threshold_gives_the_same_numbers_however_it_is_written():

@@ -14,6 +14,7 @@ from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import split_name
 from uq.methods.registry import METHODS, piloted_by
+from uq.rows.element import is_whole, whole_name
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 from uq.rows.nesting import first_samples
 from uq.rows.variables import error_name
@@ -55,7 +56,10 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     [16, 32, 63, 125, 250, 500, 1000]
     """
     refuse_weights(ds, "running estimates")
-    names = None if output is None else {element.name for element in named_elements(ds, output)}
+    names = None
+    if output is not None:
+        whole = output if is_whole(output) else whole_name(output)
+        names = {whole, *(element.name for element in named_elements(ds, output))}
     # Those of all rows: of the first ones alone a life may have another target.
     targets = list(sensitivities(ds, method).targets) if (method := method_shown(ds)) else []
     lines = [

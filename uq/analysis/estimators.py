@@ -10,7 +10,7 @@ import xarray as xr
 from uq import order_statistics
 from uq.contract import Status
 from uq.population.functionals import Population
-from uq.rows.elements import Element, Floats, Mask, flags
+from uq.rows.elements import Element, Floats, Mask, category_codes, flags
 
 
 class Sample(NamedTuple):
@@ -31,12 +31,15 @@ def whole(element: Element) -> Sample:
 
 
 def in_categories(rows: xr.Dataset, name: str) -> dict[str, Sample]:
-    """Return which rows are in each category of an output, of those that did not fail without."""
-    codes = rows[name].values
+    """Return which rows are in each category, of those that did not fail without.
+
+    The name is that of an output, or of one element of it.
+    """
+    codes = category_codes(rows, name)[name]
     kept = (codes >= 0) | (rows["status"].values == Status.OK)
     return {
         label: Sample(kept, (codes == code).astype(float))
-        for code, label in flags(rows[name])
+        for code, label in flags(rows[name.partition("[")[0]])
         if code >= 0
     }
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from uq.analysis.fleet_numbers import Banded, FleetNumbers
+from uq.analysis.summary import why_no_intervals
 from uq.designs.levels import SHARED
 from uq.errors import InputError, choices
 from uq.population.fleets import Units, units_of
@@ -20,7 +21,7 @@ from uq.rows.elements import (
     shown_outputs,
     why_no_statistics,
 )
-from uq.rows.nesting import levels_that_vary, size_in_words
+from uq.rows.nesting import levels_that_vary, samples_have, size_in_words
 from uq.rows.variables import outputs_of
 from uq.rows.weights import refuse_weights
 
@@ -164,7 +165,7 @@ def fleet_of(
     plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
-    refuse_weights(ds, "fleets")
+    refuse_weights(ds, "fleets", but_equal=True)
     if why := why_no_statistics(ds):
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:
@@ -191,10 +192,10 @@ def fleet_of(
     enough = int(of.first_of.element.present.sum())
     notes = []
     if enough < place.samples:
-        notes.append(f"{place.samples - enough} samples have too few units with a life")
+        notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
-    notes += filter(None, [units.why_not_more])
+    notes += filter(None, [units.why_not_more, why_no_intervals(ds)])
     assumed = {one.assumes for both in of.ends for one in both if one.assumes}
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)

@@ -28,7 +28,10 @@ def _plain(one: Banded) -> dict[str, Any]:
     entry = json_form.whole(one.estimate) | json_form.failed(one.failed)
     for name, end in (("band_low", one.low), ("band_high", one.high)):
         entry[name] = json_form.number(end.value)
-        entry |= {f"{name}_{key}": value for key, value in json_form.ends(end).items()}
+        entry |= json_form.flag(f"{name}_", end, "value")
+        for which in ("low", "high"):
+            entry[f"{name}_{which}"] = json_form.number(getattr(end, which))
+            entry |= json_form.flag(f"{name}_{which}_", end, which)
         if end.reason:
             entry[f"{name}_reason"] = end.reason
         if end.assumes:

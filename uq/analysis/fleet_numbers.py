@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import exp, expm1, isfinite, isnan, log, log1p
+from math import exp, expm1, inf, isnan, log, log1p, nan
 
 import numpy as np
 from scipy import special
@@ -78,7 +78,7 @@ class FleetNumbers:
         value = found[0].value
 
         def band(share: float) -> Estimate:
-            return self._time_of(share, reached, value) if isfinite(value) else Estimate()
+            return self._time_of(share, reached, value)
 
         return self._banded(found, band, is_life=True)
 
@@ -161,7 +161,9 @@ class FleetNumbers:
             def excess(z: float) -> float:
                 return float(getattr(exceeding(float(special.ndtr(z))), name)) - (1 - share)
 
-            if excess(-_FARTHEST) <= 0:
+            if isnan(least := excess(-_FARTHEST)):
+                return nan
+            if least <= 0:
                 return 0.0
             if excess(_FARTHEST) >= 0:
                 return 1.0
@@ -172,6 +174,8 @@ class FleetNumbers:
     def _time_of(self, share: float, probability: float, near: float) -> Estimate:
         """Return the time by which a share of worlds has a larger probability of a unit's end."""
         seen = [Estimate()]
+        start = log(near) if 0 < near < inf else 0.0
+        never = inf if self._units.element.never.any() else nan
 
         def at(name: str) -> float:
             def excess(x: float) -> float:
@@ -181,12 +185,13 @@ class FleetNumbers:
                 return found - share
 
             try:
-                start = log(near)
                 side = 1.0 if excess(start) < 0 else -1.0
                 there = first_step(start, 0.1 * side, lambda x: (excess(x) >= 0) == (side > 0))
-                return np.nan if there is None else exp(root(excess, there, _SETTLED))
+                if there is None:
+                    return never if side > 0 else 0.0 if name == "value" else nan
+                return exp(root(excess, there, _SETTLED))
             except _UnknownError:
-                return np.nan
+                return nan
 
         found = at("value"), at("high"), at("low")
         reason, assumes = (

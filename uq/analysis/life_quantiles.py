@@ -7,7 +7,7 @@ import numpy as np
 from uq import order_statistics
 from uq.analysis.lifetime import curve
 from uq.estimate import NOTHING, Estimate
-from uq.intervals import UNKNOWN, Ends, Replicates, replicates_of_some
+from uq.intervals import CONFIDENCE, UNKNOWN, Ends, Replicates, replicates_of_some
 from uq.population.functionals import Population
 from uq.rows.elements import Element, Floats
 
@@ -19,7 +19,10 @@ ASSUMES = "that censoring is non-informative"
 
 
 def life_quantiles(
-    element: Element, asked: Mapping[str, float], replicate: Replicates
+    element: Element,
+    asked: Mapping[str, float],
+    replicate: Replicates,
+    confidence: float = CONFIDENCE,
 ) -> dict[str, Estimate]:
     """Estimate times by which a share of the rows has ended.
 
@@ -30,6 +33,7 @@ def life_quantiles(
     asked : dict of str to float
         Name -> share.
     replicate : ndarray of int, shape (n,), or None
+    confidence : float, optional
 
     Returns
     -------
@@ -45,14 +49,14 @@ def life_quantiles(
        Biometrics 38, 29-41 (1982).
     """
     if not element.is_plain:
-        of = Population(element, replicate)
+        of = Population(element, replicate, confidence)
         return {name: of.quantile(p) for name, p in asked.items()}
     within = replicates_of_some(replicate, element.present)
-    found = {name: quantile_estimate(element, p, within) for name, p in asked.items()}
+    found = {name: quantile_estimate(element, p, within, confidence) for name, p in asked.items()}
     open_ones = [name for name, one in found.items() if "value" in one.beyond]
     if open_ones:
         time = _times(element)
-        seen = curve(element, time, replicate)
+        seen = curve(element, time, replicate, confidence)
         first_end = _first(seen.survival < 1, time)
         for name in open_ones:
             value, low, high = (_first(one <= 1 - asked[name], time) for one in seen)
@@ -111,7 +115,9 @@ def _explained(share: Estimate, seen: int) -> Estimate:
     return Estimate(*share.numbers, reason, ASSUMES)
 
 
-def quantile_estimate(element: Element, probability: float, replicate: Replicates) -> Estimate:
+def quantile_estimate(
+    element: Element, probability: float, replicate: Replicates, confidence: float = CONFIDENCE
+) -> Estimate:
     """Estimate a quantile that is valid whenever the censored rows end.
 
     Parameters
@@ -121,6 +127,7 @@ def quantile_estimate(element: Element, probability: float, replicate: Replicate
     probability : float
     replicate : ndarray of int, shape (present,), or None
         Of the rows that have a value.
+    confidence : float, optional
 
     Returns
     -------
@@ -129,7 +136,7 @@ def quantile_estimate(element: Element, probability: float, replicate: Replicate
     """
 
     def estimate(values: Floats) -> tuple[float, Ends]:
-        ends = order_statistics.quantile_interval(values, probability, replicate)
+        ends = order_statistics.quantile_interval(values, probability, replicate, confidence)
         return order_statistics.quantile(values, probability), ends
 
     value, early = estimate(element.at_least)

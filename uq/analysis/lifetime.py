@@ -183,10 +183,12 @@ def _variables(
     return found
 
 
-def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
+def curve(
+    element: Element, time: Floats, replicate: Replicates, confidence: float = CONFIDENCE
+) -> Curve:
     """Return the estimate of `survival` for one element, at times [s] that ascend."""
     if not element.is_plain:
-        rows = Population(element, replicate)
+        rows = Population(element, replicate, confidence)
         return Curve(*np.array([rows.outliving(at).numbers for at in time]).reshape(-1, 3).T)
     values, censored = element.at_least, element.censored[element.present]
     if len(values) == 0:
@@ -194,7 +196,7 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
     known_at_once = element.declared.never_known_at_once
     found = outliving(values, censored, time, known_at_once=known_at_once)
     if replicate is None:
-        return Curve(found.share, *_greenwood(found))
+        return Curve(found.share, *_greenwood(found, confidence))
     of = dealt(replicate[element.present])
     estimates = [
         outliving(values[of == r], censored[of == r], time, known_at_once=known_at_once).share
@@ -204,7 +206,7 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
     at_risk = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
     samples = replicate.samples if isinstance(replicate, Clusters) else None
     interval = scattered_share_interval(
-        found.share, np.array(estimates), rows=at_risk, samples=samples
+        found.share, np.array(estimates), None, confidence, rows=at_risk, samples=samples
     )
     return Curve(found.share, *interval)
 
@@ -233,7 +235,7 @@ def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
 _FEW_ENDS = 4
 
 
-def _greenwood(estimate: Outliving) -> Ends:
+def _greenwood(estimate: Outliving, confidence: float) -> Ends:
     """Return the interval that is symmetric about the logarithm of -log(share).
 
     Where few rows have ended, or are left, it is replaced by the exact interval of a share known as
@@ -242,11 +244,11 @@ def _greenwood(estimate: Outliving) -> Ends:
     share, deviation = estimate.share, np.sqrt(estimate.variance)
     with np.errstate(divide="ignore", invalid="ignore"):
         middle = np.log(-np.log(share))
-        half = normal(upper_probability()) * deviation / (share * -np.log(share))
+        half = normal(upper_probability(confidence)) * deviation / (share * -np.log(share))
         low, high = (np.exp(-np.exp(middle + side * half)) for side in (1, -1))
         worth = share * (1 - share) / estimate.variance
     known, few = (share > 0) & (share < 1), are_few(share, worth, _FEW_ENDS)
-    exact = exact_interval(share, worth, CONFIDENCE)
+    exact = exact_interval(share, worth, confidence)
     ends = (np.where(few, *pair) for pair in zip(exact, (low, high), strict=True))
     low, high = (np.where(known, end, np.nan) for end in ends)
     return low, high

@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
+from uq.analysis import stopping
 from uq.analysis.estimators import in_categories, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
@@ -21,11 +22,11 @@ from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
 from uq.population.smoothing import Smoothed, weights_of
-from uq.rows import stopping
 from uq.rows.elements import (
     Element,
     Mask,
     analysis_of,
+    category_codes,
     flags,
     has_independent_samples,
     independent_rows,
@@ -37,7 +38,7 @@ from uq.rows.elements import (
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
 from uq.rows.variables import outputs_of
-from uq.rows.weights import has_weights, refuse_weights
+from uq.rows.weights import ONLY_INSPECTED, has_weights, refuse_weights
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
@@ -119,8 +120,8 @@ class Summary:
     status : dict of str to int
         Number of rows with each status, of all rows.
     shares : dict of str to dict
-        Of each category that is shown, such as the period, and of the regime in any case: label ->
-        `Statistic` of its share, with ``count`` among its facts.
+        Of each element of a category that is shown, such as the period, and of the regime in any
+        case: label -> `Statistic` of its share, with ``count`` among its facts.
     outputs : dict of str to Described
         By name of the element.
     most_failed : int
@@ -229,18 +230,22 @@ def status_counts(ds: xr.Dataset) -> dict[str, int]:
 
 
 def _categories(ds: xr.Dataset, shown: Collection[str]) -> list[str]:
-    """Return the categories without dimensions that are shown, and the regime."""
+    """Return the elements of the categories that are shown, and the regime."""
     return [
-        name
+        element
         for name, output in outputs_of(ds).items()
-        if output.is_category and not output.dims and (name in shown or name == REGIME)
+        if output.is_category and (name in shown or name == REGIME)
+        for element in category_codes(ds, name)
     ]
 
 
 def category_shares(
     rows: xr.Dataset, name: str, weights: Smoothed | None = None
 ) -> dict[str, Statistic]:
-    """Return the share of each label of a category among the independent rows that did not fail."""
+    """Return the share of each label of a category among the independent rows that did not fail.
+
+    The name is that of an output, or of one element of it.
+    """
     replicate = replicates_of(rows)
 
     def estimate(hits: Mask, kept: Mask) -> Estimate:
@@ -278,7 +283,13 @@ def _notes(ds: xr.Dataset) -> list[str]:
         place = nesting_of(ds)
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
-    if not has_independent_samples(ds) and ds.attrs["replicates"] == 1:
-        reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
-        notes.append(reason.format(design=ds.attrs["design"]))
+    notes += filter(None, [ds.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(ds)])
     return notes
+
+
+def why_no_intervals(ds: xr.Dataset) -> str:
+    """Return why the rows of a result support no intervals, or ""."""
+    if has_independent_samples(ds) or ds.attrs["replicates"] > 1:
+        return ""
+    reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
+    return reason.format(design=ds.attrs["design"])

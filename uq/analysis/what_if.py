@@ -21,7 +21,13 @@ from uq.literals import key, read_toml, shown, toml
 from uq.population.densities import changed_laws, depends_otherwise
 from uq.population.reweighting import Weighting
 from uq.population.scaling import Inputs, inputs_of
-from uq.rows.elements import analysis_of, independent_rows, replicates_of, shown_outputs
+from uq.rows.elements import (
+    analysis_of,
+    independent_rows,
+    replicates_of,
+    shown_outputs,
+    why_no_statistics,
+)
 from uq.rows.weights import refuse_weights
 from uq.study.file import StudyFile
 from uq.study.reading import read_study_text
@@ -68,7 +74,8 @@ def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
     Raises
     ------
     InputError
-        When the changes make no study, or one with values where the result has no rows.
+        When the changes make no study, or one with values where the result has no rows, and these
+        inputs do more than scale lives.
     RunError
         When the rows are too few for these laws; says how many to add.
 
@@ -86,15 +93,18 @@ def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
 def answer(ds: xr.Dataset, changes: Mapping[str, Any]) -> WhatIf:
     """Return what `what_if` tabulates."""
     refuse_weights(ds, "what if")
+    if why := why_no_statistics(ds):
+        raise InputError(f"what if: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)
     old, new = inputs_of(rows), _changed(rows, changes)
     _refuse(ds, old, new)
     weighting = Weighting(rows, old, new, replicates_of(rows))
     summary = summarise(ds, weighting=weighting)
     if not weighting.used and weighting.refused:
-        raise RunError(next(iter(weighting.refused.values())))
-    for name, why in weighting.refused.items():
-        summary.notes.append(f"{name}: {why}")
+        first = next(iter(weighting.refused.values()))
+        raise (InputError if first.impossible else RunError)(first.refusal)
+    for name, one in weighting.refused.items():
+        summary.notes.append(f"{name}: {one.refusal}")
     used = weighting.used.values()
     return WhatIf(
         summary,
@@ -114,10 +124,13 @@ def read_changes(texts: Sequence[str]) -> dict[str, Any]:
     found = {}
     for text in texts:
         name, equals, value = text.partition("=")
+        name = name.strip()
+        if name in found:
+            raise InputError(f"--set {shown(text)}: {name} is changed twice")
         try:
             if not (name and equals):
                 raise ValueError
-            found[name.strip()] = read_toml(f"x = {value}")["x"]
+            found[name] = read_toml(f"x = {value}")["x"]
         except (ValueError, OverflowError, RecursionError):
             raise InputError(
                 f"--set {shown(text)}: must be uncertain.NAME.KEY=VALUE, the value as in TOML"
@@ -141,7 +154,11 @@ def _changed(rows: xr.Dataset, changes: Mapping[str, Any]) -> Inputs:
 
 def _put(data: dict[str, Any], place: str, value: Any) -> None:
     table, _, rest = place.partition(".")
-    if (table, rest) == ("dependence", "rank_correlation") and table in data:
+    if (table, rest) == ("dependence", "rank_correlation"):
+        if table not in data:
+            raise InputError(
+                "what if: this study has no [dependence] whose correlations can change"
+            )
         data[table][rest] = value
         return
     name, _, argument = rest.partition(".")
@@ -153,10 +170,10 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         )
     if name not in known:
         raise InputError(f"what if: '{name}' is not uncertain in this study{nearest(name, known)}")
+    kept = {k: v for k, v in known[name].items() if k in ("times", "level", "source")}
     if not argument:
-        known[name] = value
+        known[name] = kept | value if isinstance(value, dict) else value
     elif argument == "distribution":
-        kept = {k: v for k, v in known[name].items() if k in ("times", "level", "source")}
         known[name] = kept | {argument: value}
     else:
         known[name][argument] = value

@@ -35,7 +35,8 @@ def fleet(
     _show([(f"quantile {p!r}", one) for p, one in found.first.items()], unit.size)
     for time, (failed, at_most) in found.by.items():
         heading(f"\nby {threshold(time, 's')}")
-        kept = f"none has {found.ended}" if allow == 0 else f"at most {allow} have {found.ended}"
+        kept = f"at most {allow} {'has' if allow == 1 else 'have'} {found.ended}"
+        kept = kept if allow else f"none has {found.ended}"
         _show([(f"have {found.ended}", failed), (f"P({kept})", at_most)])
     for text in found.sentences:
         note(text)

@@ -29,7 +29,7 @@ def shown(quiet: bool) -> Iterator[Report]:
 def say_compiling() -> None:
     """Report once, on a terminal only, that a model is being compiled."""
     if sys.stderr.isatty():
-        _print(_COMPILING)
+        say(_COMPILING)
 
 
 class Pace:
@@ -48,7 +48,7 @@ class Pace:
 
 def _plain() -> Iterator[Report]:
     pace, shown_at = Pace(), time.monotonic()
-    once = cache(_print)
+    once = cache(say)
 
     def show(progress: Progress) -> None:
         nonlocal shown_at
@@ -65,12 +65,13 @@ def _plain() -> Iterator[Report]:
             for more in details(progress):
                 if len(line) + len(more) + 2 <= _PLAIN_WIDTH:
                     line += f"; {more}"
-            _print(line)
+            say(line)
 
     yield show
 
 
-def _print(line: str) -> None:
+def say(line: str) -> None:
+    """Tell the user something on standard error."""
     print(line, file=sys.stderr, flush=True)
 
 

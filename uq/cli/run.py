@@ -25,7 +25,7 @@ from uq.upkeep.amending import study_of
 
 def loaded(path: str, model: str | None, samples: int | None) -> Study:
     """Return a study, with another number of samples if one is given."""
-    study = load_study(path, model)
+    study = load_study(path, model, progress.say)
     return study if samples is None else study.with_samples(samples)
 
 

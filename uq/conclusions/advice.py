@@ -6,13 +6,21 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Quantity
+from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.quantities import quantities
 from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, Unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened
-from uq.conclusions.words import called_together, grouped, rows_in_words
+from uq.conclusions.words import (
+    called,
+    called_together,
+    grouped,
+    rows_in_words,
+    share_text,
+    twin_of,
+)
+from uq.keys import key_of
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested
 from uq.rows.results import failed
@@ -39,10 +47,10 @@ def advise(
     found = [
         *_mend(findings),
         *_measure(findings, answered),
-        *tighten(findings, answered),
+        *([*tighten(findings, answered)] or _keep(answered)),
         *_add_rows(findings, answered),
     ]
-    if answered and not any(one.rule != "tighten" for one in found):
+    if answered and not any(one.rule not in ("tighten", "keep") for one in found):
         nothing = "Nothing else" if found else "Nothing"
         settled = "what the study asks is settled, and no law that matters is an assumption"
         found.append(Advice("nothing", f"{nothing}: {settled}."))
@@ -61,18 +69,18 @@ def _mend(findings: Findings) -> Iterator[Advice]:
         )
 
 
-def leading(answered: Sequence[Quantity]) -> tuple[Contribution | None, str]:
+def _leading(answered: Sequence[Quantity]) -> tuple[Contribution | None, Event | None]:
     """Return what contributes most to what the study is about, and the event that it decides."""
     for quantity in answered[:1]:
-        of_events = ((event.ranking, event.said) for event in quantity.events)
-        for ranking, said in (*of_events, (quantity.ranking, "")):
+        of_events = ((event.ranking, event) for event in quantity.events)
+        for ranking, event in (*of_events, (quantity.ranking, None)):
             if ranking is not None and ranking.leads:
-                return ranking.leader, said
-    return None, ""
+                return ranking.leader, event
+    return None, None
 
 
 def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    leader, said = leading(answered)
+    leader, event = _leading(answered)
     if leader is None:
         return
     ds = findings.ds
@@ -80,7 +88,7 @@ def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
     if assumed:
         one = len(assumed) == 1
         words = called_together(assumed)
-        to_what = f" to how many {said}" if said else ""
+        to_what = f" to how many {event.said}" if event else ""
         yield Advice(
             "measure",
             f"Measure {words} first: {'it matters' if one else 'they matter'} most{to_what}, and"
@@ -90,20 +98,41 @@ def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
 
 
 def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    leader, _ = leading(answered)
+    leader, _ = _leading(answered)
     if leader is None:
         return
-    found = list(tightened(findings.ds, answered[0], leader.inputs))
-    is_life = answered[0].promise is not None and answered[0].promise.is_life
-    known = [one for one in found if not one.reason and (one.lengthens or not is_life)]
-    known = [one for one in known if one.is_seen]
+    twins = tuple(one for one in leader.inputs if twin_of(one) == twin_of(leader.inputs[0]))
+    for inputs in dict.fromkeys((leader.inputs, twins, leader.inputs[:1])):
+        found = list(tightened(findings.ds, answered[0], inputs))
+        if any(not one.reason for one in found):  # the rows show what these would change
+            break
+    known = [one for one in found if not one.reason and one.helps and one.is_seen]
     unknown = [one for one in found if one.reason]
     for one in (known or unknown)[:1]:
-        yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
+        yield Advice("tighten", one.sentence, one.inputs, tightened=one, key=one.key)
+
+
+def _keep(answered: Sequence[Quantity]) -> Iterator[Advice]:
+    """Yield where to keep the input that decides an event, where the event is settled to differ."""
+    _, event = _leading(answered)
+    if event is None or event.curve is None:
+        return
+    more = answered[0].wants_more(event)
+    place = event.curve.most if more else event.curve.least
+    there, overall = event.curve.shares[place], event.share
+    if there.low > overall.high if more else there.high < overall.low:
+        path = ("quantities", answered[0].name, "events", event.name, "decided_by")
+        yield Advice(
+            "keep",
+            f"So that {'more' if more else 'fewer'} {event.said}, keep {called(event.over)}"
+            f" {event.part(place)}: {share_text(there)} do there.",
+            (event.over,),
+            key=key_of(*path, verb="answer"),
+        )
 
 
 def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    leader, _ = leading(answered)
+    leader, _ = _leading(answered)
     changes = None if leader is None else changes_of(findings.ds, answered[0], leader.inputs)
     if leader is None or not changes:
         return

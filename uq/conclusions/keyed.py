@@ -83,8 +83,8 @@ def effect(one: Quantity, number: int, of: Contribution) -> Markup:
 
 def advice(one: Advice) -> Markup:
     """Return one thing to do."""
-    if one.tightened is not None and one.tightened.key:
-        return keyed(one.text, one.tightened.key)
+    if one.key:
+        return keyed(one.text, one.key)
     if one.rows is not None:
         return keyed(one.text, _answer("advice", one.rule, "rows"))
     return escape(plain(one.text))

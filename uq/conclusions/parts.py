@@ -82,14 +82,14 @@ class Event:
         if self.curve is not None:
             places = [self.curve.least, self.curve.most]
             first, last = (
-                f"{percent(self.curve.shares[i].value)} where it is {self._part(i)}" for i in places
+                f"{percent(self.curve.shares[i].value)} where it is {self.part(i)}" for i in places
             )
             over = f" over {called_together([self.over])}" if len(leader.inputs) > 1 else ""
             text += f":{over} from {first} to {last}"
         return sentence(text)
 
-    def _part(self, i: int) -> str:
-        """Return a part of the input in words."""
+    def part(self, i: int) -> str:
+        """Return a part of the input that the curve is over, in words."""
         assert self.curve is not None
         low, high = (float(end) for end in self.curve.edges[i : i + 2])
         if i == 0:
@@ -120,6 +120,24 @@ class Quantity:
     range: Range | None = None
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
+
+    @property
+    def is_life(self) -> bool:
+        """Whether it is a life."""
+        return self.promise is not None and self.promise.is_life
+
+    @property
+    def is_success(self) -> bool:
+        """Whether it is a life that ends with a success."""
+        return self.promise is not None and self.promise.ends == "succeed"
+
+    def wants_more(self, event: Event) -> bool:
+        """Whether more of an event is better.
+
+        Of successes; of lives that end, fewer. A study does not state which side of the threshold
+        of a value is good: the rarer one is taken for what is to be avoided.
+        """
+        return self.is_success if self.is_life else event.share.value >= 0.5
 
     @property
     def ranking_sentence(self) -> str:

@@ -24,6 +24,8 @@ class Tightened:
     effective_rows : float
     key : str
         Of `after`, for ``uq trace``; "" where it is not known.
+    wants_more : bool or None
+        Whether a larger number is better; None where that is not known.
     """
 
     inputs: tuple[str, ...]
@@ -35,6 +37,7 @@ class Tightened:
     reason: str = ""
     effective_rows: float = float("nan")
     key: str = ""
+    wants_more: bool | None = None
 
     @property
     def is_seen(self) -> bool:
@@ -43,9 +46,9 @@ class Tightened:
         return text(self.before.value) != text(self.after.value)
 
     @property
-    def lengthens(self) -> bool:
-        """Whether lives are longer: fewer have ended, or a quantile is later."""
-        return (self.after.value < self.before.value) == self.is_share
+    def helps(self) -> bool:
+        """Whether the number moves to its better side, or none is known to be better."""
+        return self.wants_more in (None, self.after.value > self.before.value)
 
     @property
     def sentence(self) -> str:
@@ -69,13 +72,15 @@ class Advice:
 
     Attributes
     ----------
-    rule : {"rows", "measure", "tighten", "nothing", "failed"}
+    rule : {"rows", "measure", "tighten", "keep", "nothing", "failed"}
     text : str
         The sentence.
     inputs : tuple of str
     rows : int or None
         To be added to, or reached, where more rows help.
     tightened : Tightened or None
+    key : str
+        Of its number, for ``uq trace``; "" if it has none.
     """
 
     rule: str
@@ -83,3 +88,4 @@ class Advice:
     inputs: tuple[str, ...] = ()
     rows: int | None = None
     tightened: Tightened | None = None
+    key: str = ""

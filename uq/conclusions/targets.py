@@ -3,6 +3,7 @@
 import xarray as xr
 
 from uq.conclusions.words import element_called
+from uq.greek import readable
 from uq.indices.targets import split_name
 from uq.rows.elements import analysis_of, named_elements
 from uq.rows.variables import is_category, outputs_of
@@ -36,11 +37,13 @@ class Target:
         if is_category(ds, output):
             self.meaning = str(ds[output].attrs["long_name"])
         elif output in (known := outputs_of(ds)):
-            (element,) = named_elements(ds, inside)
+            element, *others = named_elements(ds, inside)
             declared = known[output]
             self._units = declared.unit
             self._compared = compared(inside, declared.is_angle)
             self.meaning = element_called(ds, element)
+            if others:
+                self.meaning = f"{readable(element.meaning)}, all {1 + len(others)} elements"
             self.units = "1" if form else declared.unit
             self.name = self.label(name)
 

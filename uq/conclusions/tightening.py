@@ -79,7 +79,7 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
         yield Tightened(names, "", reason=f"the rows cannot show what it would change ({refused})")
         return
     described = found.summary.outputs.get(quantity.name)
-    for key, what, before, unit in _promised(quantity):
+    for key, what, before, unit, more in _promised(quantity):
         one = described.find(*key) if described is not None else None
         if one is None:
             yield Tightened(names, what, reason="the rows cannot show what it would change")
@@ -93,19 +93,26 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
             after, rows = one.best.estimate, found.effective_rows
             given = {name: repr(value) for name, value in changes.items()}
             path = key_of("outputs", quantity.name, *key, verb="what-if", options=given)
-            yield Tightened(names, what, before, after, is_share, unit, "", rows, path)
+            yield Tightened(names, what, before, after, is_share, unit, "", rows, path, more)
 
 
-def _promised(quantity: Quantity) -> Iterator[tuple[tuple[str, ...], str, Estimate, Unit]]:
-    """Yield the numbers that matter: key, words, the number as it is, and its unit."""
+def _promised(
+    quantity: Quantity,
+) -> Iterator[tuple[tuple[str, ...], str, Estimate, Unit, bool | None]]:
+    """Yield the numbers that matter: key, words, number, unit, and whether more is better."""
     for event in quantity.events:
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
-        yield key, f"the share of rows that {event.said}", event.share, Unit()
+        words = f"the share of rows that {event.said}"
+        yield key, words, event.share, Unit(), quantity.wants_more(event)
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
+        return
+    if quantity.events and not quantity.is_life:  # which quantile matters is not known
         return
     ends = (round(1 - promise.coverage, 12), promise.coverage)
     for p, before in zip(ends, promise.quantiles, strict=True):
         if isfinite(before.value):
-            yield ("quantiles", repr(p)), f"the {100 * p:g} % quantile", before, promise.unit
+            words, more = f"the {100 * p:g} % quantile", not quantity.is_success
+            known = more if quantity.is_life else None
+            yield ("quantiles", repr(p)), words, before, promise.unit, known

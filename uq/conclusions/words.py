@@ -88,13 +88,18 @@ def called_together(names: Sequence[str]) -> str:
     ----------
     names : sequence of str
     """
-    stems = {found[1] for name in names if (found := _TWIN.fullmatch(name))}
-    if len(names) > 1 and len(stems) == 1 and all(map(_TWIN.fullmatch, names)):
-        (stem,) = stems
-        count = "both" if len(names) == 2 else f"all {len(names)}"
-        return f"{count} {_plural(called(stem))}"
-    words = [called(name) for name in names]
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(twin_of(name), []).append(name)
+    words = [_twins_called(stem, own) for stem, own in groups.items()]
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def _twins_called(stem: str, names: Sequence[str]) -> str:
+    if len(names) == 1:
+        return called(names[0])
+    count = "both" if len(names) == 2 else f"all {len(names)}"
+    return f"{count} {_plural(called(stem))}"
 
 
 def twin_of(name: str) -> str:

@@ -24,11 +24,14 @@ class Subject:
         Of the indices.
     keywords : dict
         Passed on to the function that draws it.
+    part : str
+        Which of several figures it is: ``1 of 2``.
     """
 
     name: str = ""
     method: str = ""
     keywords: Mapping[str, Any] = field(default_factory=dict)
+    part: str = ""
 
 
 Applies = Callable[[Findings, str], bool]
@@ -83,7 +86,8 @@ class Drawable:
     def file(self) -> str:
         """The name of its file, without a suffix."""
         words = {"figure": self.figure, "method": self.subject.method, "name": self.subject.name}
-        return file_name(*filter(None, (words[word] for word in self.entry.file)))
+        named = (words[word] for word in self.entry.file)
+        return file_name(*filter(None, (*named, self.subject.part)))
 
     @property
     def caption(self) -> str:
@@ -91,7 +95,9 @@ class Drawable:
         ds, name = self.findings.ds, self.subject.name
         meaning = ds[name].attrs["long_name"] if name in ds else ""
         shown = name if name in ds or not name else Target(ds, name).name
-        return self.entry.caption.format(name=shown, method=self.subject.method, meaning=meaning)
+        words = {"name": shown, "method": self.subject.method, "meaning": meaning}
+        part = f" ({self.subject.part})" * bool(self.subject.part)
+        return self.entry.caption.format(**words) + part
 
     def draw(self) -> Figure:
         """Return the figure."""

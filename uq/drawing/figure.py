@@ -1,6 +1,7 @@
 """A figure: its layout and its files."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 
@@ -60,6 +61,22 @@ def _keep_ticks(figure: Figure) -> None:
         axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
 
 
+@contextmanager
+def _fonts_without_layout() -> Iterator[None]:
+    """Embed fonts without their tables of ligatures and kerning.
+
+    matplotlib has placed each letter; to cut these tables down takes most of the time of a PDF.
+    """
+    from fontTools.subset import Options
+
+    before = Options._drop_tables_default
+    Options._drop_tables_default = [*before, "GDEF", "GPOS", "GSUB", "kern"]
+    try:
+        yield
+    finally:
+        Options._drop_tables_default = before
+
+
 @styled
 def write(figure: Figure, path: Path) -> list[Path]:
     """Write a figure as PNG, SVG and PDF, with reproducible bytes, and return their paths.
@@ -86,5 +103,6 @@ def write(figure: Figure, path: Path) -> list[Path]:
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
     no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
-    FigureCanvasPdf(figure).print_pdf(pdf, metadata=no_metadata)
+    with _fonts_without_layout():
+        FigureCanvasPdf(figure).print_pdf(pdf, metadata=no_metadata)
     return files

@@ -115,12 +115,16 @@ def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
 def subject(ds: xr.Dataset, name: str) -> str:
     """Describe a target of `uq.indices.sensitivities`."""
     form, inside, at = split_name(name)
-    category, _, label = inside.partition("=")
-    if is_category(ds, category):
-        meaning = ds[category].attrs["long_name"].removeprefix("the ")
-        return f"whether the {meaning} is {label}"
-    (element,) = named_elements(ds, inside)
+    category, _, label = inside.rpartition("=")
+    output, _, place = category.partition("[")
+    if is_category(ds, output):
+        meaning = ds[output].attrs["long_name"].removeprefix("the ")
+        where = f", {place.removesuffix(']')}," if place else ""
+        return f"whether the {meaning}{where} is {label}"
+    element, *others = named_elements(ds, inside)
     words = element_in_words(ds, element)
+    if others:
+        words = f"{element.meaning}, all {1 + len(others)} elements together"
     if at:
         asked = analysis_of(ds).thresholds.get(element.output, ())
         at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)

@@ -1,5 +1,7 @@
 """The figure of the inputs: the stated law of each, and its sampled values."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -10,22 +12,26 @@ from uq.drawing.elements_plot import bins, input_axis
 from uq.drawing.panel import figure_of, grid, logarithmic, roomy
 from uq.drawing.style import INK, ROWS, styled
 from uq.drawing.words import as_label
-from uq.errors import InputError
+from uq.errors import InputError, choices
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.law import Law
 from uq.rows.elements import Floats
 
-_IN_ONE_COLUMN = 3  # inputs
+_IN_ONE_COLUMN = 2  # inputs
 
 
 @styled
-def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
+def inputs(
+    ds: xr.Dataset, *, names: Sequence[str] | None = None, axes: Axes | None = None
+) -> Figure:
     """Draw the distribution of each input, with its stated law.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
+    names : sequence of str, optional
+        Inputs; by default all.
     axes : matplotlib.axes.Axes, optional
         Where to draw: panels divide its area. By default a new figure.
 
@@ -41,6 +47,9 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     found, weights = laws_and_values(ds), weights_of_samples(ds)
     if not found:
         raise InputError(f"the rows of a '{ds.attrs['design']}' design do not follow the laws")
+    if unknown := [name for name in names or () if name not in found]:
+        raise InputError(f"no such input '{unknown[0]}' (allowed: {choices(found)})")
+    found = {name: found[name] for name in names or found}
     columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
     lines = -(-len(found) // columns)
     panels = grid(axes, 0.3 + 1.4 * lines, lines, columns).ravel()

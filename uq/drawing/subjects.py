@@ -8,12 +8,17 @@ from uq.conclusions.answer import conclude
 from uq.drawing.catalogue import Subject
 from uq.drawing.convergence_plot import followed, total_indices
 from uq.drawing.elements_plot import occurring_regimes
+from uq.drawing.index_curve_plot import dimension_of
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
-from uq.indices.sensitivities import methods
+from uq.indices.sensitivities import TargetIndices, methods
+from uq.indices.targets import split_name
+from uq.rows.element import is_whole
 from uq.rows.elements import analysis_of, shown_outputs
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
+
+_MOST_INPUTS = 6
 
 
 def the_result(findings: Findings) -> Iterator[Subject]:
@@ -29,16 +34,49 @@ def outputs(findings: Findings) -> Iterator[Subject]:
         yield from (Subject(output) for output in shown if not known[output].is_category)
 
 
+def inputs(findings: Findings) -> Iterator[Subject]:
+    """Yield the inputs with laws, as many at a time as fit a quarter of a page."""
+    names = list(laws_and_values(findings.ds))
+    count = -(-len(names) // _MOST_INPUTS)
+    for i in range(count):
+        part = f"{i + 1} of {count}" if count > 1 else ""
+        own = names[i * len(names) // count : (i + 1) * len(names) // count]
+        yield Subject(part=part, keywords={"names": own})
+
+
+def categories(findings: Findings) -> Iterator[Subject]:
+    """Yield each category that occurs, the regime among them."""
+    if findings.rows.sizes["sample"]:
+        shares = findings.summary.shares.items()
+        occur = (name for name, of in shares if any(one.facts["count"] for one in of.values()))
+        yield from map(Subject, dict.fromkeys(name.partition("[")[0] for name in occur))
+
+
 def targets(findings: Findings) -> Iterator[Subject]:
     """Yield each target of each sensitivity method."""
+    for method, found in _indices(findings):
+        yield Subject(found.name, method, {"method": method, "found": found})
+
+
+def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
+    """Yield each method with what it finds for each target."""
     for method in methods(findings.ds):
         try:
             targets_of = findings.sensitivities(method).targets
         except InputError:  # the report gives the reason
             continue
-        for name, found in targets_of.items():
+        for found in targets_of.values():
             if not found.refused and found.kinds():
-                yield Subject(name, method, {"method": method, "found": found})
+                yield method, found
+
+
+def curves(findings: Findings) -> Iterator[Subject]:
+    """Yield each output with a dimension of three or more numbers, by each method."""
+    for method, found in _indices(findings):
+        inside = split_name(found.name)[1]
+        output = inside.partition("[")[0]
+        if is_whole(inside) and dimension_of(findings.ds, output):
+            yield Subject(output, method, {"method": method, "findings": findings})
 
 
 def decided_events(findings: Findings) -> Iterator[Subject]:
@@ -84,11 +122,6 @@ def has_plain_rows(findings: Findings, name: str) -> bool:
 def has_several_inputs(findings: Findings, name: str) -> bool:
     """Whether at least two inputs vary independently."""
     return len(independent_inputs(findings.rows)) > 1
-
-
-def follows_laws(findings: Findings, name: str) -> bool:
-    """Whether the rows follow the laws of the inputs."""
-    return bool(laws_and_values(findings.ds))
 
 
 def has_running_estimate(findings: Findings, name: str) -> bool:

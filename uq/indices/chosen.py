@@ -1,5 +1,6 @@
 """Which targets a user means: those that suit a method, or those of some names."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 import xarray as xr
@@ -14,7 +15,9 @@ from uq.indices.targets import (
     split_name,
     with_tail_note,
 )
+from uq.indices.whole import wholes
 from uq.methods.registry import METHODS
+from uq.rows.element import Element, is_whole, whole_name
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.variables import is_category
 
@@ -44,10 +47,12 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
     if output is None:
         found = False
         for name in shown_outputs(ds, analysis_of(ds)):
-            for target in _targets(ds, name):
+            for target in targets_of(ds, name):
                 if asked.takes_events if target.event else asked.takes_numbers:
                     yield target if asked.scale_free else lightened(target)
                     found = True
+            if asked.aggregates:
+                yield from wholes(_elements(ds, name))
         if not found and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a time of a lifetime in"
@@ -59,36 +64,65 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
     named = [
         target
         for name in ([output] if isinstance(output, str) else output)
-        for target in _named(ds, name)
+        for target in _named(ds, name, asked.aggregates)
     ]
     if not named and isinstance(output, str):
         _, inside, _ = split_name(output)
+        if is_whole(inside) and not asked.aggregates:
+            able = ", ".join(name for name, one in METHODS.items() if one.aggregates)
+            raise InputError(
+                f"'{method}' has no index of all elements together (methods that do: {able})"
+            )
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
-        names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
+        names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
     yield from named if asked.scale_free else map(with_tail_note, named)
 
 
-def _named(ds: xr.Dataset, name: str) -> list[Target]:
+def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
     """Return the targets that a user means by a name; none for an unknown name."""
     name = canonical(name)
     form, inside, _ = split_name(name)
-    found = list(_targets(ds, _output_in(inside), every=True))
+    if is_whole(inside):
+        every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
+        return [target for target in every if target.name == name] or every[: not form]
+    found = list(targets_of(ds, output_in(inside), every=True))
     if form:
         return [target for target in found if target.name == name]
     own = [target for target in found if split_name(target.name)[0] == ""]
-    return own or list(_targets(ds, name))
+    has_whole = aggregated and name in ds and len(_elements(ds, name)) > 1
+    whole = _named(ds, whole_name(name), aggregated) if has_whole else []
+    return [*(own or targets_of(ds, name)), *whole]
 
 
-def _output_in(inside: str) -> str:
+def output_in(inside: str) -> str:
     """Return the output or element that the name of a target is about."""
-    return inside if "[" in inside else inside.partition("=")[0]
+    return re.sub(r"=[^\]]*$", "", inside)
 
 
-def _targets(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
-    """Return the targets of an output or of one element of it."""
-    if is_category(ds, name) and ds[name].ndim == 1:
+def _elements(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements that belong together: none of a category."""
+    return [] if is_category(ds, name.partition("[")[0]) else named_elements(ds, name)
+
+
+def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
+    """Return the targets of an output or of one element of it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+    every : bool, optional
+        Whether also those that must be asked for by name.
+
+    Returns
+    -------
+    iterator of Target
+        Of a category, or an element of one, whether a row is in each that occurs.
+    """
+    if is_category(ds, name.partition("[")[0]):
         return category_targets(ds, name)
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
     return targets.targets(known, analysis_of(ds).thresholds, every)

@@ -16,6 +16,7 @@ from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.targets import Target
 from uq.methods.indices import IndexKind, Indices, RefusedError
+from uq.methods.measures import MIN_SIDE
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.methods.sample import Sample
@@ -113,11 +114,13 @@ def sensitivities(
         By default the first of `methods`.
     output : str or sequence of str, optional
         An output, one element of it, or one of the names that this function returns; by default
-        the outputs that the study wants to see. Of a category, such as the regime, the targets
-        are ``P(regime=label)``: whether a row is in each that occurs. For a lifetime they are its
-        logarithm, or its rank where rows never end or are censored, and ``P(life<t)``; its rate
-        1/T is ``rate(life)``. A value with a heavy tail is by default replaced by its logarithm or
-        rank; its own name gives the value itself. Of several names, unknown ones are skipped.
+        the outputs that the study wants to see. All elements of an output together are a target of
+        their own, ``output[:]``, where the method adds them up. Of a category, such as the regime,
+        the targets are ``P(regime=label)``: whether a row is in each that occurs. For a lifetime
+        they are its logarithm, or its rank where rows never end or are censored, and ``P(life<t)``;
+        its rate 1/T is ``rate(life)``. A value with a heavy tail is by default replaced by its
+        logarithm or rank; its own name gives the value itself. Of several names, unknown ones are
+        skipped.
     regime : str, optional
         Use the rows in this regime only. Among them the inputs depend on each other.
 
@@ -153,7 +156,7 @@ def sensitivities(
     for target in chosen(ds, method, output):
         quantiles = _quantiles(target, analysis_of(ds).quantiles)
         own = replace(sample, values=target.values, quantiles=quantiles)
-        found[target.name] = one = _indices(ds, METHODS[method], target, own, notes)
+        found[target.name] = one = indices_of_target(ds, METHODS[method], target, own, notes)
         (whole if one.refused else used).append(own.whole)
     if nested:
         found = {name: _with_reason(one) for name, one in found.items()}
@@ -165,15 +168,32 @@ def _with_reason(one: TargetIndices) -> TargetIndices:
     return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
 
 
-def _indices(
-    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...]
+def indices_of_target(
+    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...] = ()
 ) -> TargetIndices:
+    """Estimate the indices of a target, or say why there are none.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        The result that the target is of.
+    method : Method
+    target : Target
+    sample : Sample
+        With its values.
+    notes : tuple of str, optional
+        Sentences to add to those of the indices.
+
+    Returns
+    -------
+    TargetIndices
+    """
     caution = DESIGNS[ds.attrs["design"]].caution
     counts = _counts(sample.whole, rows=len(sample.values))
     try:
         if target.refused:
             raise RefusedError(target.refused)
-        if method.of_variance and not target.event and lacks_variance(target.values):
+        if method.of_variance and not target.event and lacks_variance(target.sizes):
             raise RefusedError(_no_variance(target))
         few = few_hits(ds, target)
         found = method.indices(sample)
@@ -195,13 +215,15 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        One sentence or none.
+        One sentence or none; none for all elements of an output together.
 
     Raises
     ------
     RefusedError
         Fewer than `FEWEST_HITS` in each replicate.
     """
+    if target.values.ndim > 1:
+        return ()
     values, replicates = target.values, int(ds.attrs.get("replicates", 1))
     if not why_no_statistics(ds):
         values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values
@@ -217,6 +239,8 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
     seen = f"only {rarer} {side} in {len(hits)} rows{each}"
     if rarer < FEWEST_HITS * replicates:
+        if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
+            remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"
         raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
     return (f"{seen}: the indices are rough, and intervals may be too narrow; {remedy}",)
 

@@ -9,23 +9,24 @@ import numpy as np
 import xarray as xr
 
 from uq.indices.transforms import heaviness, logarithm, rank, rate
-from uq.rows.elements import Element, Floats, flags
+from uq.rows.elements import Element, Floats, category_codes, flags
 from uq.rows.results import failed
 from uq.written import read_quantity
 
 
 @dataclass(frozen=True)
 class Target:
-    """One number per row.
+    """One number per row, or one for each element of an output.
 
     Attributes
     ----------
     name : str
         That of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
-        ``rate(element)`` and ``P(element<t)``; for regimes ``P(regime=label)``.
+        ``rate(element)`` and ``P(element<t)``; for regimes ``P(regime=label)``; ``output[:]`` for
+        all elements together.
     element : Element or None
-        None for a category.
-    values : ndarray, shape (n,)
+        None for a category or a whole output.
+    values : ndarray, shape (n,) or (n, e)
         NaN for rows that failed or have no value.
     refused : str
         Why there can be no index of it, or "".
@@ -41,6 +42,14 @@ class Target:
     refused: str = ""
     event: bool = False
     notes: tuple[str, ...] = ()
+
+    @property
+    def sizes(self) -> Floats:
+        """The values or, of a whole output, the distances of rows from their mean, shape (n,)."""
+        if self.values.ndim == 1:
+            return self.values
+        whole = self.values[np.isfinite(self.values).all(axis=1)]
+        return np.asarray(np.linalg.norm(whole - whole.mean(axis=0), axis=1))
 
 
 def targets(
@@ -70,7 +79,7 @@ def targets(
             yield number_of(element)
         if every and not element.is_angle:
             for form in ("log", "rank", "rate")[: 3 if element.is_lifetime else 2]:
-                yield _transformed(element, form)
+                yield transformed(element, form)
         if element.is_lifetime or every:
             for threshold in thresholds.get(element.output, ()):
                 yield _event(element, threshold)
@@ -84,8 +93,8 @@ def number_of(element: Element) -> Target:
     """
     if not element.is_lifetime:
         return Target(element.name, element, element.values)
-    found = _transformed(element, "log")
-    return _transformed(element, "rank") if found.refused else found
+    found = transformed(element, "log")
+    return transformed(element, "rank") if found.refused else found
 
 
 _TRANSFORMS = {"log": logarithm, "rank": rank, "rate": rate}
@@ -127,7 +136,8 @@ def canonical(name: str) -> str:
     return f"P({found[1]}{found[2]}{found[3]})"
 
 
-def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:
+def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:
+    """Return the ``log``, ``rank`` or ``rate`` of an element."""
     values, refused = _TRANSFORMS[form](element)
     if form == "rank" and (top := int((element.never | element.censored).sum())):
         notes += (f"{top} rows that never end or are censored share the highest rank",)
@@ -157,7 +167,7 @@ def lightened(target: Target, said: str = INDICES_OF) -> Target:
     assert target.element is not None
     form = _lighter_form(target.element)
     note = said.format(form=FORMS[form], name=target.name)
-    return _transformed(target.element, form, (f"{why}: {note}",))
+    return transformed(target.element, form, (f"{why}: {note}",))
 
 
 def with_tail_note(target: Target) -> Target:
@@ -194,22 +204,23 @@ def _event(element: Element, threshold: float) -> Target:
 
 
 def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
-    """Yield whether a category, such as the regime, is each of those that occur.
+    """Yield whether a category, such as the regime, has each of the labels that occur.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result, or some rows of one.
     output : str
-        An output of kind ``category`` without dimensions.
+        An output of kind ``category``, or one element of it.
 
     Yields
     ------
     Target
         NaN for rows that failed before they had a category; a sound row of no category has none.
     """
-    codes, lost = ds[output].values, failed(ds)
-    for code, label in flags(ds[output]):
-        if code >= 0 and (hits := codes == code).any():
-            values = np.where((codes < 0) & lost, np.nan, hits)
-            yield Target(f"P({output}={label})", None, values, event=True)
+    lost = failed(ds)
+    for name, codes in category_codes(ds, output).items():
+        for code, label in flags(ds[output.partition("[")[0]]):
+            if code >= 0 and (hits := codes == code).any():
+                values = np.where((codes < 0) & lost, np.nan, hits)
+                yield Target(f"P({name}={label})", None, values, event=True)

@@ -80,7 +80,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         list(remaining(ds, by)),
         list(taught(found)),
         strange,
-        [*_warnings(strange), *_interpolated(found)],
+        [*_warnings(strange), *_interpolated(found), *filter(None, [found.only_inspected])],
     )
 
 

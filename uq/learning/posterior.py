@@ -13,22 +13,26 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
+from uq.learning.drawn_scale import drawn_scale, in_order, in_random_order
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at
+from uq.learning.own_rows_out import log_worth
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.population.smoothing import Smoothed, smoothed
 from uq.rows.elements import replicates_of
-from uq.rows.nesting import Nesting, levels_of, nesting_of
+from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
 
 Rows = NDArray[np.intp]
 
-_SEED = 22
+NO_OTHERS = (
+    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
+    " stands for an inspected one; set [design] units = {} or more"
+)
+
 _HUGE = 700.0
-_TINY = 2.0**-53
-_FLAT, _STEEPEST = 1e-6, 30.0
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,9 @@ class Posterior:
         Of each row.
     importance : Importance
         Of each row.
+    only_inspected : str
+        Why no row stands for a unit that was not inspected, or "": `any_unit` then tells what
+        units share, and nothing of their own.
     """
 
     any_unit: Weighted
@@ -77,6 +84,7 @@ class Posterior:
     looks: Mapping[Inspection, Look]
     world: Rows
     importance: Importance
+    only_inspected: str = ""
 
     @property
     def weights(self) -> list[Smoothed]:
@@ -133,8 +141,21 @@ def posterior(
         label: _inspected(found, unit, likelihoods, world, scale, part)
         for unit, label in enumerate(labels)
     }
-    everyone = _uninspected(found, importance, world, place, scale, replicates_of(rows))
-    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance)
+    logs, why = found.log_worlds[world], ""
+    with np.errstate(divide="ignore"):
+        logs = logs - np.log(np.bincount(world, importance.of_rows))[world, None]
+        logs = logs + np.log(importance.of_rows)[:, None]
+    if worlds > 1 and _units_differ(rows, scale):
+        apart = log_worth(found, likelihoods, place, scale is None or scale.is_own)
+        why = "" if np.isfinite(apart).any() else NO_OTHERS.format(len(labels) + 1)
+        logs = logs if why else apart
+    everyone = _uninspected(logs, found, scale, place, replicates_of(rows))
+    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance, why)
+
+
+def _units_differ(rows: xr.Dataset, scale: Scale | None) -> bool:
+    """Return whether units of a world differ in more than the integrated input."""
+    return bool({*levels_that_vary(rows, () if scale is None else (scale.name,))} - {SHARED})
 
 
 def on_wide_grids(found: Posterior) -> tuple[list[Grid], Evidence]:
@@ -190,25 +211,19 @@ def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
 
 
 def _uninspected(
-    found: Evidence,
-    importance: Importance,
-    world: Rows,
-    place: Nesting,
-    scale: Scale | None,
-    part: Replicates,
+    log_rows: Floats, found: Evidence, scale: Scale | None, place: Nesting, part: Replicates
 ) -> Weighted:
-    """Return all rows, as units that share their world with the inspected ones."""
-    worth = np.exp(found.log_worlds)
-    rows = np.arange(len(world))
-    size = np.bincount(world, importance.of_rows, len(worth))
-    with np.errstate(divide="ignore"):
-        of_rows = worth.sum(axis=1)[world] * importance.of_rows / size[world]
-        weights = smoothed(np.log(of_rows), part)
+    """Return all rows, as units that share their world with the inspected ones.
+
+    Rows of a sample with the same law of the integrated input have the same value of it.
+    """
+    rows = np.arange(len(log_rows))
+    weights = smoothed(special.logsumexp(log_rows, axis=1), part)
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
-    _, first = np.unique(place.sample, return_index=True)
-    of_samples = _drawn(found.grids[0], worth[world[first]], scale)
-    return Weighted(rows, weights, of_samples[place.sample])
+    worth = np.exp(log_rows - log_rows.max())
+    at = in_order(place.samples)[place.sample]
+    return Weighted(rows, weights, drawn_scale(found.grids[0], worth, scale, at))
 
 
 def _inspected(
@@ -239,46 +254,5 @@ def _inspected(
     kept = np.isin(np.arange(len(world)), rows)
     with np.errstate(divide="ignore"):
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
-    return Weighted(rows, weights, _drawn(grid, worth, scale) if scale else None)
-
-
-def _drawn(grid: Grid, worth: Floats, scale: Scale) -> Floats:
-    """Draw the integrated input of each row or sample from its law given the inspections.
-
-    The numbers drawn with are evenly spread over the rows, in random order: an orderly one would
-    make rows, and so the repetitions of a sampler, depend on each other.
-
-    Parameters
-    ----------
-    grid : Grid
-    worth : ndarray, shape (n, g)
-    scale : Scale
-    """
-    at = (np.random.default_rng(_SEED).permutation(len(worth)) + 0.5) / len(worth)
-    above = np.cumsum(worth, axis=1)
-    wanted = at * above[:, -1]
-    node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)
-    here = np.arange(len(worth)), node
-    with np.errstate(divide="ignore", invalid="ignore"):
-        within = (wanted - (above[here] - worth[here])) / worth[here]
-    within = _tilted(np.nan_to_num(within).clip(0.0, 1.0), grid, worth, node)
-    edges = grid.edges
-    places = edges[node] + within * (edges[node + 1] - edges[node])
-    return scale.quantiles(np.where(above[:, -1] > 0, places.clip(_TINY, 1 - _TINY), at))
-
-
-def _tilted(within: Floats, grid: Grid, worth: Floats, node: Rows) -> Floats:
-    """Return places within nodes, 0 to 1, drawn to the side on which the density is higher.
-
-    By half its slope: evenly spread places would add the variance of a node to that of the density,
-    of which the values at the middles of nodes, equally spaced, have all.
-    """
-    middle = (grid.edges[1:] + grid.edges[:-1]) / 2
-    low, high = np.maximum(node - 1, 0), np.minimum(node + 1, len(middle) - 1)
-    row = np.arange(len(worth))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        below, above = (np.log(worth[row, i]) - grid.log_share[i] for i in (low, high))
-        rise = (above - below) / (middle[high] - middle[low])
-        tilt = (np.diff(grid.edges)[node] * rise / 2).clip(-_STEEPEST, _STEEPEST)
-        moved = np.log1p(within * np.expm1(tilt)) / tilt
-    return np.where(np.isfinite(tilt) & (np.abs(tilt) > _FLAT), moved, within)
+    at = in_random_order(len(rows))
+    return Weighted(rows, weights, drawn_scale(grid, worth, scale, at) if scale else None)

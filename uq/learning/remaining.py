@@ -13,7 +13,7 @@ from uq.learning.result import as_unit, inspections_of
 from uq.population.functionals import Population
 from uq.population.smoothing import effective_rows, per_sample
 from uq.rows.elements import Element, analysis_of, elements_of, replicates_of, shown_outputs
-from uq.rows.weights import WEIGHT
+from uq.rows.weights import ONLY_INSPECTED, WEIGHT
 
 PROBABILITIES = (0.05, 0.5, 0.95)
 ANY = ""
@@ -65,7 +65,8 @@ def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
     """
     inspections = inspections_of(ds)
     latest = _last_seen(inspections)
-    yield from _of_unit(ds, ANY, latest, by)
+    if ONLY_INSPECTED not in ds.attrs:
+        yield from _of_unit(ds, ANY, latest, by)
     for label in map(str, ds["inspected"].values):
         own = [one for one in inspections if one.unit == label]
         if not any(one.kind is Kind.ENDED for one in own):

@@ -17,7 +17,7 @@ from uq.population.scaling import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
-from uq.rows.weights import MOST, WEIGHT, has_weights
+from uq.rows.weights import MOST, ONLY_INSPECTED, WEIGHT, has_weights
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
@@ -78,6 +78,8 @@ def as_result(
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
     units, count = len(found.units), len(inspections)
     given = f"given {count} inspection{'s' * (count > 1)} of {units} unit{'s' * (units > 1)}"
+    if found.only_inspected:
+        ds = ds.assign_attrs({ONLY_INSPECTED: found.only_inspected})
     found_attrs = {
         "title": f"{_prior_title(rows)}, {given}",
         INTEGRATED: found.scale.name if found.scale else "",
@@ -108,7 +110,10 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
     return found
 
 
-_OF_POSTERIOR = (INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, WORLDS, "prior_title")
+_OF_POSTERIOR = (
+    *(INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR),
+    *(WORLDS, ONLY_INSPECTED, "prior_title"),
+)
 
 
 def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:

@@ -8,7 +8,7 @@ from uq.designs.curves import HARMONICS
 from uq.estimate import Estimate
 from uq.intervals import is_constant
 from uq.methods.indices import ALL_NOISE, S1, ST, IndexKind, Indices, RefusedError
-from uq.methods.sample import Sample
+from uq.methods.sample import Floats, Sample
 
 
 def fast_indices(sample: Sample) -> Indices:
@@ -37,14 +37,12 @@ def fast_indices(sample: Sample) -> Indices:
     A. Saltelli, S. Tarantola, K. P.-S. Chan, "A quantitative model-independent method for global
     sensitivity analysis of model output", Technometrics 41, 39-56 (1999).
     """
-    from SALib.analyze.fast import compute_orders
-
     y, whole = sample.grouped, sample.whole
     parameters = [label.removeprefix("curve_") for label in sample.blocks]
     for name, own in zip(parameters, whole.T, strict=True):
         if not own.any():
             raise RefusedError(f"none of {len(whole)} curves for {name} has a value in each row")
-    moves = np.array([[not is_constant(curve) for curve in own] for own in y])
+    moves = np.array([[not sample.is_constant(curve) for curve in own] for own in y])
     if sample.random and not (moves & whole).any(axis=0).all():
         raise RefusedError(ALL_NOISE)
     if not sample.random and not moves[whole].all():
@@ -52,19 +50,20 @@ def fast_indices(sample: Sample) -> Indices:
     points = y.shape[2]
     omega = floor((points - 1) / (2 * HARMONICS))
     # The estimator loses digits for values far from zero.
-    y = y - y[whole].mean()
+    y = y - y[whole].mean(axis=(0, 1))
     indices: dict[IndexKind, dict[str, Estimate]] = {S1: {}, ST: {}}
     scatter = dict.fromkeys(indices, 0.0)
     for i, name in enumerate(parameters):
         moving = y[whole[:, i] & moves[:, i], i]
-        own = np.array([compute_orders(curve, points, HARMONICS, omega) for curve in moving])
-        weights = moving.var(axis=1) if sample.random else None
+        own = np.array([_orders(curve, omega) for curve in moving])
+        spread = moving.var(axis=1).reshape(len(moving), -1).sum(axis=1)
+        weights = spread if sample.random else None
         for kind, column in zip(indices, own.T, strict=True):
             indices[kind][name] = Estimate(float(np.average(column, weights=weights)))
             if len(column) > 1:
                 scatter[kind] = max(scatter[kind], float(column.std(ddof=1)))
-    spread = " and ".join(f"{kind.key} by {sd:.2g}" for kind, sd in scatter.items() if sd)
-    seen = f": between replicates {spread} at most (standard deviation)" if spread else ""
+    found = " and ".join(f"{kind.key} by {sd:.2g}" for kind, sd in scatter.items() if sd)
+    seen = f": between replicates {found} at most (standard deviation)" if found else ""
     notes = [
         "no intervals: the method's own error, from representing an input by a few harmonics, does"
         f" not show in the scatter{seen}"
@@ -76,3 +75,17 @@ def fast_indices(sample: Sample) -> Indices:
             f"{others} inputs share {room} frequencies; samples = {needed} would give each its own"
         )
     return Indices(indices, tuple(notes))
+
+
+def _orders(curve: Floats, omega: int) -> Floats:
+    """Return S1 and ST from the output along a curve, shape (points,) or (points, e).
+
+    Those of several elements are weighted by their variance.
+    """
+    from SALib.analyze.fast import compute_orders
+
+    elements = curve.reshape(len(curve), -1).T
+    moving = elements[[not is_constant(one) for one in elements]]
+    own = [compute_orders(one, len(one), HARMONICS, omega) for one in moving]
+    weights = moving.var(axis=1)
+    return np.average(own, axis=0, weights=weights / weights.sum())

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from uq.estimate import Estimate
-from uq.intervals import scatter_interval, upper_probability
+from uq.intervals import CONFIDENCE, scatter_interval, upper_probability
 from uq.methods.indices import IndexKind
 from uq.methods.sample import Floats
 from uq.quantile_functions import student
@@ -30,6 +30,7 @@ def pooled_with_intervals(
     replicates: Sequence[Floats],
     what: str,
     lacking: str = "",
+    confidence: float = CONFIDENCE,
 ) -> tuple[dict[IndexKind, dict[str, Estimate]], tuple[str, ...]]:
     """Estimate from all groups together, with intervals from the same estimate by replicates.
 
@@ -45,6 +46,7 @@ def pooled_with_intervals(
         What a sentence calls the indices.
     lacking : str
         Why single replicates give no estimates, or "".
+    confidence : float, optional
 
     Returns
     -------
@@ -60,9 +62,8 @@ def pooled_with_intervals(
     scatter = [] if notes else [estimate(own) for own in replicates]
 
     def with_interval(kind: IndexKind, label: str, value: float) -> Estimate:
-        return Estimate(
-            value, *scatter_interval(value, np.array([own[kind][label] for own in scatter]))
-        )
+        estimates = np.array([own[kind][label] for own in scatter])
+        return Estimate(value, *scatter_interval(value, estimates, confidence))
 
     found = {
         kind: {label: with_interval(kind, label, value) for label, value in values.items()}
@@ -71,32 +72,54 @@ def pooled_with_intervals(
     return found, notes
 
 
+def with_difference(
+    estimate: Callable[[Floats], Values], pair: tuple[str, str] | None
+) -> Callable[[Floats], Values]:
+    """Return an estimate that also gives the difference between the indices of two inputs."""
+    if pair is None:
+        return estimate
+    first, second = pair
+
+    def both(groups: Floats) -> Values:
+        return {
+            kind: {**values, f"{first} - {second}": values[first] - values[second]}
+            if first in values
+            else values
+            for kind, values in estimate(groups).items()
+        }
+
+    return both
+
+
 def effective_rows(deviations: Floats) -> float:
     """Return the number of rows that a variance rests on.
 
     Parameters
     ----------
-    deviations : ndarray, shape (n,)
-        From the mean.
+    deviations : ndarray, shape (n,) or (n, e)
+        From the mean, of each element.
 
     Returns
     -------
     float
         n over the kurtosis: n/3 for a normal law, about the number of hits for a rare event.
     """
-    squares = deviations**2
+    squares = _squares(deviations)
     return float(squares.sum() ** 2 / (squares**2).sum())
 
 
-def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
+def one_more_row(
+    deviations: Floats, groups: int, replicates: int, confidence: float = CONFIDENCE
+) -> float:
     """Return by how much one more row, as extreme as the most extreme, widens an interval.
 
     Parameters
     ----------
-    deviations : ndarray, shape (n,)
-        Of the independent rows from their mean, of variance 1.
+    deviations : ndarray, shape (n,) or (n, e)
+        Of the independent rows from their mean, of variance 1, all elements together.
     groups, replicates : int
         All groups of all replicates.
+    confidence : float, optional
 
     Returns
     -------
@@ -106,8 +129,13 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
     if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
-    wide = student(upper_probability(), replicates - 1)
-    return float(wide * (deviations**2).max() / groups)
+    wide = student(upper_probability(confidence), replicates - 1)
+    return float(wide * _squares(deviations).max() / groups)
+
+
+def _squares(deviations: Floats) -> Floats:
+    squares = deviations**2
+    return squares if squares.ndim == 1 else np.asarray(squares.sum(axis=1))
 
 
 def widened(estimate: Estimate, by: float) -> Estimate:

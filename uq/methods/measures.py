@@ -24,7 +24,8 @@ def rbd_fast(x: Floats, y: Floats) -> Floats:
     Parameters
     ----------
     x : ndarray, shape (n, d)
-    y : ndarray, shape (n,)
+    y : ndarray, shape (n,) or (n, e)
+        The powers of several elements are summed.
 
     Returns
     -------
@@ -40,9 +41,9 @@ def rbd_fast(x: Floats, y: Floats) -> Floats:
     """
     n = len(y)
     orders = (np.argsort(column) for column in x.T)
-    spectra = (np.fft.rfft(y[np.r_[order[::2], order[1::2][::-1]]]) for order in orders)
+    spectra = (np.fft.rfft(y[np.r_[order[::2], order[1::2][::-1]]], axis=0) for order in orders)
     first = [np.sum(np.abs(one[1 : _HARMONICS + 1]) ** 2) for one in spectra]
-    share = np.array(first) * 2 / (n**2 * y.var())
+    share = np.array(first) * 2 / (n**2 * y.var(axis=0).sum())
     noise = 2 * _HARMONICS / n
     return share - noise / (1 - noise) * (1 - share)
 

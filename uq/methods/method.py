@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from uq.designs.layouts import PLAIN, Layout
-from uq.intervals import is_constant
 from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.sample import Sample
 
@@ -44,6 +43,9 @@ class Method:
     assumes_independence : bool
         Whether the inputs must be independent of each other. If not, they may depend in any way in
         a plain sample, and as the study states in the rows of a design.
+    aggregates : bool
+        Whether it also gives one index for all elements of an output: the sum of what an input
+        explains of their variances, over the sum of these variances (Gamboa et al. 2014).
     takes_events, takes_numbers : bool
         Whether it is for events, outputs of 0 or 1, and for other outputs.
     scale_free : bool
@@ -66,6 +68,7 @@ class Method:
     least: int = 1
     most_rows: int | None = None
     assumes_independence: bool = True
+    aggregates: bool = False
     takes_events: bool = True
     takes_numbers: bool = True
     scale_free: bool = False
@@ -103,7 +106,7 @@ class Method:
         if self.layout is not PLAIN:
             return self.estimate(sample)
         rows, note = np.flatnonzero(whole), ""
-        if is_constant(sample.values[rows]):
+        if sample.is_constant(sample.values[rows]):
             raise RefusedError(NO_EFFECT)
         if self.most_rows is not None and kept > self.most_rows:
             # At random: imported rows may come in a meaningful order.

@@ -9,6 +9,7 @@ from functools import partial
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
+from uq.methods.additive import additive_shapley
 from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import EXPLAINED, hdmr_indices
@@ -39,6 +40,7 @@ METHODS = {
         kinds=(S1,),
         source="random balance, bias corrected",
         most_rows=200_000,
+        aggregates=True,
     ),
     "delta": _of_any_inputs(
         "how much the whole distribution moves",
@@ -86,9 +88,11 @@ METHODS = {
         CROSSED,
         sobol_indices,
         (S1, ST, S2),
-        source="Saltelli et al. (2010), on standardised outputs",
+        source="Janon et al. (2014) with a control variate (S1), Jansen (1999) (ST), Saltelli"
+        " (2002) (S2), on standardised outputs",
         intervals="Student's t from replicates",
         least=MIN_GROUPS,
+        aggregates=True,
         noise="the model is random, and the rows of a group share a seed: S1 excludes noise, ST"
         " includes its interaction with the input, and 'noise' is the share of the variance that"
         " remains once all inputs are known",
@@ -113,7 +117,20 @@ METHODS = {
         intervals="Student's t of independent paths",
         least=MIN_PATHS,
         assumes_independence=False,
+        aggregates=True,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+    ),
+    "shapley-additive": Method(
+        "the same shares, from fewer rows where the effects of inputs nearly add up",
+        PATHS,
+        additive_shapley,
+        (SHAPLEY,),
+        source="as shapley, with the additive part of the output by formula",
+        intervals="Student's t of independent paths",
+        least=MIN_PATHS,
+        assumes_independence=False,
+        noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+        aggregates=True,
     ),
     "fast": Method(
         "how much of the variance, alone and with others, without intervals",
@@ -122,6 +139,7 @@ METHODS = {
         (S1, ST),
         source="extended FAST, Saltelli et al. (1999)",
         least=0,  # it asks for a whole curve of each input
+        aggregates=True,
         noise=f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
     ),
 }
@@ -161,3 +179,13 @@ def designs_for(method: str) -> tuple[str, ...]:
 def for_dependent_inputs() -> tuple[str, ...]:
     """Return the methods that do not assume independent inputs."""
     return tuple(name for name, method in METHODS.items() if not method.assumes_independence)
+
+
+def kinds_with_intervals(design: Design) -> dict[str, tuple[IndexKind, str]]:
+    """Return the indices of single inputs that have intervals: key -> kind and method."""
+    found: dict[str, tuple[IndexKind, str]] = {}
+    for name in fed_by(design):
+        for kind in METHODS[name].kinds if METHODS[name].intervals else ():
+            if not kind.of_pairs:
+                found.setdefault(kind.key, (kind, name))
+    return found

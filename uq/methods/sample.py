@@ -9,16 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
+from uq.intervals import CONFIDENCE, is_constant
 
 
 @dataclass(frozen=True)
 class Sample:
-    """The rows of a result and one number for each.
+    """The rows of a result and one number for each, or one for each element of an output.
 
     Attributes
     ----------
-    values : ndarray, shape (n,)
-        The output, NaN where a row has none.
+    values : ndarray, shape (n,) or (n, e)
+        The output, NaN where a row has none; of a whole output, a column for each element.
     inputs : dict of str to ndarray, shape (n,)
         The inputs that vary by a law of their own.
     groups : ndarray of int, shape (R, N, k)
@@ -31,10 +32,19 @@ class Sample:
         1, lowers it, -1, or neither, 0, in probability. Empty elsewhere.
     correlated : dict of str to tuple of str
         Input -> those it is correlated with, where the study states rank correlations.
+    scores : ndarray, shape (R, N, k, d)
+        Of paths, the normal scores of the inputs: their probabilities on the scale of a standard
+        normal law. NaN for discrete inputs, and for what is correlated with one.
+    matrix : ndarray, shape (d, d)
+        The correlations of normal scores.
     random : bool
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
         Name -> probability of each quantile that indices of quantiles are about.
+    confidence : float
+        Of intervals.
+    difference : tuple of str, optional
+        Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
     """
 
     values: Floats
@@ -43,8 +53,12 @@ class Sample:
     blocks: tuple[str, ...] = ("sample",)
     direction: Floats = field(default_factory=lambda: np.empty(0))
     correlated: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    scores: Floats = field(default_factory=lambda: np.empty(0))
+    matrix: Floats = field(default_factory=lambda: np.empty(0))
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
+    confidence: float = CONFIDENCE
+    difference: tuple[str, str] | None = None
 
     @classmethod
     def plain(cls, values: Floats, inputs: Mapping[str, Floats], **more: Any) -> Self:
@@ -53,13 +67,19 @@ class Sample:
 
     @property
     def grouped(self) -> Floats:
-        """The output by replicate, group and row, shape (R, N, k)."""
+        """The output by replicate, group and row, shape (R, N, k), with (e,) of a whole output."""
         return self.values[self.groups]
 
     @cached_property
     def whole(self) -> Mask:
         """Which groups have a value in each of their rows, shape (R, N)."""
-        return np.asarray(np.isfinite(self.grouped).all(axis=-1))
+        known = np.isfinite(self.grouped)
+        return np.asarray(known.all(axis=tuple(range(2, known.ndim))))
+
+    def is_constant(self, values: Floats) -> bool:
+        """Whether each element is constant over these values of some rows, the last axis (e,)."""
+        elements = self.values.shape[1] if self.values.ndim > 1 else 1
+        return all(is_constant(one) for one in values.reshape(-1, elements).T)
 
     def rows(self, kept: NDArray[np.intp]) -> Self:
         """Return some rows of a plain sample."""

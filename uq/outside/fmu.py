@@ -5,7 +5,6 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from uq.outside.machine_tables import refuse
 from uq.outside.returned import Censored, NonFiniteError, Returned, censored, checked
 from uq.outside.row_by_row import RowByRow, model_from
 
-_LOG = "log.txt"
+_LOG, _UNPACKED = "log.txt", "fmu"
 _DISCARDED, _FATAL = 2, 4  # statuses of FMI
 _NEAR = 1e-9
 
@@ -54,7 +53,7 @@ def fmu_of(path: Path) -> Model:
     fields = {name: _field(name, one, reals) for name, one in parameters.items()}
     returned = {name: _returned(name, one, reals) for name, one in outputs.items()}
     inputs = {name: one.variable or name for name, one in parameters.items()}
-    folders = Folders(path.absolute().parent / f"{machine.name}.rows")
+    folders = Folders(path.absolute().parent / f"{machine.name}.rows", _UNPACKED)
     runner = _Fmu(fmu, inputs, outputs, returned, times, folders)
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep)
     title = machine.title or said.description or said.modelName
@@ -163,12 +162,12 @@ class _Fmu:
         ------
         FmuError, NonFiniteError
         """
-        unpacked, numbers = self._unpacked, list(row.values())
+        numbers = list(row.values())
         with self.folders.row(numbers) as folder:
             os.chdir(folder)  # where it may write; the caller leaves it
             log = list[str]()
             try:
-                history = self._history(unpacked, row, log)
+                history = self._history(folder / _UNPACKED, row, log)
                 found = {
                     name: reduced(one, history["time"], history[one.variable or name])
                     for name, one in self.outputs.items()
@@ -182,17 +181,12 @@ class _Fmu:
                 kind = NonFiniteError if isinstance(error, NonFiniteError) else FmuError
                 raise kind(text) from None
 
-    @cached_property
-    def _unpacked(self) -> Path:
-        """The FMU as a folder, for as long as this process lives."""
-        import fmpy
-
-        folder = self.folders.of_process()
-        fmpy.extract(str(self.path), str(folder))
-        return folder
-
     def _history(self, unpacked: Path, row: Mapping[str, float], log: list[str]) -> Any:
-        """Return the variables that are wanted over time, from an instance of its own."""
+        """Return the variables that are wanted over time, from an FMU unpacked for this row.
+
+        A library in a file of its own shares no memory with that of another row.
+        """
+        import fmpy
         from fmpy.simulation import instantiate_fmu, simulate_fmu
 
         def logger(*said: Any) -> None:
@@ -201,6 +195,8 @@ class _Fmu:
                 log.append(" ".join(text.decode(errors="replace").split()))
 
         said, (start, stop, step) = said_of(self.path), self.times
+        wanted = "modelDescription.xml", "resources/", f"binaries/{fmpy.platform}/"
+        fmpy.extract(str(self.path), str(unpacked), include=lambda name: name.startswith(wanted))
         instance = instantiate_fmu(str(unpacked), said, logger=logger)
         fatal = False
         try:
@@ -218,9 +214,7 @@ class _Fmu:
             fatal = getattr(error, "status", None) == _FATAL
             raise
         finally:
-            if fatal:  # nothing of the FMU may be called; the next row loads it anew
-                instance.freeLibrary()
-            else:
+            if not fatal:  # after which nothing of the FMU may be called
                 instance.freeInstance()
         ended = history["time"][-1]
         if ended < stop - _NEAR * (stop - start):

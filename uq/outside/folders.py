@@ -1,6 +1,5 @@
 """Folders of rows: one for each, removed when the row is done and kept when it failed."""
 
-import atexit
 import hashlib
 import os
 import shutil
@@ -18,8 +17,10 @@ _RUNNING = "running"
 _LARGEST_KEPT = 10_000_000  # bytes of a file of a row that failed
 
 
-def _lighten(folder: Path) -> None:
-    """Remove the large files of a row that failed, which could fill the disk."""
+def _lighten(folder: Path, passing: str) -> None:
+    """Remove what would fill the disk of a row that failed: large files, and a folder."""
+    if passing:
+        shutil.rmtree(folder / passing, ignore_errors=True)
     for file in folder.rglob("*"):
         if not file.is_symlink() and file.is_file() and file.stat().st_size > _LARGEST_KEPT:
             file.unlink()
@@ -31,10 +32,13 @@ class Folders:
     Parameters
     ----------
     root : Path
+    passing : str
+        Name of a folder in each that is not kept.
     """
 
-    def __init__(self, root: Path):
+    def __init__(self, root: Path, passing: str = ""):
         self.root = root
+        self._passing = passing
         self._tidied = False
 
     @contextmanager
@@ -49,7 +53,7 @@ class Folders:
         if not self._tidied:
             self._tidied = True
             self._tidy()
-        folder = self._new(_digest(numbers))
+        folder = self._new(numbers)
         try:
             yield folder
         except Exception:
@@ -58,20 +62,9 @@ class Folders:
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 
-    def of_process(self) -> Path:
-        """Return a folder, empty, that lasts as long as this process."""
-        folder = self._new("all")
-
-        def end() -> None:
-            shutil.rmtree(folder, ignore_errors=True)
-            self.leave()
-
-        atexit.register(end)
-        return folder
-
-    def _new(self, mark: str) -> Path:
+    def _new(self, numbers: Sequence[float | int]) -> Path:
         """Return a new folder of this process."""
-        mine = f"{_running_on_this()}{judge()}-{os.getpid()}-{mark}-"
+        mine = f"{_running_on_this()}{judge()}-{os.getpid()}-{_digest(numbers)}-"
         while True:
             self.root.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):  # another process has just left
@@ -98,7 +91,7 @@ class Folders:
         kept = self.kept(numbers)
         shutil.rmtree(kept, ignore_errors=True)
         with suppress(OSError):
-            _lighten(folder)
+            _lighten(folder, self._passing)
             folder.rename(kept)
 
     def _tidy(self) -> None:

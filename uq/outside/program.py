@@ -1,5 +1,6 @@
 """A program as a machine: each row runs it once, in a folder of its own."""
 
+import errno
 import hashlib
 import os
 import shutil
@@ -30,6 +31,10 @@ from uq.outside.row_by_row import SEED, OverdueError, RowByRow, model_from
 _LAST = 300  # characters of what a failed program said
 _TRIES = 3  # of a program that is killed, before it is blamed
 _KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
+_REMEDIES = {
+    errno.EACCES: "; make it executable: chmod +x",
+    errno.ENOEXEC: "; a script begins with a line such as #!/bin/sh",
+}
 
 
 class ProgramError(Exception):
@@ -158,7 +163,9 @@ class _Program:
                     stderr=err,
                 )
             except OSError as error:
-                raise ProgramError(f"'{program}' cannot be started: {error.strerror}") from None
+                remedy = _REMEDIES.get(error.errno or 0, "")
+                said = f"'{program}' cannot be started: {error.strerror}{remedy}"
+                raise ProgramError(said) from None
             code = self._ended(process)
         if code == -signal.SIGXFSZ:
             raise ProgramError(f"was ended, as it wrote a file larger than {largest:.2g} bytes")

@@ -8,7 +8,7 @@ import numpy as np
 
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.intervals import ROUNDING, Replicates, is_constant, replicates_of_some
+from uq.intervals import CONFIDENCE, ROUNDING, Replicates, is_constant, replicates_of_some
 from uq.population.means import pulls, rests_on_few, trusted, weighted_share
 from uq.roots import root
 from uq.rows.element import Element
@@ -30,6 +30,8 @@ class Population:
     element : Element
     part : ndarray of int, shape (n,), or None
         The independent part of each row.
+    confidence : float
+        Of intervals.
 
     References
     ----------
@@ -39,6 +41,7 @@ class Population:
 
     element: Element
     part: Replicates
+    confidence: float = CONFIDENCE
 
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
@@ -87,7 +90,8 @@ class Population:
 
     def _share(self, numbers: Floats, kept: Mask) -> Estimate:
         """Estimate a probability, or say why the weights do not allow it."""
-        return self._trusted(weighted_share(numbers[kept], *self._of(kept)), numbers, kept)
+        found = weighted_share(numbers[kept], *self._of(kept), confidence=self.confidence)
+        return self._trusted(found, numbers, kept)
 
     def _of(self, kept: Mask) -> tuple[Floats | None, Replicates]:
         """Return weight and part of some rows."""
@@ -97,7 +101,7 @@ class Population:
     def _trusted(self, found: Estimate, numbers: Floats, kept: Mask) -> Estimate:
         """Return an estimate, or why the weights of the rows behind it do not allow one."""
         weights = self.element.weights
-        if weights is None:
+        if weights is None or not kept.any():
             return found
         rarer = numbers if np.average(numbers[kept], weights=weights[kept]) <= 0.5 else 1 - numbers
         part = replicates_of_some(self.part, kept)
@@ -114,7 +118,7 @@ class Population:
         few = rests_on_few(self._below(value)[kept], weights, part)
 
         def share(y: float) -> Estimate:
-            return weighted_share(self._below(y)[kept], weights, part, few)
+            return weighted_share(self._below(y)[kept], weights, part, few, self.confidence)
 
         return share
 
@@ -148,7 +152,7 @@ class Population:
         side = 1.0 if reached(start) < 0 else -1.0
         there = first_step(start, side * unit, lambda at: (reached(at) >= 0) == (side > 0))
         if there is None:
-            return np.inf if side > 0 else nan
+            return np.inf if side > 0 else 0.0
         return exp(root(reached, there, _TOLERANCE))
 
     @property
@@ -170,31 +174,28 @@ class Population:
         value = self._middle(probability)
         if isnan(value) or (place := self._typical) is None:
             return Estimate(value)
-        share = self._near(min(value, _LATEST))
-        middle = share(min(value, _LATEST))
+        inside = min(max(value, 1 / _LATEST), _LATEST)
+        share = self._near(inside)
+        middle = share(inside)
         if isnan(middle.low):
             return Estimate(value, reason=middle.reason)
 
-        def end(start: float, step: float, name: str) -> float:
+        def end(start: float, unit: float, name: str) -> float:
             def excess(x: float) -> float:
                 return float(getattr(share(exp(x)), name)) - probability
 
             below = excess(start) < 0
-            if below != (step > 0):
-                return nan
+            step = unit if below else -unit
             there = first_step(start, step, lambda x: (excess(x) >= 0) == below)
             if there is None:
                 return self._never if below else nan
             return exp(root(excess, there, _TOLERANCE))
 
-        if value == np.inf:
-            start, unit = place
-            below = share(exp(start)).high < probability
-            return Estimate(value, end(start, unit if below else -unit, "high"), value)
-        low, high = (
-            end(log(value), side * place[1] / 30, name)
-            for side, name in ((-1.0, "high"), (1.0, "low"))
-        )
+        start, unit = place
+        if 0 < value < np.inf:
+            start, unit = log(value), unit / 30
+        low = 0.0 if value == 0 else min(end(start, unit, "high"), value)
+        high = value if value == np.inf else max(end(start, unit, "low"), value)
         return Estimate(value, low, high, _FEW if isnan(low) or isnan(high) else "")
 
     def _along_values(self, probability: float) -> Estimate:

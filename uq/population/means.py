@@ -12,6 +12,7 @@ from scipy import special
 from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import (
+    CONFIDENCE,
     ROUNDING,
     Replicates,
     binomial_interval,
@@ -48,6 +49,7 @@ def weighted_share(
     weights: Floats | None = None,
     part: Replicates = None,
     cautious: bool | None = None,
+    confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Estimate the mean of numbers between 0 and 1.
 
@@ -60,6 +62,7 @@ def weighted_share(
         The independent part of each row.
     cautious : bool, optional
         Whether few rows carry the mean; by default `rests_on_few`.
+    confidence : float, optional
 
     Returns
     -------
@@ -82,12 +85,12 @@ def weighted_share(
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
-    low, high = _of_logit(mean, found)
+    low, high = _of_logit(mean, found, confidence)
     if 0 < mean < 1:
-        outlier = 2 * ((found.max() - mean) - (mean - found.min())) / parts
+        outlier = _outlier(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
     if cautious or (cautious is None and rests_on_few(numbers, weights, part)):
-        of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)))
+        of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)), confidence)
         low, high = min(low, of_hits[0]), max(high, of_hits[1])
     return Estimate(mean, float(low), float(high))
 
@@ -123,12 +126,25 @@ def share_to_compare(
     return Estimate(mean, low, high)
 
 
-def _of_logit(mean: float, found: Floats) -> tuple[float, float]:
+def _beyond_outliers(mean: float, found: Floats) -> tuple[float, float]:
+    """Return Student's interval, moved by what two more outliers as far would add."""
+    low, high = scatter_interval(mean, found)
+    move = _outlier(mean, found)
+    return low + min(move, 0.0), high + max(move, 0.0)
+
+
+def _outlier(mean: float, found: Floats) -> float:
+    """Return by how much two more parts as far out as the farthest on one side move a mean."""
+    return float(2 * ((found.max() - mean) - (mean - found.min())) / len(found))
+
+
+def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
     """Return Student's interval of the logit of a mean, from what each part says of it."""
     if not 0 < mean < 1:
         return mean, mean
     error = found.std(ddof=1) / len(found) ** 0.5
-    half = student(upper_probability(), len(found) - 1) * error / (mean * (1 - mean))
+    wide = student(upper_probability(confidence), len(found) - 1)
+    half = wide * error / (mean * (1 - mean))
     low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
     return low, high
 
@@ -159,8 +175,9 @@ def moments_of_rows(
     mean = float(np.average(values, weights=weights))
     squares = (values - mean) ** 2
     variance = float(np.average(squares, weights=weights))
-    found = Estimate(mean, *scatter_interval(mean, pulls(values, weights, part)))
-    ends = np.asarray(scatter_interval(0.0, pulls(squares, weights, part) / max(variance, 1e-300)))
+    found = Estimate(mean, *_beyond_outliers(mean, pulls(values, weights, part)))
+    relative = pulls(squares, weights, part) / max(variance, 1e-300)
+    ends = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
     return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
 
 

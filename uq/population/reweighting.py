@@ -7,11 +7,10 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-from uq.errors import InputError
 from uq.intervals import Replicates
 from uq.population.densities import changed_laws, log_ratio, share_without_rows
 from uq.population.scaling import Inputs, integrated
-from uq.population.smoothing import Smoothed, smoothed
+from uq.population.smoothing import Smoothed, no_weights, smoothed
 from uq.rows.element import Element
 from uq.rows.elements import elements_of
 
@@ -32,19 +31,15 @@ class Weighting:
     ----------
     used : dict of str to Smoothed
         Element -> its weights.
-    refused : dict of str to str
-        Element -> why its weights cannot be trusted.
-
-    Raises
-    ------
-    InputError
-        The other study has values where no row can be.
+    refused : dict of str to Smoothed
+        Element -> its weights, which cannot be trusted, or are impossible: the other study has
+        values where no row can be.
     """
 
     def __init__(self, rows: xr.Dataset, old: Inputs, new: Inputs, part: Replicates):
         self._rows, self._old, self._new, self._part = rows, old, new, part
         self.used: dict[str, Smoothed] = {}
-        self.refused: dict[str, str] = {}
+        self.refused: dict[str, Smoothed] = {}
         self.of = cache(self._of)
 
     @property
@@ -60,7 +55,7 @@ class Weighting:
                 law = integrated(self._rows, element.declared, self._new).law
             found = self.of(law.inputs if law else ())
             if found.refusal:
-                self.refused[element.name] = found.refusal
+                self.refused[element.name] = found
                 continue
             self.used[element.name] = found
             yield replace(element, law=law, weights=found.weights)
@@ -69,11 +64,13 @@ class Weighting:
         """Return the weights of rows in which these inputs are integrated."""
         for name in changed_laws(self._old, self._new):
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
-                raise InputError(
+                return no_weights(
+                    len(next(iter(self._old.values.values()))),
                     f"uncertain.{name}: has {share:.2g} of its probability where the study's law"
-                    " has none, so that no row is there; run it as a study of its own"
+                    " has none, so that no row is there; run it as a study of its own",
                 )
         weights = log_ratio(self._old, self._new, inputs)
         if not np.isfinite(weights.max()):
-            raise InputError("no row of this result is possible under the other laws")
+            why = "no row of this result is possible under the other laws"
+            return no_weights(len(weights), why)
         return smoothed(weights, self._part)

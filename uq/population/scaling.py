@@ -180,7 +180,8 @@ def _exponents(
     for leader in found:
         members = [leader, *(name for name, other in inputs.tied.items() if other == leader)]
         if other := next((name for name in members if name not in scales), ""):
-            kept[leader] = f"{other} has the same value and does more than scale lives"
+            same = "it" if other == leader else f"{other} has the same value and"
+            kept[leader] = f"{same} does more than scale lives"
         elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
             kept[leader] = f"{other} is a multiple of it"
     return {name: exponent for name, exponent in found.items() if exponent}, kept

@@ -11,12 +11,13 @@ from uq.contract import Floats
 from uq.intervals import Replicates, is_constant
 from uq.rows.elements import replicates_of
 from uq.rows.weights import largest_weight, row_weights
-from uq.tails import generalised_pareto, shrunk
+from uq.tails import DISTINCT, generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
 _HOPELESS = 0.7
 _NEGLIGIBLE = 1e-3
 _LITTLE = 0.01
+_SAME = 1e-9  # relative difference of numbers that only rounding tells apart
 
 
 def effective_rows(numbers: Floats) -> float:
@@ -46,6 +47,8 @@ class Smoothed(NamedTuple):
         Kish's number of equal ones that are worth as much.
     most : float
         The largest weight that a row can have.
+    impossible : str
+        Why there are none, or "".
     """
 
     weights: Floats
@@ -53,11 +56,12 @@ class Smoothed(NamedTuple):
     rows: int
     effective: float
     most: float = inf
+    impossible: str = ""
 
     @property
     def refusal(self) -> str:
         """Why they cannot be trusted, or ""."""
-        return refusal(self.k, self.rows)
+        return self.impossible or refusal(self.k, self.rows)
 
 
 def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
@@ -97,6 +101,11 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
     return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
 
 
+def no_weights(rows: int, why: str) -> Smoothed:
+    """Return what stands for weights of rows that can have none."""
+    return Smoothed(np.ones(rows), inf, rows, 0.0, impossible=why)
+
+
 def carries_little(most: float, rows: int) -> bool:
     """Whether no row of so many can carry more than a hundredth of what all carry."""
     return most <= _LITTLE * rows
@@ -123,7 +132,8 @@ def tail_shape(numbers: Floats) -> float:
     """Return the shape of the law of the largest of some numbers [1]_, not negative.
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
-    where all others are equal, infinite where there are too few.
+    where all others are equal, or the largest are a few values that many rows have, as under
+    listed values; infinite where there are too few.
 
     References
     ----------
@@ -137,6 +147,8 @@ def tail_shape(numbers: Floats) -> float:
     count = _tail_size(len(numbers))
     if len(counted) < _FEWEST:
         return inf
+    if _are_few_values(counted, count):
+        return -inf
     excess = counted
     if len(counted) > count and counted[-count] > counted[-count - 1]:
         excess = counted[-count:] - counted[-count - 1]
@@ -177,6 +189,14 @@ def per_sample(numbers: Floats, part: Replicates) -> Floats:
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
     return np.bincount(place, weights=numbers).astype(float)
+
+
+def _are_few_values(ascending: Floats, count: int) -> bool:
+    """Whether the largest are fewer than ten values, each of which ten rows or more have."""
+    close = _SAME * ascending[-1]
+    largest = ascending[ascending >= ascending[-min(count, len(ascending))] - close]
+    sizes = np.diff(np.flatnonzero(np.r_[True, np.diff(largest) > close, True]))
+    return bool(len(sizes) < DISTINCT <= sizes.min())
 
 
 def _tail_size(rows: int) -> int:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import isfinite
+from math import isfinite, isnan
 
 import numpy as np
 from scipy import special
@@ -16,7 +16,7 @@ FEWEST_WORLDS = 20
 """Fewer do not show 5 and 95 % points."""
 
 _CELLS = 200
-_MARGIN = 3.0  # of the grid beyond the probits seen
+_MARGIN = 3.0  # of the grid beyond the probits seen, where no world has all or none of its units
 _FARTHEST = 8.0
 _NARROWEST = 1.5  # the likelihood of n units is wider than sqrt(1.5 / n) on the scale of probits
 _MOST_NODES = 41
@@ -53,6 +53,8 @@ def known(ended: Floats, nodes: Floats, part: Replicates) -> Exceeding:
     def of_one_node(probability: float) -> Estimate:
         hits = ended[:, 0] > probability
         low, high = share_interval(hits, part)
+        if isnan(low) and part is not None and np.ptp(part) > 0:  # replicates agree
+            low, high = share_interval(hits)
         return Estimate(float(hits.mean()), low, high)
 
     def exceeding(probability: float) -> Estimate:
@@ -135,10 +137,10 @@ class Noisy:
         if min(hits.sum(), (units @ weights).sum() - hits.sum()) < FEWEST_WORLDS:
             self.refusal = FEW_ENDED
             return
-        size = units * (binomial / max(noise, 1e-12))
+        size = units * (binomial / max(noise, 1e-12) if binomial > 0 else 1.0)
         seen = _probit((mean * size + 0.5) / (size + 1))
-        low = max(float(seen.min()) - _MARGIN, -_FARTHEST)
-        high = min(float(seen.max()) + _MARGIN, _FARTHEST)
+        low = max(float(seen.min()) - _MARGIN, -_FARTHEST) if mean.min() > 0 else -_FARTHEST
+        high = min(float(seen.max()) + _MARGIN, _FARTHEST) if mean.max() < 1 else _FARTHEST
         self._z = np.linspace(low, high, _CELLS)
         self._cell = self._z[1] - self._z[0]
         size = np.minimum(size, _NARROWEST / self._cell**2)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from markupsafe import Markup
 
 from uq.analysis.findings import Findings
+from uq.analysis.summary import REGIME
 from uq.conclusions.page import sayings
 from uq.conclusions.parts import Answer
 from uq.greek import readable
@@ -14,8 +15,6 @@ from uq.report.indices import Method, Subject, of_output, output_of
 from uq.report.outcomes import Outcome, category_table, result_tables, words_used
 from uq.report.pictures import Picture
 from uq.rows.elements import analysis_of, shown_outputs
-
-REGIME = "regime"
 
 
 class Group(NamedTuple):
@@ -81,6 +80,7 @@ def groups(
 
 
 def _shares(findings: Findings, name: str) -> Iterator[Table]:
-    """Yield the shares of a category."""
-    if shares := findings.summary.categories.get(name):
-        yield category_table(name, shares)
+    """Yield the shares of a category, of each element."""
+    for element, shares in findings.summary.categories.items():
+        if element.partition("[")[0] == name and shares:
+            yield category_table(element, shares)

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from uq.contract import Floats, Mask, Output
+from uq.element_names import places as places
 
 
 class RowLaw(Protocol):
@@ -144,27 +145,17 @@ class Element:
         return np.where(self.censored, np.inf, self.values)[self.present]
 
 
-def places(
-    output: str, coordinates: Mapping[str, Any]
-) -> Iterator[tuple[str, tuple[int, ...], dict[str, Any]]]:
-    """Yield name, index and coordinates of each element of an output, in order.
+def whole_name(output: str) -> str:
+    """Return the name of all elements of an output together: ``work_rate[:]``."""
+    return f"{output}{_WHOLE}"
 
-    Parameters
-    ----------
-    output : str
-    coordinates : dict of str to array
-        Of each dimension, in order.
 
-    Yields
-    ------
-    tuple
-        Coordinates in names are written like Python's repr, without quotes.
-    """
-    axes = {dim: np.asarray(axis) for dim, axis in coordinates.items()}
-    for index in np.ndindex(*map(len, axes.values())):
-        place = {dim: axes[dim][i].item() for dim, i in zip(axes, index, strict=True)}
-        label = ",".join(f"{dim}={value}" for dim, value in place.items())
-        yield f"{output}[{label}]" if label else output, index, place
+def is_whole(name: str) -> bool:
+    """Whether a name is that of all elements together."""
+    return name.endswith(_WHOLE)
+
+
+_WHOLE = "[:]"
 
 
 def elements_in(

@@ -1,10 +1,12 @@
 """The elements of a result's outputs, and what the result says of its rows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from uq.clusters import Clusters
 from uq.contract import Floats as Floats
@@ -15,7 +17,7 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.element import Element as Element
-from uq.rows.element import elements_in
+from uq.rows.element import elements_in, places, whole_name
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of
@@ -130,9 +132,41 @@ def labels(variable: xr.DataArray) -> xr.DataArray:
     return found
 
 
+def category_codes(ds: xr.Dataset, name: str) -> dict[str, NDArray[np.int8]]:
+    """Return the codes of a category, by the name of its element.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    name : str
+        ``period`` for all elements, ``period[site=left]`` for one.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        When it has no such element.
+    """
+    output = name.partition("[")[0]
+    axes = {str(dim): ds[dim].values for dim in ds[output].dims[1:]}
+    values: Any = ds[output].values
+    found = {label: values[(slice(None), *index)] for label, index, _ in places(output, axes)}
+    if name != output and name not in found:
+        raise _no_such_element(name, found)
+    return found if name == output else {name: found[name]}
+
+
+def _no_such_element(name: str, known: Collection[str]) -> InputError:
+    return InputError(f"no such element '{name}'{nearest(name, known)} (allowed: {choices(known)})")
+
+
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
     """Return the outputs that a study names, or all if it names none."""
-    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds)))
+    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)))
     return named if analysis.outputs else output_names(ds)
 
 
@@ -183,7 +217,8 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     ----------
     ds : xarray.Dataset
     name : str
-        ``time_to_depth`` for all its elements, ``time_to_depth[site=left,depth=0.00025]`` for one.
+        ``time_to_depth`` or ``time_to_depth[:]`` for all its elements,
+        ``time_to_depth[site=left,depth=0.00025]`` for one.
 
     Returns
     -------
@@ -201,14 +236,11 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
             f"'{output}' is a category, not a number; 'uq summary' shows the shares of regimes, and"
             f" 'uq sensitivity --output {output}' what determines them"
         )
-    if name == output:
+    if name == output or (name == whole_name(output) and len(found) > 1):
         return found
     chosen = [element for element in found if element.name == name]
     if not chosen:
-        names = [element.name for element in found]
-        raise InputError(
-            f"no such element '{name}'{nearest(name, names)} (allowed: {choices(names)})"
-        )
+        raise _no_such_element(name, [element.name for element in found])
     return chosen
 
 

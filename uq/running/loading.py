@@ -18,8 +18,10 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.returned import Returned, as_plain, from_plain, joined
 from uq.running.environment import started
+from uq.running.options import Say, ignore
 from uq.study.registry import code_of, find_model, located, with_returns
 from uq.study.sources import DISTRIBUTION
+from uq.wording import duration
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -28,11 +30,12 @@ SEEN = 64
 """Rows of a design that show what a function returns."""
 
 _WORTH_KEEPING = 1.0  # seconds that these rows took
+_SLOW = 3.0  # seconds after which a user is told that rows are run
 
 Row = tuple[list[float], int]
 
 
-def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
+def load_study(path: str | PathLike[str], model: str | None = None, say: Say = ignore) -> "Study":
     """Read and check a study file.
 
     Parameters
@@ -42,6 +45,8 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
     model : str, optional
         Use this model instead of the file's: an installed name, ``"package.module:ATTRIBUTE"``,
         or a file ``"mine.py"`` (``"mine.py:NAME"`` where it has several).
+    say : callable, optional
+        Called with a line for the user if it takes long to find out what the model returns.
 
     Returns
     -------
@@ -60,7 +65,7 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> "Study":
     """
     from uq.study import definition
 
-    return _known(definition.load_study(path, model and located(model)))
+    return _known(definition.load_study(path, model and located(model)), say)
 
 
 def study_of_text(text: str, source: str, model: str | None) -> "Study":
@@ -80,7 +85,7 @@ def load_model(reference: str) -> Model:
     return find_model(with_returns(reference, _found(reference, [nominal])))
 
 
-def _known(study: "Study") -> "Study":
+def _known(study: "Study", say: Say = ignore) -> "Study":
     """Return a study whose model has outputs."""
     if study.model.outputs:
         return study
@@ -92,11 +97,11 @@ def _known(study: "Study") -> "Study":
     tried = [(list(nominal.values()), 0)]
     tried += zip(first.x.tolist(), first.seed.tolist(), strict=True)
     reference = study.model_reference
-    known = with_returns(reference, _found(reference, tried))
+    known = with_returns(reference, _found(reference, tried, say))
     return study_from_text(study.text, study.path, known)
 
 
-def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
+def _found(reference: str, tried: list[Row], say: Say = ignore) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
     from platformdirs import user_cache_path
 
@@ -106,7 +111,7 @@ def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()
-    found = joined(list(_returned(reference, tried)))
+    found = joined(list(_returned(reference, tried, say)))
     if time.monotonic() - began > _WORTH_KEEPING:
         with suppress(OSError):
             kept.parent.mkdir(parents=True, exist_ok=True)
@@ -114,7 +119,7 @@ def _found(reference: str, tried: list[Row]) -> dict[str, Returned]:
     return found
 
 
-def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]:
+def _returned(reference: str, tried: list[Row], say: Say) -> Iterator[dict[str, Returned]]:
     """Yield what rows return; a later one that fails is passed over, as in a run it has a status.
 
     Raises
@@ -126,9 +131,18 @@ def _returned(reference: str, tried: list[Row]) -> Iterator[dict[str, Returned]]
 
     todo = iter(enumerate(tried))
     left = len(tried)
+    began, told = time.monotonic(), False
     while left:
         for i, said, value in _in_process(reference, todo):
             left = len(tried) - i - 1
+            seconds = time.monotonic() - began
+            if seconds > _SLOW and left and not told:
+                told = True
+                more = seconds / (i + 1) * left
+                say(
+                    f"running {left} more rows, once, to see what the model returns: about"
+                    f" {duration(more) or f'{more:.0f} s'}; 'returns' in @uq.machine states it"
+                )
             if said == probe.REFUSED:
                 raise value
             if said == probe.RETURNED:

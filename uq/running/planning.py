@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from math import ceil, gcd
-from threading import Lock
+from threading import Event, Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +28,8 @@ from uq.study.definition import Study
 
 PILOT_SECONDS = 8.0
 """Time for the pilot, once the model is compiled."""
+
+_SLOW_SECONDS = 2.0  # of a first chunk, of which loading takes little
 
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
@@ -92,12 +94,18 @@ def pilot(
     RunOptions(workers).check()
     workload = workload_of(study)
     total, count = workload.total, processes(workload, workers)
+    compiled = Event()
+
+    def when_compiling() -> None:
+        compiled.set()
+        compiling()
+
     with ExitStack() as stack:
         evaluators = [
-            stack.enter_context(isolated(workload, None, compiling)) for _ in range(count)
+            stack.enter_context(isolated(workload, None, when_compiling)) for _ in range(count)
         ]
         load_seconds = _load_seconds()
-        row_seconds, first_seconds = _warm_up(workload, evaluators)
+        row_seconds, first_seconds = _warm_up(workload, evaluators, compiled)
         size = ChunkSizes(workload).good(row_seconds)
         done, chunks = _spread_chunks(workload, evaluators, size)
     starts, some, found, seconds = zip(*done, strict=True)
@@ -142,16 +150,21 @@ def _timed(
     return rows, chunk, time.perf_counter() - began
 
 
-def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float, float]:
+def _warm_up(
+    workload: Workload, evaluators: Sequence[Evaluate], compiled: Event
+) -> tuple[float, float]:
     """Compile the model in one process, and load it in the others.
 
     Then one process computes growing chunks, as a run does before it starts workers: return the
-    time of a row, and of all those rows.
+    time of a row, and of all those rows. Slow rows of a model that is not compiled are known at
+    once.
     """
     sizes = ChunkSizes(workload)
     size, seconds = min(workload.total, sizes.first), 0.0
     first, *others = evaluators
-    _timed(first, workload, 0, size)
+    *_, last = _timed(first, workload, 0, size)
+    if last > _SLOW_SECONDS and not compiled.is_set():
+        return last / size, last
     with ThreadPoolExecutor(max(len(others), 1)) as pool:
         list(pool.map(lambda evaluate: _timed(evaluate, workload, 0, size), others))
     while True:

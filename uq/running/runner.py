@@ -12,8 +12,9 @@ from pathlib import Path
 import xarray as xr
 
 from uq import store
+from uq.analysis import stopping
 from uq.errors import InputError
-from uq.rows import results, stopping
+from uq.rows import results
 from uq.rows.sampling import rows
 from uq.rows.weights import has_weights
 from uq.rows.workload import Workload, workload_of

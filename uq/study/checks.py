@@ -5,12 +5,14 @@ from typing import Any
 
 from uq.contract import Model
 from uq.designs.design import Design
+from uq.designs.layouts import PATHS
 from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.designs.registry import DESIGNS
-from uq.errors import nearest
-from uq.inputs.faults import Fault
+from uq.element_names import places
+from uq.errors import choices, nearest
+from uq.inputs.faults import Fault, unknown
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
-from uq.methods.registry import designs_for, fed_by
+from uq.methods.registry import designs_for, fed_by, kinds_with_intervals
 from uq.written import misfit
 
 Tables = Mapping[str, Mapping[str, Any]]
@@ -47,14 +49,50 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         for one in (value if isinstance(value, list) else [value]) * (not faults):
             yield from _unit_faults(model, name, path, one)
+    for name, side in analysis.get("joint_bounds", {}).items():
+        path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
+        yield from _output_faults(model, name, path, side, no_number)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
         path = ("design", "until", "output")
         faults = list(_output_faults(model, name, path, until["output"], "it has no numbers"))
         yield from faults
-        for key in ("above", "below") * (not faults):
-            yield from _unit_faults(model, name, ("design", "until", key), until.get(key))
+        if not faults and model.outputs:
+            yield from _until_faults(model, name, until)
+            yield from _element_faults(model, name, until["output"], given)
+
+
+def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield what does not suit the output by which a run stops."""
+    path = ("design", "until")
+    for key in ("above", "below"):
+        yield from _unit_faults(model, name, (*path, key), until.get(key))
+    if "b_life" in until and not model.outputs[name].is_lifetime:
+        lives = [one for one, output in model.outputs.items() if output.is_lifetime]
+        problem = f"'{name}' is not a lifetime (lifetimes: {choices(lives)})"
+        yield Fault((*path, "b_life"), problem, until["b_life"])
+    half_width = until["half_width"]
+    pure = next((key for key in ("above", "below", "index") if key in until), "")
+    if not pure:
+        yield from _unit_faults(model, name, (*path, "half_width"), half_width)
+    elif isinstance(half_width, str) and (problem := misfit(half_width, pure, "1")):
+        yield Fault((*path, "half_width"), problem, half_width)
+
+
+def _element_faults(
+    model: Model, name: str, element: str, given: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """Yield whether an output has no such element with these settings."""
+    settings, _ = read_settings(model, given)
+    if element == name or settings is None:
+        return
+    coordinates = model.coordinates(settings)
+    axes = {dim: coordinates[dim] for dim in model.outputs[name].dims}
+    names = [label for label, *_ in places(name, axes)]
+    if element not in names:
+        problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
+        yield Fault(("design", "until", "output"), problem, element)
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -128,23 +166,28 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     if "until" in asks and not design.append_only:
         able = _able(lambda d: d.append_only)
         problems["until"] = f"a '{method}' design cannot grow; use method = {able}"
-    elif "until" in asks and not design.independent and table.get("replicates", 1) < 2:
-        problems["until"] = (
-            f"a '{method}' design without replicates gives no interval; set replicates = 8"
-        )
+    elif "until" in asks:
+        yield from _index_faults(design, method, table["until"], tables["uncertain"])
+        paths = design.layout is PATHS and "index" in table["until"]  # they are independent
+        if not (design.independent or paths) and table.get("replicates", 1) < 2:
+            problems["until"] = (
+                f"a '{method}' design without replicates gives no interval; set replicates = 8"
+            )
     for key, problem in problems.items():
         yield Fault(("design", key), problem, True if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
-    if "tolerance" in asks and several:
-        problem = f"refused: its confidence assumes independent rows, {_SEVERAL}"
-        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
-    elif "tolerance" in asks and not design.independent and not stated:
-        able = independent + ", independent = true if they are" * design.imported
-        problem = (
-            f"refused: its confidence assumes independent rows, and those of '{method}' are not;"
-            f" use method = {able}, or leave the bound out"
-        )
-        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
+    for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
+        why = ""
+        if several:
+            why = f"independent rows, {_SEVERAL}"
+        elif not design.independent and not stated:
+            able = independent + ", independent = true if they are" * design.imported
+            why = (
+                f"independent rows, and those of '{method}' are not; use method = {able}, or leave"
+                " the bound out"
+            )
+        if why:
+            yield Fault(("analysis", key), f"refused: its confidence assumes {why}", analysis[key])
     if "twin" in asks and several:
         problem = f"needs independent rows, {_SEVERAL}"
         yield Fault(("analysis", "twin"), problem, analysis["twin"])
@@ -159,6 +202,27 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     unsaid = design.imported and not stated
     dependent = bool(tables["dependence"]) or unsaid
     yield from _method_faults(method, analysis.get("sensitivity", ()), dependent, unsaid)
+
+
+def _index_faults(
+    design: Design, method: str, until: Mapping[str, Any], uncertain: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """Yield what is wrong with the index by which a run stops."""
+    if (index := until.get("index")) is None:
+        return
+    path, known = ("design", "until"), kinds_with_intervals(design)
+    if not known:
+        able = _able(lambda d: d.append_only and bool(kinds_with_intervals(d)))
+        problem = f"a '{method}' design gives no index with an interval; use method = {able}"
+        yield Fault((*path, "index"), problem, index)
+    elif index not in known:
+        yield Fault((*path, "index"), unknown("index with an interval", index, known), index)
+    inputs = [name for name, law in uncertain.items() if "equals" not in law]
+    for key in ("input", "difference"):
+        given = until.get(key, [])
+        for name in [given] if isinstance(given, str) else given:
+            if name not in inputs:
+                yield Fault((*path, key), unknown("input with a law", name, inputs), given)
 
 
 _SEVERAL = "and the units and repeats of one sample are not; set both to 1, or leave it out"

@@ -4,9 +4,10 @@ Pydantic checks files against these classes (`uq.study.reading`), and the JSON S
 comes from them (`uq.study.schema`).
 """
 
+import re
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import (
     AfterValidator,
@@ -88,6 +89,22 @@ Quantity = Annotated[float, WrapValidator(_quantity, json_schema_input_type=floa
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
 
 
+def _positive(value: float) -> float:
+    if not value > 0:
+        raise ValueError("must be greater than 0")
+    return value
+
+
+_B_LIFE = r"^B(\d{1,2}(\.\d{1,9})?)$"
+
+
+def _share_ended(name: str) -> str:
+    found = re.match(_B_LIFE, name)
+    if found is None or not float(found[1]) > 0:
+        raise ValueError('must be "B" and a percentage, such as "B10": the time by which 10 % end')
+    return name
+
+
 class _Table(BaseModel):
     model_config = STRICT
 
@@ -104,15 +121,35 @@ class Until(_Table):
     """What must be known how well for a run to stop before its budget is spent."""
 
     output: str = Field(description="an output, all its elements, or one element of it")
-    half_width: float = Field(gt=0, description="of the interval, in the estimate's unit")
+    half_width: Annotated[Quantity, AfterValidator(_positive)] = Field(
+        description='of the interval, in the estimate\'s unit, or text with its own: "2 days"',
+        json_schema_extra={"exclusiveMinimum": 0},
+    )
     above: Quantity | None = Field(None, description="of the probability of lying above this")
     below: Quantity | None = Field(None, description="of the probability of lying below this")
     quantile: Share | None = Field(None, description="of this quantile; if nothing, of the mean")
+    b_life: Annotated[str, AfterValidator(_share_ended)] | None = Field(
+        None,
+        description='of this B-life: `"B10"` is the time by which 10 % have ended',
+        json_schema_extra={"pattern": _B_LIFE},
+    )
+    index: str | None = Field(
+        None, description='of this index, such as `"ST"`, of each input; the design must provide it'
+    )
+    input: str | None = Field(None, description="with `index`: of this input only")
+    difference: Annotated[tuple[str, str], LIST, _DISTINCT] | None = Field(
+        None, description="with `index`: of the difference between those of two inputs"
+    )
 
     @model_validator(mode="after")
     def _check_one(self) -> Self:
-        if len({"above", "below", "quantile"} & self.model_fields_set) > 1:
-            raise ValueError("takes at most one of above, below and quantile")
+        given = self.model_fields_set
+        if len({"above", "below", "quantile", "b_life", "index"} & given) > 1:
+            raise ValueError("takes at most one of above, below, quantile, b_life and index")
+        if len({"input", "difference"} & given) > 1:
+            raise ValueError("takes at most one of input and difference")
+        if {"input", "difference"} & given and self.index is None:
+            raise ValueError('input and difference need index, such as index = "ST"')
         return self
 
     @property
@@ -121,8 +158,22 @@ class Until(_Table):
         return self.below if self.above is None else self.above
 
     @property
+    def probability(self) -> float | None:
+        """That of a quantile or B-life, if one is meant."""
+        return self.quantile if self.b_life is None else float(self.b_life[1:]) / 100
+
+    @property
+    def label(self) -> str:
+        """The input of an index, or the two whose difference is meant; "" for all."""
+        return self.input or " - ".join(self.difference or ())
+
+    @property
     def estimate(self) -> str:
-        """What is estimated, as tables call it."""
+        """What is estimated of an element, as tables call it."""
+        if self.index is not None:
+            return f"{self.index} {self.label}".strip()
+        if self.b_life is not None:
+            return self.b_life
         if self.quantile is not None:
             return f"quantile {self.quantile}"
         if self.threshold is not None:
@@ -273,6 +324,12 @@ class AnalysisTable(_Table):
             }
         ),
     ] = Field(None, description="bounds that cover a share of all values, monte-carlo only")
+    joint_bounds: dict[str, Literal["lower", "upper", "both"]] = Field(
+        {},
+        description='output = "lower", "upper" or "both": bounds that hold for all of these outputs'
+        " at once, with the coverage and confidence of `tolerance` (0.95 if not given),"
+        " monte-carlo only",
+    )
     thresholds: dict[
         str,
         Annotated[

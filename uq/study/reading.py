@@ -10,7 +10,7 @@ from uq.inputs.faults import MISSING, Fault, fault_of, unknown
 from uq.inputs.law import Law
 from uq.inputs.registry import LAWS
 from uq.literals import read_toml
-from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance
+from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
 
 
 def read_study_text(text: str, source: str = "study") -> StudyFile:
@@ -136,6 +136,6 @@ def _allowed(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[st
     if len(path) == 1:
         return "table", list(StudyFile.model_fields)
     if len(path) == 3:
-        return "key", list(Tolerance._fields)
+        return "key", list(Until.model_fields if path[1] == "until" else Tolerance._fields)
     table: Any = StudyFile.model_fields[path[0]].annotation
     return "key", list((DependenceTable if path[0] == "dependence" else table).model_fields)

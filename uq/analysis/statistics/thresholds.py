@@ -66,9 +66,10 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
     found: dict[str, Any] = {one.key[-1]: _side(one) for one in group}
     found |= group[0].facts
     guesses = {one.key[-1]: one.otherwise for one in group if one.otherwise}
+    if reason := group[0].estimate.reason:
+        found["reason"] = reason
     if guesses:
         assumes = group[0].best.estimate.assumes
-        found["reason"] = group[0].estimate.reason
         found["kaplan_meier"] = {side: _side(one) for side, one in guesses.items()}
         found["kaplan_meier"]["assumes"] = assumes
     return found

@@ -187,11 +187,12 @@ def rare_event(
     json: given.Json = False,
 ) -> int:
     """Estimate the probability of a rare event."""
+    from uq.cli.progress import say
     from uq.cli.rare_event import limit, show
     from uq.exploring import rare_events
     from uq.running.loading import load_study
 
-    loaded = load_study(study, model)
+    loaded = load_study(study, model, say)
     threshold, is_below = limit(loaded, output, above, below)
     say_when_interrupted("interrupted; nothing was written")
     ds = rare_events.rare_event(

@@ -6,12 +6,10 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.conclusions.page import STYLE
 from uq.report.dossier import assessed, found
 from uq.report.dossier.items import Item
 from uq.report.dossier.outline import DOCUMENTS, OUTLINE, Heading
-from uq.report.page import study_text, templates
-from uq.rows.elements import study_file_of
+from uq.report.layout import laid_out
 
 Source = Callable[[Findings, str], Iterator[Item]]
 
@@ -58,28 +56,5 @@ def chapters(ds: xr.Dataset, file: str) -> list[Chapter]:
 
 
 def dossier(ds: xr.Dataset, name: str) -> str:
-    """Return the dossier of a result as HTML, the same text each time.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result.
-    name : str
-        The name of its file.
-
-    Returns
-    -------
-    str
-    """
-    return (
-        templates()
-        .get_template("dossier/dossier.html")
-        .render(
-            study=study_file_of(ds),
-            attrs=ds.attrs,
-            chapters=chapters(ds, name),
-            documents=DOCUMENTS,
-            answer_style=STYLE,
-            **study_text(ds),
-        )
-    )
+    """Return the dossier of a result as HTML; as `uq.report.page.page` returns its report."""
+    return laid_out("dossier/dossier.html", ds, chapters=chapters(ds, name), documents=DOCUMENTS)

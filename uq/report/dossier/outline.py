@@ -1,4 +1,12 @@
-"""The headings of a dossier, and the documents that they follow."""
+"""The headings of a dossier, and the documents that they follow.
+
+The headings are the topics on which RG 1.245 asks a submittal to report (its section C.2), in that
+order, and the conclusions of NUREG/CR-7278, its technical basis; JCGM 101 adds what belongs to the
+propagation of distributions. Of both documents of the NRC, purpose, graded approach and their
+relation were read again for this outline, but the text of section C.2 was not at hand: its topics
+have not been compared word for word, their finer numbers are not given, and a draft revision of the
+guide (DG-1422, February 2024) is not followed. Check the guide before a submittal relies on it.
+"""
 
 from typing import NamedTuple
 
@@ -22,7 +30,7 @@ class Heading(NamedTuple):
 
 DOCUMENTS = {
     "RG 1.245": "U.S. Nuclear Regulatory Commission, Preparing probabilistic fracture mechanics"
-    " submittals, Regulatory Guide 1.245, Revision 0, January 2022.",
+    " submittals, Regulatory Guide 1.245, Revision 0, January 2022 (ADAMS ML21334A158).",
     "NUREG/CR-7278": "L. Hund, J. Lewis, N. Martin, M. Starr, D. Brooks, A. Zhang, R. Dingreville,"
     " A. Eckert, J. Mullins, P. Raynaud, D. Rudland, D. Dijamco, S. Cumblidge, Technical basis for"
     " the use of probabilistic fracture mechanics in regulatory applications, NUREG/CR-7278,"

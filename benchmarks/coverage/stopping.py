@@ -1,0 +1,212 @@
+"""Runs that stop when an interval is narrow enough."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import stats
+
+from benchmarks.coverage import scaled
+from benchmarks.coverage.indices import NAMES, ishigami
+from benchmarks.coverage.problems import (
+    EDGE,
+    ISHIGAMI,
+    ISHIGAMI_MEAN,
+    JUMP,
+    LIFE,
+    MIXED,
+    ishigami_cdf,
+    jump,
+    jump_ppf,
+)
+from benchmarks.coverage.tally import Tally
+from uq.analysis import stopping
+from uq.contract import Output
+from uq.designs.registry import DESIGNS
+from uq.methods.indices import S1, ST
+from uq.methods.sample import Sample
+from uq.methods.sobol import sobol_indices
+from uq.rows.element import Element
+from uq.study.file import DesignTable, Until
+
+CHECKS = (0, 1, 2)
+"""Checks whose median half-width is the required one: runs stop there or near."""
+
+PILOT = 40
+"""Repetitions from which the required half-widths come."""
+
+ENDING = 0.4  # share of lives of the last kind that end
+LEAVING = 1.5  # mean time at which a row leaves
+
+
+def _life(u):
+    """Return lives with a heavy tail: the inverse of the sum of three exponential rates."""
+    return -1 / np.log(u[..., :3]).sum(axis=-1)
+
+
+def _left(u):
+    """Return the same lives, censored when a row leaves."""
+    return _cut(_life(u), u)
+
+
+def _mixed(u):
+    """Return Weibull lives of which most never end; the others may be censored."""
+    ends = u[..., 0] < ENDING
+    return _cut(np.where(ends, MIXED.isf(u[..., 1]), np.inf), u)
+
+
+def _cut(life, u):
+    leaving = -LEAVING * np.log(u[..., 3])
+    censored = np.isfinite(life) & (life > leaving)
+    return np.where(censored, leaving, life), censored
+
+
+def _jump(u):
+    return u[..., 0] + u[..., 2] + JUMP * (u[..., 0] + u[..., 1] > EDGE)
+
+
+def _ishigami(u):
+    x = 2 * np.pi * u[..., :3] - np.pi
+    return ishigami(x.reshape(-1, 3)).reshape(u.shape[:-1])
+
+
+VALUE, LIFETIME = Output("1", "a value"), Output("s", "a life", "lifetime")
+INPUTS = 4
+
+ROWS = {
+    "mean": (_ishigami, VALUE, {}, ISHIGAMI_MEAN),
+    "median": (_jump, VALUE, {"quantile": 0.5}, jump_ppf(0.5)),
+    "P(> 2.5)": (_jump, VALUE, {"above": 2.5}, jump()["share"]),
+    "P(> 9.0)": (_ishigami, VALUE, {"above": 9.0}, 1 - ishigami_cdf(9.0)),
+    "B10": (_life, LIFETIME, {"b_life": "B10"}, LIFE.ppf(0.1)),
+    "B50, censored": (_left, LIFETIME, {"b_life": "B50"}, LIFE.ppf(0.5)),
+    "B10, never or censored": (_mixed, LIFETIME, {"b_life": "B10"}, MIXED.ppf(0.1 / ENDING)),
+}
+"""Quantity -> function of points of the unit cube, its output, until, truth."""
+
+
+def rows(method, samples, replicates, repetitions):
+    """Count the intervals of statistics at which runs stop."""
+    each = f"{replicates} replicates of at most" if replicates > 1 else "at most"
+    tally = Tally(f"runs that stop, {method}, {each} {samples} samples", REASONS)
+    design = _design(method, samples, replicates)
+    sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
+    part = np.arange(samples * replicates) % replicates
+    for what, (function, output, asked, truth) in ROWS.items():
+        until, looks = Until(output="y", half_width=1.0, **asked), []
+        for seed in range(repetitions):
+            whole = _element(function(_points(design, INPUTS, seed)), output)
+            own = [_first(whole, size * replicates) for size in sizes]
+            replicate = [None if replicates == 1 else part[: len(one.values)] for one in own]
+            looks.append(
+                [
+                    stopping.statistic(one, until, of, level)
+                    for one, of in zip(own, replicate, strict=True)
+                ]
+            )
+        _stop(tally, what, sizes, looks, [[truth] * len(sizes)] * repetitions)
+    return tally.lines()
+
+
+def integrated(repetitions):
+    """Count B10 of lives that a lognormal input scales, at which runs stop."""
+    tally = Tally("runs that stop, at most 2048 lives scaled by an input", REASONS)
+    design = _design("monte-carlo", 2048, 1)
+    sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
+    until, looks = Until(output="y", half_width=1.0, b_life="B10"), []
+    for seed in range(repetitions):
+        rest, drawn = np.random.default_rng(seed).standard_normal((2, design.samples))
+        own = [scaled.element(rest[:n], drawn[:n], scaled.lognormal_term(1.0)) for n in sizes]
+        looks.append([stopping.statistic(one, until, None, level) for one in own])
+    truth = float(np.exp(np.sqrt(2) * stats.norm.ppf(0.1)))
+    _stop(tally, "B10", sizes, looks, [[truth] * len(sizes)] * repetitions)
+    return tally.lines()
+
+
+def _design(method, samples, replicates):
+    return DesignTable(method=method, samples=samples, replicates=replicates)
+
+
+def _points(design, inputs, seed):
+    """Return the points of a design, its replicates in turn, shape (rows, [blocks,] inputs)."""
+    points = DESIGNS[design.method].unit_rows(
+        seed=seed,
+        replicates=design.replicates,
+        d=inputs,
+        samples=design.samples,
+        second_order=False,
+        start=0,
+        stop=design.samples,
+    )
+    return points.reshape(-1, *points.shape[2 if points.shape[2] > 1 else 3 :])
+
+
+def _element(found, output):
+    values, censored = found if isinstance(found, tuple) else (found, np.zeros(len(found), bool))
+    return Element("y", "y", output, {}, values, censored, np.zeros(len(values), bool))
+
+
+def _first(element, rows):
+    kept = {name: getattr(element, name)[:rows] for name in ("values", "censored", "failed")}
+    return replace(element, **kept)
+
+
+INDICES = {
+    "ishigami": (_ishigami, ISHIGAMI),
+    "jump": (_jump, {kind: jump()[kind] for kind in ("S1", "ST")}),
+}
+"""Problem -> function of points of the unit cube, indices."""
+
+PAIR = ("x1", "x2")
+GROUPS = 256
+
+
+def indices(name, repetitions, replicates=8):
+    """Count the intervals of Sobol' indices, and of their differences, at which runs stop."""
+    function, truth = INDICES[name]
+    words = f"runs that stop, {name}, saltelli, {replicates} replicates of at most {GROUPS} groups"
+    tally = Tally(words, REASONS)
+    design = _design("saltelli", GROUPS, replicates)
+    sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
+    blocks = ("A", *(f"AB_{one}" for one in NAMES), "B")
+    seen = []
+    for seed in range(repetitions):
+        values = function(_points(design, len(NAMES), seed))
+        values = values.reshape(GROUPS, replicates, -1).swapaxes(0, 1)
+        seen.append([_indices_of(values[:, :size], blocks, level) for size in sizes])
+    for kind in (S1, ST):
+        known = dict(truth[kind.key])
+        known[" - ".join(PAIR)] = known[PAIR[0]] - known[PAIR[1]]
+        asked = {"widest": NAMES, "of x1": NAMES[:1], " - ".join(PAIR): (" - ".join(PAIR),)}
+        for what, names in asked.items():
+            looks = [[_widest(found[kind], names) for found in own] for own in seen]
+            truths = [[known[label] for label, _ in own] for own in looks]
+            estimates = [[estimate for _, estimate in own] for own in looks]
+            _stop(tally, f"{kind.key} {what}", sizes, estimates, truths)
+    return tally.lines()
+
+
+def _indices_of(values, blocks, level):
+    groups = np.arange(values.size).reshape(values.shape)
+    sample = Sample(values.ravel(), {}, groups, blocks, confidence=level, difference=PAIR)
+    return sobol_indices(sample).values
+
+
+def _widest(found, names):
+    return max(((name, found[name]) for name in names), key=lambda one: _half(one[1]))
+
+
+def _half(estimate):
+    return (estimate.high - estimate.low) / 2
+
+
+def _stop(tally, what, sizes, looks, truths):
+    """Count the intervals at which runs stop, for a few required half-widths."""
+    half = np.array([[_half(one) for one in own] for own in looks])
+    for check in CHECKS:
+        required = np.median(half[:PILOT, check])
+        for own, known, widths in zip(looks, truths, half, strict=True):
+            stop = np.append(np.flatnonzero(widths <= required), len(sizes) - 1)[0]
+            tally.estimate(f"{what}, about {sizes[check]} samples", known[stop], own[stop])
+
+
+REASONS = {}

@@ -1,0 +1,96 @@
+"""Fleets where lives never end, agree, or failed, and where units show little of their world."""
+
+import numpy as np
+import pytest
+from computed import computed, study_of
+from scipy import special, stats
+
+from uq.analysis.fleet import fleet_of
+from uq.analysis.fleet_json import fleet_json
+from uq.population.worlds import Noisy
+
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+
+
+def lognormal(sigma, **more):
+    return {"distribution": "lognormal", "median": 1.0, "sigma": sigma, **more}
+
+
+def rows(inputs, settings=None, **design):
+    """Return units whose lives are a b^-2 c^(1/2) exp(z/2)."""
+    return computed(
+        study_of(
+            {
+                "study": {"name": "fleet", "model": "scaled"},
+                "design": {"method": "monte-carlo", "samples": 100, "seed": 3} | design,
+                "uncertain": inputs,
+                "settings": settings or {},
+                "analysis": {"outputs": ["life"]},
+            },
+            "sample_models:SCALED",
+        )
+    )
+
+
+SHARED_Z = {"z": NORMAL | {"level": "shared"}, "a": lognormal(0.5)}
+
+
+def test_worlds_whose_units_never_end_have_no_end_of_the_band():
+    ds = rows(SHARED_Z, {"never_above": 0.5})
+    found = fleet_of(ds, 4)
+    assert found.first[0.5].high.numbers == (np.inf,) * 3
+    assert found.first[0.95].estimate.value == np.inf
+    assert 0 < found.first[0.95].low.low < found.first[0.95].low.high < 2
+    entry = fleet_json(found)["first"]["quantiles"]["0.5"]
+    assert entry["band_high"] is None and entry["band_high_never"] is True
+    assert entry["band_high_low_never"] is entry["band_high_high_never"] is True
+
+
+def test_a_single_replicate_has_numbers_without_intervals():
+    found = fleet_of(rows(SHARED_Z, method="halton", samples=64), 50, [0.3])
+    for one in found.by[0.3]:
+        assert np.isfinite([one.estimate.value, one.low.value, one.high.value]).all()
+        assert np.isnan([one.estimate.low, one.low.low, one.high.high]).all()
+    assert any(note.startswith("no intervals: the rows of a 'halton'") for note in found.notes)
+
+
+def test_replicates_that_agree_keep_the_interval_of_a_band():
+    ds = rows(SHARED_Z, method="halton", samples=64, replicates=8)
+    found = fleet_of(ds, 50, [0.3])
+    for one in (*found.by[0.3], found.first[0.5]):
+        for end in (one.low, one.high):
+            assert end.low <= end.value <= end.high
+
+
+def test_units_that_all_end_at_one_time_end_then():
+    ds = rows({"z": NORMAL}, units=4)
+    same = ds.assign(life=ds["life"].copy(data=np.full(400, 2.0)))
+    assert fleet_of(same, 4).first[0.5].estimate.numbers == pytest.approx((2.0, 2.0, 2.0))
+
+
+def test_failed_rows_may_have_ended_at_once():
+    ds = rows({"z": NORMAL}, {"fail_above": 0.5}, units=4)
+    assert fleet_of(ds, 2).first[0.5].failed.low == 0.0
+
+
+def test_units_that_do_not_differ_are_counted():
+    """Scales that cancel: the units of each sample end together."""
+    inputs = SHARED_Z | {"b": lognormal(0.5), "c": {"equals": "b"}}
+    ds = rows(inputs, units=2)
+    life = np.exp(ds["z"].values / 2)
+    found = fleet_of(ds.assign(life=ds["life"].copy(data=life)), 2, [1.0], plain=True)
+    assert found.by[1.0][0].estimate.value == pytest.approx(2 * np.mean(life < 1))
+
+
+@pytest.mark.parametrize("units", [2, 8])
+def test_a_few_units_leave_the_ends_of_the_band_open(units):
+    """Worlds in which all or none of the units ended may be far out."""
+    rng, held = np.random.default_rng(5), []
+    least, most = special.ndtr(-1.4 + 2 * stats.norm.ppf([0.05, 0.95]))
+    for _ in range(20):
+        probits = -1.4 - 2 * rng.standard_normal((100, 1))
+        ended = rng.random((100, units)) < special.ndtr(probits)
+        found = Noisy(ended[..., None].astype(float), np.ones(1), None)
+        ends = (found(least), 0.95), (found(most), 0.05)
+        held += [one.low < share < one.high for one, share in ends]
+    assert np.mean(held) >= 0.85

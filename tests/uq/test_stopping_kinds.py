@@ -1,0 +1,200 @@
+"""Runs that stop when a B-life, an index, or the difference between two indices is known."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, computed, kinds, study_of, summarised
+from until_studies import study, tables
+
+from uq.analysis import stopping
+from uq.errors import InputError
+from uq.indices.as_json import sensitivity_json
+from uq.indices.sensitivities import sensitivities
+from uq.running import runner
+
+WEAR = {
+    "rate": {"distribution": "lognormal", "median": 1e-9, "sigma": 0.5},
+    "depth": {"distribution": "lognormal", "median": 1e-3, "sigma": 0.3},
+}
+
+
+def wear(until, laws=WEAR, **more):
+    given = tables({"output": "life", **until}, **more) | {"uncertain": laws}
+    return study_of(given | {"study": {"name": "wear", "model": "exponential-wear"}})
+
+
+def seen_with_confidence(monkeypatch, confidence, of, ds):
+    monkeypatch.setattr(stopping, "confidence", lambda design: confidence)
+    return stopping.interim_estimate(of.design, ds)
+
+
+@pytest.mark.parametrize(
+    "laws", [WEAR, WEAR | {"depth": {"distribution": "uniform", "lower": 1e-4, "upper": 1e-3}}]
+)
+@pytest.mark.parametrize(("name", "p"), [("B10", 0.1), ("B2.5", 0.025)])
+def test_a_b_life_is_that_of_the_summary(monkeypatch, laws, name, p):
+    of = wear({"b_life": name, "half_width": 1.0}, laws, samples=256)
+    ds = computed(of)
+    seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
+    assert seen.what == f"{name} of life" and seen.units == "s"
+    shown = summarised(ds)["outputs"]["life"]["b_lives"].get(name)
+    asked = study_of(
+        tables({"output": "life", "quantile": p, "half_width": 1.0}) | {"uncertain": laws},
+        "exponential-wear",
+    )
+    same = seen_with_confidence(monkeypatch, 0.95, asked, ds)
+    assert same.estimate == seen.estimate
+    if shown is not None:
+        assert seen.estimate.numbers == (shown["value"], shown["low"], shown["high"])
+
+
+def test_a_b_life_may_rest_on_censored_rows():
+    ds = kinds(samples=256)  # lives of 0.5 to 1.5, censored from 1.3 on, a fifth never ends
+    name = "life[side=left,depth=0.5]"
+
+    def look(b_life):
+        until = {"output": name, "b_life": b_life, "half_width": 0.2}
+        given = tables(until, samples=256) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+        return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, ds)
+
+    assert look("B50").half_width < 0.2
+    assert look("B90").half_width == np.inf
+
+
+def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
+    never = {"rate": WEAR["rate"]}
+    of = wear({"b_life": "B90", "half_width": "1 days"}, never, samples=64)
+    fixed = study_of(
+        tables({"output": "life", "b_life": "B90", "half_width": "1 days"}, samples=64)
+        | {"uncertain": never, "fixed": {"threshold": 1e-9}},
+        "exponential-wear",
+    )
+    assert of.design.until.half_width == 86400.0
+    ds = runner.run(fixed, tmp_path / "out.nc", workers=0)
+    (note,) = summarised(ds)["notes"]
+    assert "budget of 64 samples is spent: B90 of life is never; the required half-width" in note
+
+
+def test_times_are_said_in_the_unit_that_people_use(tmp_path):
+    of = wear({"b_life": "B10", "half_width": "1 days"})
+    ds = runner.run(of, tmp_path / "out.nc", workers=0)
+    (note,) = summarised(ds)["notes"]
+    assert "B10 of life is" in note and "days: the required half-width of 1 day was" in note
+
+
+@pytest.mark.parametrize(
+    ("more", "widest"),
+    [
+        ({}, None),
+        ({"input": "x2"}, "S1 x2 of y"),
+        ({"difference": ["x3", "x4"]}, "S1 x3 - x4 of y"),
+    ],
+)
+def test_an_index_is_that_of_the_sensitivity(monkeypatch, more, widest):
+    of = study(1.0, samples=64, method="saltelli", replicates=8, index="S1", **more)
+    ds = computed(of)
+    seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
+    found = sensitivity_json(sensitivities(ds))["outputs"]["y"]["S1"]
+    halves = {name: (one["high"] - one["low"]) / 2 for name, one in found.items()}
+    if "difference" in more:
+        assert seen.what == widest
+        assert seen.estimate.value == pytest.approx(found["x3"]["value"] - found["x4"]["value"])
+        assert seen.half_width < halves["x3"] + halves["x4"]
+        return
+    name = more.get("input") or max(halves, key=halves.get)
+    assert seen.what == f"S1 {name} of y"
+    assert seen.half_width == pytest.approx(halves[name], rel=1e-12)
+
+
+def test_an_input_without_effect_does_not_keep_a_run_going(tmp_path):
+    until = {"output": "y", "index": "ST", "half_width": 0.1}
+    given = tables(until, samples=256, method="saltelli", replicates=8)
+    inputs = {"x1": UNIFORM, "x2": UNIFORM}
+    of = study_of(given | {"uncertain": inputs}, "sample_models:PLAIN")
+    ds = runner.run(of, tmp_path / "out.nc", workers=0)
+    assert ds.attrs["samples"] < 256
+    assert "ST x1 of y is" in summarised(ds)["notes"][0]
+
+
+def test_shapley_effects_need_no_replicates(tmp_path):
+    of = study(0.05, samples=4096, method="shapley", index="shapley", difference=["x4", "x1"])
+    ds = runner.run(of, tmp_path / "out.nc", workers=0)
+    assert ds.attrs["samples"] < 4096
+    seen = stopping.interim_estimate(of.design, ds)
+    assert seen.what == "shapley x4 - x1 of y"
+    assert seen.estimate.low < 15 / 30 < seen.estimate.high
+
+
+def test_failed_rows_leave_with_their_groups(tmp_path):
+    settings = {"fail_above": 0.99, "fail_how": "raise"}
+    of = study(0.2, samples=128, method="saltelli", replicates=8, index="S1", settings=settings)
+    ds = runner.run(of, tmp_path / "out.nc", workers=0)
+    assert "groups with failed rows)" in summarised(ds)["notes"][0]
+
+
+@pytest.mark.parametrize(
+    ("until", "more", "words"),
+    [
+        ({"b_life": "B10"}, {}, r"until.b_life = .B10.: 'y' is not a lifetime \(lifetimes: none\)"),
+        ({"b_life": "10"}, {}, r'must be "B" and a percentage, such as "B10"'),
+        ({"b_life": "B0"}, {}, r'must be "B" and a percentage, such as "B10"'),
+        (
+            {"index": "S1"},
+            {},
+            "'monte-carlo' design gives no index with an interval; .* 'saltelli'",
+        ),
+        (
+            {"index": "s1"},
+            {"method": "saltelli", "replicates": 8},
+            r"no such index .*'S1'\?.*allowed: S1, ST",
+        ),
+        ({"index": "S1"}, {"method": "saltelli"}, "set replicates = 8"),
+        (
+            {"index": "S1", "input": "x9"},
+            {"method": "saltelli", "replicates": 8},
+            "no such input .*allowed: x1",
+        ),
+        (
+            {"index": "S1", "difference": ["x1"]},
+            {"method": "saltelli", "replicates": 8},
+            "difference",
+        ),
+        (
+            {"index": "S1", "difference": ["x1", "x1"]},
+            {"method": "saltelli", "replicates": 8},
+            "twice",
+        ),
+        (
+            {"index": "S1", "input": "x1", "difference": ["x1", "x2"]},
+            {"method": "saltelli", "replicates": 8},
+            "at most one of input",
+        ),
+        ({"input": "x1"}, {}, "need index"),
+        (
+            {"index": "S1", "quantile": 0.5},
+            {"method": "saltelli", "replicates": 8},
+            "at most one of above",
+        ),
+        ({"above": 3.0, "half_width": "2 days"}, {}, "the unit 'days' does not fit 'above'"),
+        ({"half_width": "2 days"}, {}, "the unit 'days' does not fit 'y'"),
+        ({"half_width": "-2 %"}, {}, "greater than 0"),
+        ({"indx": "S1"}, {"method": "saltelli", "replicates": 8}, r"did you mean 'index'.*b_life"),
+    ],
+)
+def test_mistakes_are_one_line(until, more, words):
+    with pytest.raises(InputError, match=words) as refused:
+        study_of(tables({"output": "y", "half_width": 1.0} | until, **more))
+    assert len(refused.value.lines) == 1
+
+
+def test_an_unknown_element_is_refused_before_any_row():
+    until = {"output": "life[side=left,depth=0.6]", "half_width": 0.1}
+    given = tables(until) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+    with pytest.raises(InputError, match=r"until.output = .*no such element; did you mean .*0.5"):
+        study_of(given, "sample_models:KINDS")
+
+
+def test_the_editor_knows_the_keys():
+    from uq.study.schema import json_schema
+
+    keys = json_schema()["definitions"]["Until"]["properties"]
+    assert set(keys) >= {"b_life", "index", "input", "difference"}

@@ -1,0 +1,254 @@
+"""When a run may stop: interim estimates at fixed sizes, with valid intervals.
+
+An interval that is recomputed often enough is narrow by chance at some point. A run therefore
+estimates at a few sizes fixed beforehand, each half of the next, at a confidence that makes up for
+it (`uq.interim_levels`).
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import inf, isnan
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq import interim_levels, intervals
+from uq.analysis.life_quantiles import life_quantiles, quantile_estimate
+from uq.designs.layouts import PATHS
+from uq.designs.registry import DESIGNS
+from uq.estimate import NOTHING, Estimate
+from uq.indices.samples import sample_of
+from uq.indices.sensitivities import indices_of_target
+from uq.indices.targets import lightened, number_of
+from uq.methods.registry import METHODS, kinds_with_intervals
+from uq.moments import moments
+from uq.population.functionals import Population
+from uq.population.means import EXACT
+from uq.population.scaling import population
+from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
+from uq.rows.nesting import first_samples
+from uq.units import Unit, beside, unit_of
+from uq.wording import brief, in_unit
+
+if TYPE_CHECKING:
+    from uq.study.file import DesignTable, Until
+
+_FIRST = 200  # samples at least of the first interim estimate
+_FIRST_OF_REPLICATES = 32
+
+
+class InterimEstimate(NamedTuple):
+    """An estimate during a run, which may end it.
+
+    Attributes
+    ----------
+    what : str
+        The element, or the index, with the widest interval.
+    estimate : Estimate
+        At the confidence of one interim estimate.
+    required : float
+        Half-width.
+    lost : int
+        Rows, or groups of rows, that failed.
+    units : str
+        CF unit of the estimate.
+    """
+
+    what: str
+    estimate: Estimate
+    required: float
+    lost: int
+    units: str = "1"
+
+    @property
+    def half_width(self) -> float:
+        """Half the width of the interval; infinite without one, 0 where the estimate is exact."""
+        if self.estimate.reason == EXACT:
+            return 0.0
+        half = (self.estimate.high - self.estimate.low) / 2
+        return inf if isnan(half) else half
+
+    @property
+    def reached(self) -> bool:
+        """Whether the interval, the widest, is narrow enough for the run to end."""
+        return self.half_width <= self.required
+
+
+def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
+    """Return the numbers of samples at which a run estimates; the last is all of them."""
+    size = design.samples
+    sizes = [size]
+    first = _FIRST_OF_REPLICATES if _rests_on_replicates(design) else _FIRST
+    while (size := -(-size // 2)) >= first:
+        sizes.append(size)
+    return tuple(reversed(sizes))
+
+
+def confidence(design: "DesignTable") -> float:
+    """Return the confidence of one interim interval."""
+    checks = len(interim_sizes(design))
+    if _rests_on_replicates(design):
+        return interim_levels.of_replicates(design.replicates, checks)
+    return interim_levels.of_independent_rows(checks)
+
+
+def _rests_on_replicates(design: "DesignTable") -> bool:
+    """Whether the interval comes from the scatter of replicates."""
+    paths = DESIGNS[design.method].layout is PATHS and design.until and design.until.index
+    return not (design.has_independent_samples or paths)
+
+
+def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
+    """Estimate from the rows of a run so far.
+
+    Parameters
+    ----------
+    design : DesignTable
+        With `until`.
+    ds : xarray.Dataset
+        Its rows.
+
+    Returns
+    -------
+    InterimEstimate
+        That with the widest interval, of the elements and inputs that the study means.
+    """
+    assert design.until is not None
+    estimates = _indices if design.until.index else _statistics
+    return max(estimates(design, ds), key=lambda one: one.half_width)
+
+
+def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
+    """Whether a run ends at this result although its budget is not spent."""
+    size = _latest(design, ds)
+    return size > 0 and interim_estimate(design, first_samples(ds, size)).reached
+
+
+def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
+    """Return the size of the last interim estimate, 0 before the first or without `until`.
+
+    The result may be larger, if it was extended.
+    """
+    if design.until is None:
+        return 0
+    return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
+
+
+def _statistics(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+    """Yield the estimate of each element, as a summary has it."""
+    until, level = design.until, confidence(design)
+    assert until is not None
+    rows = independent_rows(ds)
+    replicate = replicates_of(rows)
+    names = {element.name for element in named_elements(rows, until.output)}
+    for element in population(rows, [until.output.partition("[")[0]]):
+        if element.name in names:
+            found = statistic(element, until, replicate, level)
+            units = "1" if until.threshold is not None else element.units
+            lost = int(element.failed.sum())
+            what = f"{until.estimate} of {element.name}"
+            yield InterimEstimate(what, found, until.half_width, lost, units)
+
+
+def statistic(
+    element: Element, until: "Until", replicate: intervals.Replicates, level: float
+) -> Estimate:
+    """Estimate what a study means of an element of independent rows.
+
+    Parameters
+    ----------
+    element : Element
+    until : Until
+        Not of an index.
+    replicate : ndarray of int, shape (n,), or None
+    level : float
+        Confidence of the interval.
+
+    Returns
+    -------
+    Estimate
+    """
+    if until.threshold is not None:
+        return _probability(element, until, replicate, level)
+    if until.quantile is not None and element.is_plain:
+        within = intervals.replicates_of_some(replicate, element.present)
+        return quantile_estimate(element, until.quantile, within, level)
+    if (p := until.probability) is not None:
+        return life_quantiles(element, {"": p}, replicate, level)[""]
+    values = element.at_most
+    if not len(values) or not np.isfinite(values).all():
+        return NOTHING
+    within = intervals.replicates_of_some(replicate, element.present)
+    return moments(values, within, level).mean
+
+
+def _probability(
+    element: Element, until: "Until", replicate: intervals.Replicates, level: float
+) -> Estimate:
+    threshold = until.threshold
+    assert threshold is not None
+    if not element.is_plain:
+        of = Population(element, replicate, level)
+        return of.below(threshold) if until.above is None else of.above(threshold)
+    if element.unknown_sides(threshold).any():
+        return NOTHING
+    kept, values = ~element.failed, element.for_thresholds
+    hits = (values > threshold if until.above is not None else values < threshold)[kept]
+    within = intervals.replicates_of_some(replicate, kept)
+    value = float(hits.mean()) if kept.any() else np.nan
+    return Estimate(value, *intervals.share_interval(hits, within, level))
+
+
+def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+    """Yield the index of each input, or the difference between two, as `uq sensitivity` has it.
+
+    An input that has no effect in any row has no interval, and does not count beside others.
+    """
+    until = design.until
+    assert until is not None and until.index is not None
+    kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
+    sample = replace(sample_of(ds), confidence=confidence(design), difference=until.difference)
+    for element in named_elements(ds, until.output):
+        target = lightened(number_of(element))
+        own = replace(sample, values=target.values)
+        found = indices_of_target(ds, METHODS[method], target, own)
+        values = found.kinds().get(kind, {})
+        label = until.label
+        asked = {label: values.get(label, NOTHING)} if label else dict(values)
+        alive = {name: one for name, one in asked.items() if one.value != 0 or one.has_interval}
+        for name, one in (alive or {label: Estimate(reason=found.refused)}).items():
+            what = " ".join(filter(None, (until.index, name, "of", target.name)))
+            yield InterimEstimate(what, one, until.half_width, found.groups_dropped)
+
+
+def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
+    """State why a run ended, and the estimate at that point."""
+    until, samples = design.until, int(ds.attrs["samples"])
+    assert until is not None
+    size = _latest(design, ds)
+    seen = interim_estimate(design, first_samples(ds, size))
+    found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
+    if isnan(found.low) and isnan(found.high) and found.reason != EXACT:
+        why = f" ({found.reason})" * bool(found.reason)
+        return f"the budget of {samples} samples is spent, and {seen.what} has no interval{why}"
+    known = f"{seen.what} is {_in_words(found, unit)}"
+    if seen.lost:
+        lost = "groups with failed rows" if until.index else "failed rows"
+        known += f" (without {seen.lost} {lost})"
+    wanted = f"required half-width of {in_unit(until.half_width, unit)}"
+    if not seen.reached:
+        return f"the budget of {samples} samples is spent: {known}; the {wanted} was not reached"
+    sizes = interim_sizes(design)
+    first = "" if size == samples else f" with the first {size} of {samples} samples"
+    return (
+        f"{known}: the {wanted} was reached at interim estimate {1 + sizes.index(size)} of at most"
+        f" {len(sizes)}{first}. The confidence of {confidence(design):.2%} at each makes this a"
+        " 95 % interval for a run that stops so; all other intervals assume a number of rows fixed"
+        " beforehand"
+    )
+
+
+def _in_words(found: Estimate, unit: Unit) -> str:
+    value, ends = brief(found, unit.size)
+    return f"{value}, {beside(ends, unit.name)}" if ends else value
