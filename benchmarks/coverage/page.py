@@ -29,8 +29,8 @@ x1 and an unused x4, correlated, and the sum of two correlated signs and a numbe
 model*, x1 + (1 + 2 x2) e with noise e; limits with a probability of 1e-5; nested *random
 effects* of samples, units and repeats; lives *scaled* by a lognormal input; *fleets* of units
 that share a lognormal rate, each with a depth of its own; *curves* whose points are taken
-together, a jump that moves and a worn depth. Their true values are closed forms or
-quadratures (`benchmarks/coverage`).
+together, a jump that moves and a worn depth; *basins* with a flat boundary, with Cantor's, and
+without any. Their true values are closed forms or quadratures (`benchmarks/coverage`).
 
 *Held or refused* counts intervals that contain the truth together with those refused with a reason.
 Since refusals depend on the rows, the intervals that are given do not represent all samples.

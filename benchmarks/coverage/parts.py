@@ -5,6 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 from benchmarks.coverage import (
+    basins,
     curves,
     dependent,
     differences,
@@ -13,6 +14,7 @@ from benchmarks.coverage import (
     fewer_rows,
     fleets,
     indices,
+    joint,
     known_indices,
     lives,
     nested,
@@ -71,6 +73,7 @@ PARTS = {
     "whole": Part(partial(whole.whole, "saltelli"), 1000),
     "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
     "shapley-dependent": Part(dependent.shapley, 1000),
+    "shapley-neighbours": Part(dependent.neighbours, 100),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
@@ -80,6 +83,7 @@ PARTS = {
     "effects": Part(effects.average),
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences),
+    "joint-bounds": Part(joint.bounds),
     "twin": Part(fewer_rows.twin),
     "few-shares": Part(few.shares, 1000),
     "few-indices": Part(few.indices, 1000),
@@ -97,4 +101,5 @@ PARTS = {
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
     "fleet-shared": Part(fleets.shared_scale, 1000),
+    "basins": Part(basins.exponents, 1000),
 }

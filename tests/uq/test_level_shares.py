@@ -465,3 +465,18 @@ def test_errors_are_no_outputs_of_their_own():
     ds = nested_result()
     with_error = with_output(ds, error_name("y"), np.zeros(ds.sizes["sample"]))
     assert list(by_level(with_error).outputs) == ["y"]
+
+
+def test_a_regime_has_shares_like_any_event(uq, tmp_path):
+    ds = nested_result(samples=400, units=1, repeats=2)
+    calm = regimes(ds, ds["x2"].values > 0.5)
+    found = by_level(calm, "regime").outputs
+    assert list(found) == ["P(regime=calm)", "P(regime=wild)"]
+    for shares in found.values():
+        assert shares.shares["chance"].value == pytest.approx(0.0, abs=1e-12)
+    moody = by_level(regimes(ds, ds["x3"].values > 0.5), "regime").outputs["P(regime=wild)"]
+    assert moody.shares["chance"].low < 1.0 <= moody.shares["chance"].high
+    rare = by_level(regimes(ds, ds["x3"].values > 0.997), "regime").outputs["P(regime=wild)"]
+    assert "are needed for an index" in rare.shares["chance"].reason
+    traced = api.trace(calm, "levels/outputs/P(regime=calm)/own")
+    assert traced["equal"]

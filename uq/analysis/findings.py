@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from uq.analysis.boundary import boundary
 from uq.analysis.fleet import Fleet, fleet_of
 from uq.analysis.level_shares import ByLevel, by_level
+from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Summary, summarise
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
@@ -73,6 +75,11 @@ class Findings:
     def summary(self) -> Summary:
         """What `uq.analysis.summary.summarise` returns."""
         return summarise(self.ds)
+
+    @cached_property
+    def boundary(self) -> Statistic | None:
+        """What `uq.analysis.boundary.boundary` returns."""
+        return boundary(self.ds)
 
     @cached_property
     def running(self) -> "pd.DataFrame":

@@ -14,15 +14,16 @@ from uq.contract import Floats
 from uq.designs.levels import CHANCE, LEVELS, OWN, SHARED
 from uq.errors import InputError
 from uq.estimate import Estimate
-from uq.indices.targets import Target, lightened, split_name, targets
+from uq.indices.chosen import targets_of
+from uq.indices.sensitivities import few_hits
+from uq.indices.targets import Target, lightened, split_name
+from uq.methods.indices import RefusedError
 from uq.nested_variance import nested_shares
 from uq.population.by_level import Scales, scales_by_level
 from uq.rows.elements import (
     analysis_of,
-    elements_of,
     has_independent_samples,
     independent_rows,
-    named_elements,
     output_names,
     shown_outputs,
     why_no_statistics,
@@ -32,6 +33,7 @@ from uq.rows.nesting import (
     levels_of,
     levels_that_vary,
     nesting_of,
+    samples_have,
     size_in_words,
 )
 from uq.rows.variables import error_name
@@ -93,7 +95,7 @@ class LevelShares:
                 reasons.setdefault(one.reason, []).append(name)
         said = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
         if self.left_out:
-            said.append(f"{self.left_out} samples have too few values and are left out")
+            said.append(f"left out: {samples_have(self.left_out)} too few values")
         exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
         return [*exactly, *self.notes, *said]
 
@@ -141,7 +143,8 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     ds : xarray.Dataset
         A result.
     output : str, optional
-        Only this output, or this element of one; by default those that the study shows.
+        Only this output, or this element of one; by default those that the study shows. Of a
+        category, such as the regime, the targets are ``P(regime=label)``.
     plain : bool
         Whether lives are taken as computed, and nothing that only scales them is integrated.
 
@@ -154,7 +157,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
-    refuse_weights(ds, "shares of levels")
+    refuse_weights(ds, "shares of levels", but_equal=True)
     if why := why_no_statistics(ds):
         raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)
@@ -162,12 +165,12 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     replicate = None if has_independent_samples(rows) else place.replicate
     known = output_names(rows)
     shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not _is_error(one, known)]
-    chosen = elements_of(rows, shown) if output is None else named_elements(rows, output)
     found = {}
-    for target in targets(chosen, analysis_of(rows).thresholds):
-        light = target if target.event else lightened(target, SHARES_OF)
-        scales = Scales({}) if plain else _scales(rows, light)
-        found[light.name] = _shares(rows, light, place, scales, replicate)
+    for name in shown if output is None else [output]:
+        for target in targets_of(rows, name):
+            light = target if target.event else lightened(target, SHARES_OF)
+            scales = Scales({}) if plain else _scales(rows, light)
+            found[light.name] = _shares(rows, light, place, scales, replicate)
     switches = "regime" in known and output is None
     mean, each = switching(rows, place, varying) if switches else (None, np.empty(0))
     return ByLevel(place.samples, place.units, place.repeats, levels_of(rows), found, mean, each)
@@ -196,6 +199,7 @@ def _shares(
     values = scales.mean_logarithms(target.values)
     if not reason and not target.event and lacks_variance(values):
         reason = "the tail is too heavy for a variance to apportion"
+    reason, few = _few(rows, target) if target.event and not reason else (reason, ())
     if reason:
         return LevelShares({name: Estimate(reason=reason) for name in SOURCES}, notes=target.notes)
     errors, why_none = _errors(rows, target)
@@ -206,8 +210,16 @@ def _shares(
     found = shares_of(table, varying, own, replicate, known)
     if errors is None:
         found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
-    notes = (*target.notes, *filter(None, [scales.why_not_more]))
+    notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))
     return replace(found, notes=notes, integrated=scales.inputs)
+
+
+def _few(rows: xr.Dataset, event: Target) -> tuple[str, tuple[str, ...]]:
+    """Return why an event has too few hits for shares, or the warning that it has few."""
+    try:
+        return "", few_hits(rows, event)
+    except RefusedError as refusal:
+        return str(refusal), ()
 
 
 def _errors(rows: xr.Dataset, target: Target) -> tuple[Floats | None, str]:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from uq.analysis.boundary import EXPONENT, boundary
 from uq.analysis.statistics.between_regimes import between_share
 from uq.analysis.summary import REGIME, category_shares
 from uq.errors import InputError
@@ -48,7 +49,9 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         rows. Over ``output`` and ``regime``: ``rows``, ``mean``, ``sd`` (NaN where the tail is too
         heavy). Over ``output``: ``between``, the share of its variance that lies between
         regimes, with ``between_low`` and ``between_high``. Lifetimes are replaced by their
-        logarithms, or by their ranks where rows never end or are censored.
+        logarithms, or by their ranks where rows never end or are censored. Without a dimension:
+        ``uncertainty_exponent`` of the boundary between the regimes, with ``_low`` and ``_high``;
+        its attribute ``reason`` says why it is NaN.
 
     Raises
     ------
@@ -102,6 +105,10 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     data["count"] = ("regime", np.array([one.facts["count"] for one in shares.values()], float))
     for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
         data[name] = ("regime", np.array([getattr(one, end) for one in estimates]))
+    between = boundary(ds)
+    if between is not None:
+        for end, value in zip(("", "_low", "_high"), between.estimate.numbers, strict=True):
+            data[f"{EXPONENT}{end}"] = ((), value, {"reason": between.estimate.reason})
     coords = {"regime": list(codes), "parameter": list(inputs), "probability": list(PROBABILITIES)}
     return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from uq.analysis.boundary import in_words
 from uq.analysis.findings import Findings
 from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
@@ -38,11 +39,11 @@ _MOST_EFFECTS = 3
 def show_findings(findings: Findings) -> None:
     """Print the answer of a study, then its summary."""
     show_answer(conclude(findings, weighed=False))
-    show_summary(findings.ds, findings.summary)
+    show_summary(findings.ds, findings.summary, findings.boundary)
 
 
-def show_summary(ds: xr.Dataset, summary: Summary) -> None:
-    """Print a summary."""
+def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = None) -> None:
+    """Print a summary, and how intermingled its regimes are."""
     design = f"{ds.attrs['design']}, {summary.samples} rows"
     if summary.rows_used < summary.samples:
         some = summary.rows_used
@@ -54,6 +55,9 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         heading(f"\n{name}", str(ds[name.partition("[")[0]].attrs["long_name"]))
         lines = [_share(one) for one in shares.values()]
         grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
+        if name == REGIME and boundary is not None and boundary.estimate.has_interval:
+            stated = f"{boundary.label} {boundary.words()} ({interval(boundary.estimate)})"
+            paragraph(f"{stated}: {in_words(boundary)}", indent=2)
     for name, output in summary.outputs.items():
         meaning = readable(ds[name.partition("[")[0]].attrs["long_name"])
         block = _block(ds, name, output)

@@ -47,7 +47,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
     if output is None:
         found = False
         for name in shown_outputs(ds, analysis_of(ds)):
-            for target in _targets(ds, name):
+            for target in targets_of(ds, name):
                 if asked.takes_events if target.event else asked.takes_numbers:
                     yield target if asked.scale_free else lightened(target)
                     found = True
@@ -75,7 +75,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
             )
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
-        names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
+        names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
     yield from named if asked.scale_free else map(with_tail_note, named)
 
@@ -85,18 +85,18 @@ def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
     name = canonical(name)
     form, inside, _ = split_name(name)
     if is_whole(inside):
-        every = list(wholes(_elements(ds, _output_in(inside)), every=True)) if aggregated else []
+        every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
-    found = list(_targets(ds, _output_in(inside), every=True))
+    found = list(targets_of(ds, output_in(inside), every=True))
     if form:
         return [target for target in found if target.name == name]
     own = [target for target in found if split_name(target.name)[0] == ""]
     has_whole = aggregated and name in ds and len(_elements(ds, name)) > 1
     whole = _named(ds, whole_name(name), aggregated) if has_whole else []
-    return [*(own or _targets(ds, name)), *whole]
+    return [*(own or targets_of(ds, name)), *whole]
 
 
-def _output_in(inside: str) -> str:
+def output_in(inside: str) -> str:
     """Return the output or element that the name of a target is about."""
     return re.sub(r"=[^\]]*$", "", inside)
 
@@ -106,8 +106,22 @@ def _elements(ds: xr.Dataset, name: str) -> list[Element]:
     return [] if is_category(ds, name.partition("[")[0]) else named_elements(ds, name)
 
 
-def _targets(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
-    """Return the targets of an output or of one element of it."""
+def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
+    """Return the targets of an output or of one element of it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+    every : bool, optional
+        Whether also those that must be asked for by name.
+
+    Returns
+    -------
+    iterator of Target
+        Of a category, or an element of one, whether a row is in each that occurs.
+    """
     if is_category(ds, name.partition("[")[0]):
         return category_targets(ds, name)
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)

@@ -6,9 +6,11 @@ from math import isnan
 
 import xarray as xr
 
+from uq.analysis.boundary import in_words
+from uq.analysis.findings import Findings
 from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
-from uq.analysis.summary import Described, Shares, Summary
+from uq.analysis.summary import REGIME, Described, Shares, Summary
 from uq.contract import Output, Status
 from uq.drawing.words import place_in_words, unbroken
 from uq.estimate import Estimate
@@ -48,6 +50,20 @@ def category_table(name: str, shares: Shares) -> Table:
     return Table(title, (name, "rows", "share"), rows)
 
 
+def regime_tables(findings: Findings) -> list[Table]:
+    """Return the share of each regime, and how intermingled they are where that is known."""
+    if not findings.summary.regimes:
+        return []
+    found = [category_table(REGIME, findings.summary.regimes)]
+    one = findings.boundary
+    if one is not None and one.estimate.has_interval:
+        caption = "Boundary between the regimes, with 95 % interval"
+        traced = cell(one)._replace(traced=key_of(*one.key))
+        line = (Cell(one.label), traced, Cell(in_words(one)))
+        found.append(Table(caption, ("", "value", "meaning"), [line]))
+    return found
+
+
 def _share(one: Estimate) -> Cell:
     if isnan(one.value):
         return Cell("-")
@@ -55,7 +71,7 @@ def _share(one: Estimate) -> Cell:
     return Cell(percent(one.value), below, one.value, "", SHARE, (one.low, one.high))
 
 
-_VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance")
+_VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance", "joint_bounds")
 """First parts of the keys of statistics that are values of the output."""
 
 

@@ -22,7 +22,7 @@ from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.layout import laid_out
 from uq.report.levels import levels_of
-from uq.report.outcomes import category_table, outcomes, status_table
+from uq.report.outcomes import outcomes, regime_tables, status_table
 from uq.report.pictures import pictures
 from uq.report.references import references
 from uq.rows.results import failed, open_result
@@ -98,7 +98,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "inputs_drawn": list(pictures(findings, "inputs")),
         "status": status_table(ds, summary),
         "failed": lost,
-        "regimes": category_table("regime", summary.regimes) if summary.regimes else None,
+        "regimes": regime_tables(findings),
         "rows_drawn": [
             *(one for one in drawn if output_of(one.of.name) == REGIME),
             *pictures(findings, "rows"),

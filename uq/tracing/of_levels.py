@@ -7,6 +7,7 @@ import xarray as xr
 from uq.analysis.as_json import levels_json
 from uq.analysis.level_shares import by_level
 from uq.analysis.switching import switching
+from uq.indices.chosen import output_in
 from uq.indices.targets import split_name
 from uq.keys import Json, Options, Path
 from uq.nested_variance import nested_shares
@@ -19,7 +20,7 @@ from uq.tracing.origin import Origin
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the shares: of the element alone that a path names, if it names one."""
-    named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
+    named = output_in(split_name(path[1])[1]) if path[:1] == ("outputs",) and path[1:] else None
     return levels_json(by_level(ds, named))
 
 
@@ -27,6 +28,9 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     """Return where a share comes from."""
     rows = independent_rows(ds)
     if path[0] == "outputs":
-        (element,) = named_elements(rows, split_name(path[1])[1])
+        inside = split_name(path[1])[1]
+        if output_in(inside) != inside:  # of a category
+            return Origin((cited(nested_shares),), rows)
+        (element,) = named_elements(rows, inside)
         return Origin((cited(nested_shares),), rows, states_of(element))
     return Origin((cited(switching if path[0] == "regime" else nesting_of),), rows)

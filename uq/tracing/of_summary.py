@@ -6,6 +6,7 @@ from typing import Any
 import xarray as xr
 
 from uq.analysis.as_json import put, summary_json, written
+from uq.analysis.boundary import BOUNDARY, boundary, boundary_json, compared_rows
 from uq.analysis.life_fit import fits_of
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
@@ -16,6 +17,7 @@ from uq.rows.elements import Element, analysis_of, independent_rows, named_eleme
 from uq.rows.in_regime import within_regime
 from uq.tracing.citations import cited
 from uq.tracing.origin import Origin
+from uq.uncertainty_exponent import uncertainty_exponent
 
 COUNTED = ("failed", "undefined", "censored", "never")
 
@@ -43,6 +45,8 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """
     found = _found(ds, options, path)
     whole = summary_json(found)
+    if path[:1] == (BOUNDARY,):
+        whole |= boundary_json(boundary(ds))
     for name, one in found.outputs.items():
         others = [each for each in one.statistics if not each.is_read_by(Reader.JSON)]
         for parent, _, entry in written(others):
@@ -59,6 +63,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     rows = independent_rows(ds)
     if path[0] == "rows_used":
         return Origin((cited(independent_rows),), rows)
+    if path[0] == BOUNDARY:
+        return Origin((cited(uncertainty_exponent),), compared_rows(ds))
     if path[0] in WEIGHTS:
         return Origin((cited(WEIGHTS[path[0]]),), rows)
     found = _found(ds, {}, path)

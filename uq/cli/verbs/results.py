@@ -105,6 +105,7 @@ def summary(
 ) -> None:
     """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
+    from uq.analysis.boundary import boundary_json
     from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
@@ -125,7 +126,8 @@ def summary(
         tables.show_summary(ds, found)
         return
     answer = {"answer": answer_json(conclude(findings, weighed=False))} if answered else {}
-    print_json(summary_json(found) | answer)
+    between = boundary_json(findings.boundary) if answered else {}
+    print_json(summary_json(found) | between | answer)
 
 
 def sensitivity(

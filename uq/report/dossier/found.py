@@ -20,7 +20,7 @@ from uq.report.dossier.items import Item
 from uq.report.fleets import fleet_notes, fleet_table
 from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.levels import levels_of
-from uq.report.outcomes import category_table, outcomes, result_tables, status_table
+from uq.report.outcomes import category_table, outcomes, regime_tables, result_tables, status_table
 from uq.report.pictures import pictures
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
@@ -116,7 +116,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
         about = [one for one in drawn if output_of(one.of.name) == REGIME]
         yield Item(
             "Regimes",
-            tables=[category_table("regime", findings.summary.regimes)],
+            tables=regime_tables(findings),
             pictures=[*about, *pictures(findings, "rows")],
         )
     yield Item("Estimators and their sources", tables=_estimators(findings))
