@@ -73,6 +73,7 @@ PARTS = {
     "whole": Part(partial(whole.whole, "saltelli"), 1000),
     "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
     "shapley-dependent": Part(dependent.shapley, 1000),
+    "shapley-neighbours": Part(dependent.neighbours, 100),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
