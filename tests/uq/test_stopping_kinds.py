@@ -186,6 +186,13 @@ def test_mistakes_are_one_line(until, more, words):
     assert len(refused.value.lines) == 1
 
 
+def test_an_unknown_element_is_refused_before_any_row():
+    until = {"output": "life[side=left,depth=0.6]", "half_width": 0.1}
+    given = tables(until) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+    with pytest.raises(InputError, match=r"until.output = .*no such element; did you mean .*0.5"):
+        study_of(given, "sample_models:KINDS")
+
+
 def test_the_editor_knows_the_keys():
     from uq.study.schema import json_schema
 

@@ -214,7 +214,7 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
         own = replace(sample, values=target.values)
         found = indices_of_target(ds, METHODS[method], target, own)
         values = found.kinds().get(kind, {})
-        label = until.input or " - ".join(until.difference or ())
+        label = until.label
         asked = {label: values.get(label, NOTHING)} if label else dict(values)
         alive = {name: one for name, one in asked.items() if one.value != 0 or one.has_interval}
         for name, one in (alive or {label: Estimate(reason=found.refused)}).items():

@@ -88,7 +88,8 @@ METHODS = {
         CROSSED,
         sobol_indices,
         (S1, ST, S2),
-        source="Saltelli et al. (2010), on standardised outputs",
+        source="Janon et al. (2014) with a control variate (S1), Jansen (1999) (ST), Saltelli"
+        " (2002) (S2), on standardised outputs",
         intervals="Student's t from replicates",
         least=MIN_GROUPS,
         aggregates=True,

@@ -8,6 +8,7 @@ from uq.designs.design import Design
 from uq.designs.layouts import PATHS
 from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.designs.registry import DESIGNS
+from uq.element_names import places
 from uq.errors import choices, nearest
 from uq.inputs.faults import Fault, unknown
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
@@ -59,6 +60,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         if not faults and model.outputs:
             yield from _until_faults(model, name, until)
+            yield from _element_faults(model, name, until["output"], given)
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[Fault]:
@@ -76,6 +78,21 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
         yield from _unit_faults(model, name, (*path, "half_width"), half_width)
     elif isinstance(half_width, str) and (problem := misfit(half_width, pure, "1")):
         yield Fault((*path, "half_width"), problem, half_width)
+
+
+def _element_faults(
+    model: Model, name: str, element: str, given: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """Yield whether an output has no such element with these settings."""
+    settings, _ = read_settings(model, given)
+    if element == name or settings is None:
+        return
+    coordinates = model.coordinates(settings)
+    axes = {dim: coordinates[dim] for dim in model.outputs[name].dims}
+    names = [label for label, *_ in places(name, axes)]
+    if element not in names:
+        problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
+        yield Fault(("design", "until", "output"), problem, element)
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:

@@ -163,8 +163,15 @@ class Until(_Table):
         return self.quantile if self.b_life is None else float(self.b_life[1:]) / 100
 
     @property
+    def label(self) -> str:
+        """The input of an index, or the two whose difference is meant; "" for all."""
+        return self.input or " - ".join(self.difference or ())
+
+    @property
     def estimate(self) -> str:
         """What is estimated of an element, as tables call it."""
+        if self.index is not None:
+            return f"{self.index} {self.label}".strip()
         if self.b_life is not None:
             return self.b_life
         if self.quantile is not None:
