@@ -108,6 +108,12 @@ def test_each_row_has_an_instance_of_its_own(uq, body):
     assert (ds["steps"] == 100).all()  # the library counts those of all its instances
 
 
+def test_an_fmu_for_model_exchange_is_integrated(uq, folder, library):
+    cooling_fmu.write(folder / "body.fmu", library, cooling_fmu.FOR_MODEL_EXCHANGE)
+    _, ds = run(uq, "body.fmu", name="body_rate")
+    assert np.allclose(ds["T"], 300 + 100 * np.exp(-4 * ds["body_rate"]), rtol=1e-4, atol=0)
+
+
 @pytest.mark.slow
 def test_rows_are_equal_to_the_bit_in_processes_of_their_own(uq, body):
     _, here = run(uq, "body.toml", "--workers", "0")
@@ -184,7 +190,7 @@ BAD = {
     "no description": ({"description": "<x/>"}, "is no FMU"),
     "of FMI 1.0": (
         {"description": OLD},
-        "is of FMI 1.0; 2.0 and 3.0 are supported",
+        "is of FMI 1.0, not 2.0",
     ),
     "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
     "endless": ({"experiment": ""}, "does not say how long it is to be simulated"),

@@ -195,8 +195,7 @@ class _Fmu:
                 log.append(" ".join(text.decode(errors="replace").split()))
 
         said, (start, stop, step) = said_of(self.path), self.times
-        places = f"binaries/{fmpy.platform}/", f"binaries/{fmpy.platform_tuple}/"
-        wanted = "modelDescription.xml", "resources/", *places
+        wanted = "modelDescription.xml", "resources/", f"binaries/{fmpy.platform}/"
         fmpy.extract(str(self.path), str(unpacked), include=lambda name: name.startswith(wanted))
         instance = instantiate_fmu(str(unpacked), said, logger=logger)
         fatal = False
