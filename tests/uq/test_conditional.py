@@ -80,26 +80,23 @@ def test_paths_of_inputs_without_correlation_stay_as_they_are():
     np.testing.assert_allclose(conditional_paths(u, np.eye(3).tolist(), NONE), u, rtol=1e-12)
 
 
-def thirds(u):
-    return np.floor(3 * u) / 3, np.floor(3 * u) / 3 + 1 / 3
+def signs(u):
+    return np.where(u < 0.5, 0.0, 0.5), np.where(u < 0.5, 0.5, 1.0)
 
 
 def test_discrete_inputs_are_known_by_their_values_not_by_what_is_behind_them():
-    # The number is drawn given one of three values of each of two inputs: what two draws share is
-    # the variance of its mean given these values, here from independent rows.
-    u = paths(30_000)
-    scores = stats.norm.ppf(conditional_paths(u, RANKS, (thirds, thirds, None)))[..., 2]
-    row = 1 + (u[:, 1, 2] == u[:, 0, 2])  # before another input changes, if the number comes first
-    both = (u[:, 1, :2] == u[:, 0, :2]).all(axis=1)
-    z = stats.multivariate_normal(cov=2 * np.sin(np.pi / 6 * np.array(RANKS))).rvs(
-        200_000, random_state=1
-    )
-    cell = (3 * stats.norm.cdf(z[:, :2])).astype(int) @ [3, 1]
-    means = np.bincount(cell, z[:, 2]) / np.bincount(cell)
-    assert (row[both] == 1).all()
-    product = scores[both, 0] * scores[both, 1]
-    error = product.std() / np.sqrt(both.sum())
-    assert abs(product.mean() - np.mean(means[cell] ** 2)) < 3 * error
+    # A number drawn given the signs of two others: its mean is that of rows with these signs.
+    matrix = np.array([[1.0, 0.9, 0.8], [0.9, 1.0, 0.5], [0.8, 0.5, 1.0]])
+    u = paths(40_000)
+    found = conditional_paths(u, dependent.ranks(matrix), (signs, signs, None))
+    alone = (u[:, 1, :2] == u[:, 0, :2]).all(axis=1)
+    z = np.random.default_rng(1).standard_normal((400_000, 3)) @ np.linalg.cholesky(matrix).T
+    for first in (False, True):
+        for second in (False, True):
+            drawn = alone & ((found[:, 0, :2] > 0.5) == [first, second]).all(axis=1)
+            scores = stats.norm.ppf(found[drawn, 1, 2])
+            truth = z[((z[:, :2] > 0) == [first, second]).all(axis=1), 2].mean()
+            assert abs(scores.mean() - truth) < 4 * scores.std() / np.sqrt(drawn.sum())
 
 
 MIXED = {
