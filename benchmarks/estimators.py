@@ -19,6 +19,7 @@ D, REPLICATES = 4, 8
 NAMES = ("x1", "x2", "x3", "x4")
 SHARES = np.array([0.8, 0.15, 0.05, 0.0])
 FACTORS = np.array([1.5, 1.0, 0.5, 0.0])
+G_WEIGHTS = np.array([0.0, 1.0, 4.5, 99.0])
 
 
 class Case(NamedTuple):
@@ -44,11 +45,11 @@ def _lognormal(sigma):
     return Case(of, parts / everything, 1 - rest / everything)
 
 
-def _product():
-    everything = np.prod(1 + FACTORS**2) - 1
-    total = FACTORS**2 * (everything + 1) / (1 + FACTORS**2) / everything
-    of = lambda u: np.prod(1 + FACTORS * _uniform(u), axis=-1)  # noqa: E731
-    return Case(of, FACTORS**2 / everything, total)
+def _product(factors, of=_uniform):
+    """Return a product of 1 + factor times a function of each input, of mean 0 and variance 1."""
+    everything = np.prod(1 + factors**2) - 1
+    total = factors**2 * (everything + 1) / (1 + factors**2) / everything
+    return Case(lambda u: np.prod(1 + factors * of(u), axis=-1), factors**2 / everything, total)
 
 
 def _far(case):
@@ -59,15 +60,24 @@ CASES = {
     "light: sum of uniform inputs": _additive(_uniform),
     "normal: sum of normal inputs": _additive(normal),
     "the same, mean of 1000 sd": _far(_additive(normal)),
-    "interactions: a product": _product(),
+    "interactions: a product": _product(FACTORS),
+    "interactions: the g-function": _product(
+        1 / (np.sqrt(3) * (1 + G_WEIGHTS)), lambda u: np.sqrt(3) * (np.abs(4 * u - 2) - 1)
+    ),
     "skewed: lognormal, sigma 0.7": _lognormal(0.7),
     "heavy: lognormal, sigma 1.2": _lognormal(1.2),
 }
 
 
+def saltelli(a, ab, b):
+    """Return S1: Saltelli et al. (2010), Table 2 (b)."""
+    return float(np.mean(b * (ab - a)) / np.var(np.r_[a, b]))
+
+
 def janon(a, ab, b):
     """Return S1 with the moments of B and AB_i together: Janon et al. (2014)."""
-    return _alike(b, ab)
+    mean = (b.mean() + ab.mean()) / 2
+    return float((np.mean(b * ab) - mean**2) / ((b**2 + ab**2).mean() / 2 - mean**2))
 
 
 def martinez(a, ab, b):
@@ -75,40 +85,13 @@ def martinez(a, ab, b):
     return float(np.corrcoef(b, ab)[0, 1])
 
 
-def jansen(a, ab, b):
-    """Return S1 by half the squared differences: Jansen (1999)."""
-    return 1 - total_order(b, ab, a)
-
-
-def controlled(a, ab, b):
-    """Return S1 as a correlation less what chance correlates A and B: Glen and Isaacs (2012)."""
-    (_, own, chance), (_, _, other), _ = np.corrcoef([b, ab, a])
-    return float((own - chance * other) / (1 - chance**2))
-
-
-def _alike(one, other):
-    mean = (one.mean() + other.mean()) / 2
-    return float((np.mean(one * other) - mean**2) / ((one**2 + other**2).mean() / 2 - mean**2))
-
-
-def _total(first):
-    """Return an estimator of ST: 1 less the index of all other inputs, which A and AB_i share."""
-    return lambda a, ab, b: 1 - first(b, ab, a)
-
-
 ESTIMATORS = {
-    S1: {
-        "Saltelli": first_order,
-        "Janon": janon,
-        "Martinez": martinez,
-        "Jansen": jansen,
-        "Glen & Isaacs": controlled,
-    },
+    S1: {"uq": first_order, "Saltelli": saltelli, "Janon": janon, "Martinez": martinez},
     ST: {
-        "Jansen": total_order,
-        "Janon": _total(janon),
-        "Martinez": _total(martinez),
-        "Glen & Isaacs": _total(controlled),
+        "uq, Jansen": total_order,
+        "Janon": lambda a, ab, b: 1 - janon(b, ab, a),
+        "Martinez": lambda a, ab, b: 1 - martinez(b, ab, a),
+        "with control": lambda a, ab, b: 1 - first_order(b, ab, a),
     },
 }
 

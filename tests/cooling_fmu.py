@@ -32,6 +32,18 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 </fmiModelDescription>
 """
 
+FOR_MODEL_EXCHANGE = (
+    DESCRIPTION.replace("fmiVersion", 'numberOfEventIndicators="0" fmiVersion')
+    .replace('canHandleVariableCommunicationStepSize="true"', "")
+    .replace("CoSimulation", "ModelExchange")
+    .replace(
+        "  </ModelVariables>",
+        '<ScalarVariable name="der" valueReference="4"><Real derivative="4"/></ScalarVariable>'
+        "</ModelVariables>",
+    )
+    .replace("</Outputs>", '</Outputs><Derivatives><Unknown index="7"/></Derivatives>')
+)
+
 EXPERIMENT = '<DefaultExperiment startTime="0" stopTime="4" stepSize="0.01"/>'
 
 SOURCE = r"""
@@ -92,12 +104,38 @@ int fmi2DoStep(void *b, double time, double step, int no_set) {
     v[STEPS] = ++all_steps;
     return OK;
 }
+int fmi2GetContinuousStates(void *b, double *x, size_t n) {
+    x[0] = ((Body *)b)->value[T];
+    return OK;
+}
+int fmi2SetContinuousStates(void *b, const double *x, size_t n) {
+    ((Body *)b)->value[T] = x[0];
+    return OK;
+}
+int fmi2GetDerivatives(void *b, double *dx, size_t n) {
+    double *v = ((Body *)b)->value;
+    dx[0] = -v[RATE] * (v[T] - 300);
+    return OK;
+}
+int fmi2GetNominalsOfContinuousStates(void *b, double *x, size_t n) {
+    x[0] = 1;
+    return OK;
+}
+int fmi2NewDiscreteStates(void *b, int *info) {
+    for (int i = 0; i < 5; i++) info[i] = 0;
+    return OK;
+}
+int fmi2CompletedIntegratorStep(void *b, int no_set, int *enter, int *terminate) {
+    *enter = *terminate = 0;
+    return OK;
+}
 #define STUB(name) int fmi2##name(void) { return OK; }
 STUB(SetDebugLogging) STUB(Terminate) STUB(Reset) STUB(GetInteger) STUB(GetBoolean)
 STUB(GetString) STUB(SetInteger) STUB(SetBoolean) STUB(SetString) STUB(GetFMUstate)
 STUB(SetFMUstate) STUB(FreeFMUstate) STUB(SerializedFMUstateSize) STUB(SerializeFMUstate)
 STUB(DeSerializeFMUstate) STUB(GetDirectionalDerivative) STUB(SetRealInputDerivatives)
 STUB(GetRealOutputDerivatives) STUB(CancelStep) STUB(GetStatus) STUB(GetRealStatus)
+STUB(EnterEventMode) STUB(EnterContinuousTimeMode) STUB(SetTime) STUB(GetEventIndicators)
 STUB(GetIntegerStatus) STUB(GetBooleanStatus) STUB(GetStringStatus)
 """
 

@@ -24,6 +24,7 @@ an interval: samples without such a one scatter too little (measured)."""
 
 FEW = f"needs {FEWEST_SAMPLES} samples to judge its scatter"
 ALL_SAME = "all values are the same"
+TOO_FEW_ROWS = "fewer than two rows have a value"
 TOO_FEW = "fewer than two samples have values in two units, and in two repeats of one"
 NO_SCATTER = "no two samples show different shares"
 
@@ -133,7 +134,8 @@ def nested_shares(
     least = ROUNDING * float(np.nan_to_num(np.sqrt(np.abs(variance))))
     scatters = len(there) > 1 and not is_constant(there) and np.ptp(there) > least
     if len(there) < 2 or not (scatters or variance > 0):
-        nothing = Estimate(reason=ALL_SAME if whole.sum() > 1 else TOO_FEW)
+        too_few = TOO_FEW if values[0].size > 1 else TOO_FEW_ROWS
+        nothing = Estimate(reason=ALL_SAME if whole.sum() > 1 else too_few)
         return NestedShares(nothing, nothing, nothing, nothing, 0.0, left_out)
     groups = int(independent.max(initial=-1)) + 1
     reason = FEW if replicate is None and groups < FEWEST_SAMPLES else ""

@@ -1,5 +1,7 @@
 """Quantiles, their intervals, and tolerance bounds, from order statistics."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from uq.clusters import Clusters
@@ -147,15 +149,64 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
 
 
-def rows_for_bound(coverage: float, confidence: float, failed: int = 0) -> int:
-    """Return the smallest number of rows, `failed` of them failed, for a tolerance bound.
+def joint_bounds(
+    values: Sequence[Floats], failed: int, coverage: float, confidence: float
+) -> list[float]:
+    """Return upper tolerance bounds that hold for several outputs at once, from independent rows.
+
+    Parameters
+    ----------
+    values : sequence of ndarray, shape (n,)
+        Of each output, in the same rows; finite or infinite. Those of an output with a lower bound
+        have the opposite sign.
+    failed : int
+        Number of further rows that lack a value: they count as lying outside.
+    coverage : float
+        Share of all rows that must lie within all bounds.
+    confidence : float
+        Probability that it does.
+
+    Returns
+    -------
+    list of float
+        One bound for each output; NaN where there are fewer rows than `rows_for_bound`.
+
+    Notes
+    -----
+    Rows are cut off one at a time, the largest left of each output in turn [1]_; the last one cut
+    off for an output is its bound. As many are cut off as a bound of a single output leaves
+    outside, so that the share of the law within all bounds has the same distribution whatever the
+    dependence of the outputs [2]_.
+
+    References
+    ----------
+    .. [1] A. Wald, "An extension of Wilks' method for setting tolerance limits", Ann. Math. Stat.
+       14, 45-55 (1943).
+    .. [2] A. Guba, M. Makai, L. Pal, "Statistical aspects of best estimate method - I", Reliab.
+       Eng. Syst. Saf. 80, 217-232 (2003).
+    """
+    n, bounds = len(values[0]), [np.nan] * len(values)
+    outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
+    if outside < len(values):
+        return bounds
+    descending = [iter(np.argsort(-one, kind="stable").tolist()) for one in values]
+    left = np.ones(n, dtype=bool)
+    for cut in range(outside):
+        place = cut % len(values)
+        row = next(row for row in descending[place] if left[row])
+        left[row], bounds[place] = False, float(values[place][row])
+    return bounds
+
+
+def rows_for_bound(coverage: float, confidence: float, failed: int = 0, bounds: int = 1) -> int:
+    """Return the smallest number of rows, `failed` of them failed, for bounds that hold at once.
 
     References
     ----------
     S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
-    91-96 (1941).
+    91-96 (1941); for several bounds see `joint_bounds`.
     """
-    beyond = failed + 1  # rows that must lie outside the bound
+    beyond = failed + bounds  # rows that must lie outside
     return beyond + negative_binomial(confidence, beyond, 1 - coverage)
 
 

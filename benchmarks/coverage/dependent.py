@@ -1,7 +1,8 @@
 """Shapley effects of dependent inputs, in closed form: normal and two-valued ones, and their sum.
 
 y = x1 + x2 + 2 x3, all standard normal; x2 is correlated with x3, and x1 with x4, which the model
-does not use. Or y = x1 + x2 + x3, with x1 and x2 either -1 or 1, and all three correlated.
+does not use. The same with x1 x3 added. Or y = x1 + x2 + x3, with x1 and x2 either -1 or 1, and all
+three correlated.
 """
 
 from functools import cache
@@ -11,10 +12,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from scipy import stats
+from scipy.spatial import cKDTree
 
 from benchmarks.coverage.problems import Settings, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.contract import Model, Output, Parameter
+from uq.intervals import scatter_interval
 
 NAMES = ("x1", "x2", "x3", "x4")
 WEIGHTS = np.array([1.0, 1.0, 2.0, 0.0])
@@ -41,7 +44,9 @@ class Inputs(NamedTuple):
 
 def _batch(x, seed, settings):
     x1, x2, x3, _ = np.ascontiguousarray(x.T)
-    return {"weighted": x1 + x2 + 2 * x3, "sum": x1 + x2 + x3}, np.zeros(len(x), np.int8)
+    weighted = x1 + x2 + 2 * x3
+    found = {"weighted": weighted, "interacting": weighted + x1 * x3, "sum": x1 + x2 + x3}
+    return found, np.zeros(len(x), np.int8)
 
 
 SUMS = Model(
@@ -50,7 +55,11 @@ SUMS = Model(
     "1",
     Inputs,
     Settings,
-    {"weighted": Output("1", "x1 + x2 + 2 x3"), "sum": Output("1", "x1 + x2 + x3")},
+    {
+        "weighted": Output("1", "x1 + x2 + 2 x3"),
+        "interacting": Output("1", "x1 + x2 + 2 x3 + x1 x3"),
+        "sum": Output("1", "x1 + x2 + x3"),
+    },
     _batch,
     block=1024,
 )
@@ -86,18 +95,21 @@ def ranks(correlations):
     return found.tolist()
 
 
-def of_normal(r):
-    """Return the Shapley effects of the weighted sum.
+def of_normal(r, interaction=0.0):
+    """Return the Shapley effects of the weighted sum, and of it with x1 x3 times a factor added.
 
-    Var(E[y | x_u]) of a weighted sum b'x of normal inputs with covariances C is
-    b'C_u C_uu^-1 C_u'b: Owen & Prieur (2017), section on Gaussian variables.
+    Of normal inputs with covariances C, b'x + x'Ax has Var(E[y | x_u]) = b'Qb + 2 tr(AQAQ), where
+    Q = C_u C_uu^-1 C_u'; for the linear part see Owen & Prieur (2017), Gaussian variables.
     """
-    c = matrix(r)
+    c, a = matrix(r), np.zeros((4, 4))
+    a[0, 2] = a[2, 0] = interaction / 2
 
     def explained(some):
         some = list(some)
-        with_y = c[some] @ WEIGHTS
-        return float(with_y @ np.linalg.solve(c[np.ix_(some, some)], with_y)) if some else 0.0
+        if not some:
+            return 0.0
+        q = c[:, some] @ np.linalg.solve(c[np.ix_(some, some)], c[some])
+        return float(WEIGHTS @ q @ WEIGHTS + 2 * np.trace(a @ q @ a @ q))
 
     return dict(zip(NAMES, shares(explained, 4).tolist(), strict=True))
 
@@ -163,15 +175,62 @@ def shapley(repetitions):
     lines = []
     laws = dict.fromkeys(NAMES, NORMAL)
     cases = [
-        (f"correlation {r:g}", "weighted", laws, matrix(r), of_normal(r)) for r in CORRELATIONS
-    ] + [("two signs and a number", "sum", SIGNED, AMONG_SIGNS, of_signs())]
-    for words, output, laws, correlations, truth in cases:
-        rows = len(laws) + 1
-        tally = Tally(f"dependent inputs, {words}, shapley, 512 paths of {rows} rows", {})
-        for ds in repeated(study(output, laws, correlations, 512), repetitions):
-            entry = indices_of(ds)[output]["shapley"]
-            for name, value in truth.items():
-                if value > 0:  # else it is zero in every path
-                    tally.entry(f"shapley {name}", value, entry[name])
+        *((f"correlation {r:g}", "weighted", matrix(r), of_normal(r)) for r in CORRELATIONS),
+        ("interaction", "interacting", matrix(0.6), of_normal(0.6, 1.0)),
+        ("two signs and a number", "sum", AMONG_SIGNS, of_signs()),
+    ]
+    for words, output, correlations, truth in cases:
+        own = SIGNED if output == "sum" else laws
+        tally = Tally(f"dependent inputs, {words}, shapley, 512 paths of {len(own) + 1} rows")
+        for ds in repeated(study(output, own, correlations, 512), repetitions):
+            for method in ("shapley", "shapley-additive")[: 1 + (output == "interacting")]:
+                entry = indices_of(ds, method)[output]["shapley"]
+                for name, value in truth.items():
+                    if value > 0:  # else it is zero in every path
+                        tally.entry(f"{method} {name}", value, entry[name])
+        lines += tally.lines()
+    return lines
+
+
+# Nearest neighbours -------------------------------------------------------------------------------
+
+PARTS = 8
+NEIGHBOURS = 3
+
+
+def by_neighbours(x, y):
+    """Estimate Shapley effects from independent rows: rows nearest in some inputs share these.
+
+    B. Broto, F. Bachoc, M. Depecker, "Variance reduction for estimation of Shapley effects and
+    adaptation to unknown input distribution", SIAM/ASA J. Uncertain. Quantif. 8, 693-716 (2020).
+    """
+    d = x.shape[1]
+    left = {(): y.var(ddof=1), tuple(range(d)): 0.0}
+    for size in range(1, d):
+        for some in combinations(range(d), size):
+            _, near = cKDTree(x[:, some]).query(x[:, some], NEIGHBOURS)
+            left[some] = y[near].var(axis=1, ddof=1).mean()
+    return shares(lambda some: left[()] - left[tuple(sorted(some))], d)
+
+
+def neighbours(repetitions):
+    """Count the intervals of nearest neighbours, by Student's t of parts of as many rows."""
+    lines = []
+    cases = [
+        *((f"correlation {r:g}", r, 0.0) for r in CORRELATIONS),
+        ("interaction", 0.6, 1.0),
+    ]
+    for words, r, interaction in cases:
+        tally = Tally(f"dependent inputs, {words}, shapley, 512 paths of 5 rows")
+        truth, factor = of_normal(r, interaction), np.linalg.cholesky(matrix(r))
+        for seed in range(repetitions):
+            x = np.random.default_rng(seed).standard_normal((512 * 5, 4)) @ factor.T
+            y = x @ WEIGHTS + interaction * x[:, 0] * x[:, 2]
+            found = np.array([by_neighbours(x[i::PARTS], y[i::PARTS]) for i in range(PARTS)])
+            for name, one in zip(NAMES, found.T, strict=True):
+                ends = scatter_interval(one.mean(), one)
+                by = f"nearest neighbours in {PARTS} parts"
+                if truth[name] > 0:
+                    tally.add(f"shapley {name}", truth[name], *ends, by)
         lines += tally.lines()
     return lines

@@ -142,5 +142,9 @@ WIDENED = (
     "conservative: the variance rests on fewer than 50 rows of each replicate, so intervals are"
     " widened by the effect of one more such row"
 )
-REASONS = {"rate(never)": WIDENED, f"P(never<{SOONER!r})": WIDENED}
+REPLICATES = (
+    "conservative: the scatter of replicates of 64 groups includes errors of higher order, which"
+    " the estimate from all of them has not"
+)
+REASONS = {"S1 x1": REPLICATES, "rate(never)": WIDENED, f"P(never<{SOONER!r})": WIDENED}
 """Quantity -> why its coverage is not 95 %."""

@@ -3,7 +3,6 @@
 import signal
 import threading
 import time
-from functools import partial
 
 import numpy as np
 import psutil
@@ -12,14 +11,15 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.contract import Status
+from uq.errors import RunError
 from uq.rows.workload import workload_of
-from uq.running import isolation, local_cluster, sent_chunks
+from uq.running import isolation
 
 
-def processes(module, of=None):
+def processes(module):
     """Return the living processes, started by this one, that run a module."""
     found = []
-    for child in (of or psutil.Process()).children(recursive=True):
+    for child in psutil.Process().children(recursive=True):
         try:
             if module in child.cmdline() and child.status() != psutil.STATUS_ZOMBIE:
                 found.append(child)
@@ -36,81 +36,33 @@ def wait_for(condition):
 
 
 class Killer:
-    """Kills processes as rows of a run arrive; called with the run's progress.
+    """Kills processes that compute, as rows of a run arrive; called with the run's progress."""
 
-    Each time it waits for a worker that has begun to compute: there is something to lose.
-    """
-
-    def __init__(self, module, times, rows, all_of_them):
-        self.module, self.all = module, all_of_them
+    def __init__(self, times, rows, all_of_them):
+        self.all = all_of_them
         self.marks = [rows * (i + 1) // (times + 1) for i in range(times)]
 
     def __call__(self, progress):
         if not self.marks or progress.done < self.marks[0]:
             return
         self.marks.pop(0)
-        wait_for(self._at_work)
-        for process in self._at_work()[: None if self.all else 1]:
+        wait_for(lambda: processes(CHILD))
+        for process in processes(CHILD)[: None if self.all else 1]:
             process.kill()
 
-    def _at_work(self):
-        workers = {worker: processes(CHILD, worker) for worker in processes(WORKER)}
-        if self.module == WORKER:
-            return [worker for worker, children in workers.items() if children]
-        return [child for children in workers.values() for child in children]
 
-
-CHILD, WORKER = "uq.running.child", "uq.running.dask_worker"
+CHILD = "uq.running.child"
 
 
 @pytest.mark.parametrize(
-    ("fault", "module", "times", "all_of_them"),
-    [
-        ("worker killed", WORKER, 1, False),
-        pytest.param("all workers killed", WORKER, 2, True, marks=pytest.mark.slow),
-        pytest.param("process of a worker killed", CHILD, 4, True, marks=pytest.mark.slow),
-    ],
+    ("times", "all_of_them"), [(1, False), pytest.param(4, True, marks=pytest.mark.slow)]
 )
-def test_killed_processes_leave_no_trace(study_of, injected, fault, module, times, all_of_them):
+def test_killed_processes_leave_no_trace(study_of, injected, times, all_of_them):
     study = study_of(seconds=0.02)
-    killer = Killer(module, times, 120, all_of_them)
+    killer = Killer(times, 120, all_of_them)
     ds = compute(study, workers=2, chunk_rows=5, progress=killer)
     assert killer.marks == []
-    injected(fault, times)
-    assert ds.identical(computed_here(study))
-
-
-@pytest.mark.slow
-def test_a_chunk_that_loses_three_workers_is_halved(study_of, monkeypatch, injected):
-    study = study_of(seconds=0.1, samples=60)
-    failed = []
-    real = sent_chunks.SentChunks._failed
-    monkeypatch.setattr(
-        sent_chunks.SentChunks,
-        "_failed",
-        lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
-    )
-
-    workers = partial(processes, WORKER)
-
-    def kill_on():
-        for _ in range(6):  # the first may have nothing to compute yet
-            wait_for(lambda: [w for w in workers() if w.net_connections(kind="tcp")])
-            time.sleep(1.0)
-            if failed:
-                return
-            for worker in workers():
-                worker.kill()
-                wait_for(lambda worker=worker: worker not in workers())  # the run collects it
-
-    thread = threading.Thread(target=kill_on)
-    thread.start()
-    try:
-        ds = compute(study, workers=1, chunk_rows=20)
-    finally:
-        thread.join()
-    assert "KilledWorker" in failed
-    injected("worker killed three times on a chunk")
+    injected("process of a worker killed", times)
     assert ds.identical(computed_here(study))
 
 
@@ -142,20 +94,19 @@ def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, inje
 
 
 @pytest.mark.slow
-def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
-    monkeypatch.setattr(local_cluster, "_DEATHS_AT_MOST", 3)
+def test_processes_that_cannot_live_end_the_run(study_of, injected):
     stop = threading.Event()
 
     def kill_on():
         while not stop.wait(0.05):
-            for process in processes("uq.running.dask_worker"):
+            for process in processes(CHILD):
                 process.send_signal(signal.SIGKILL)
 
-    injected("workers killed again and again")
+    injected("processes of workers killed again and again")
     thread = threading.Thread(target=kill_on)
     thread.start()
     try:
-        with pytest.raises(local_cluster.RunError, match="worker process"):
+        with pytest.raises(RunError, match="a process for the rows could not start: Killed"):
             compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
     finally:
         stop.set()
@@ -163,12 +114,12 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
 
 
 @pytest.mark.slow
-def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, injected):
-    monkeypatch.setenv("UQ_TEST_WORKERS_CHILDREN_END", "1")
-    said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
+def test_processes_that_cannot_start_end_the_run(study_of, monkeypatch, injected):
+    study = study_of(seconds=0.01)
+    monkeypatch.setenv("UQ_TEST_CHILDREN_END", "1")
     injected("workers that can start no process")
-    with pytest.raises(local_cluster.RunError, match=said):
-        compute(study_of(seconds=0.01), workers=1, chunk_rows=20)
+    with pytest.raises(RunError, match="a process for the rows could not start: exit code 3"):
+        compute(study, workers=1, chunk_rows=20)
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.errors import InputError, RunError
-from uq.running import remote_cluster, runner
+from uq.running import remote_cluster, runner, sent_chunks
 
 
 class Cluster:
@@ -122,6 +122,31 @@ def test_workers_come_and_go(start, study, injected):
     injected("worker joins or leaves a cluster", 2)
     assert ds.identical(computed_here(study))
     assert there.scheduler.poll() is None
+
+
+def test_a_chunk_that_loses_its_worker_too_often_is_halved(start, study_of, monkeypatch, injected):
+    study = study_of(seconds=0.1, samples=60)
+    failed = []
+    real = sent_chunks.SentChunks._failed
+    monkeypatch.setattr(
+        sent_chunks.SentChunks,
+        "_failed",
+        lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
+    )
+    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "0")
+    there = start()
+    workers = [there.started[-1]]
+
+    def kill(progress):
+        if workers and progress.under_way:
+            time.sleep(0.5)  # it computes
+            there.end(workers.pop())
+            there.add_worker()
+
+    ds = patiently(there.address, study, chunk_rows=20, progress=kill)
+    assert "KilledWorker" in failed
+    injected("worker of a cluster killed too often with a chunk")
+    assert ds.identical(computed_here(study))
 
 
 def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, injected):

@@ -23,6 +23,7 @@ from uq.errors import InputError
 from uq.rows.workload import workload_of
 from uq.running import dask_task, dispatch, local_cluster, remote_cluster
 from uq.running.child import ModelSpec
+from uq.running.children import Children
 from uq.running.dask_task import evaluate_rows
 from uq.running.isolation import spec_of
 from uq.running.workers import Workers
@@ -30,13 +31,21 @@ from uq.study.definition import load_study
 
 
 def workers():
-    """Return the living worker processes of this one, and those that compute for it here."""
+    """Return the living processes that compute for this one."""
     found = set()
     for child in psutil.Process().children():
         with contextlib.suppress(psutil.NoSuchProcess):  # also one that is just ending
-            if {"uq.running.dask_worker", "uq.running.child"} & set(child.cmdline()):
+            if "uq.running.child" in child.cmdline():
                 found.add(child)
     return found
+
+
+@contextlib.contextmanager
+def cluster(**options):
+    """Yield a cluster as somebody else may have started it."""
+    how = {"processes": False, "protocol": "tcp://", "host": "127.0.0.1", "memory_limit": 0}
+    with local_cluster.scratch(), LocalCluster(dashboard_address=None, **how, **options) as there:
+        yield there
 
 
 @pytest.fixture
@@ -69,8 +78,7 @@ def test_workers_give_the_bits_of_this_process(write_study, tidy, model, paramet
 def test_all_workers_work(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=400), "process_models:PROCESS")
     ds = compute(study, workers=2, chunk_rows=2)
-    # The first rows are computed by a process that is no worker.
-    assert len(set(ds["y"].values)) == 3
+    assert len(set(ds["y"].values)) == 2
     assert float(os.getpid()) not in ds["y"].values
 
 
@@ -90,7 +98,7 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
 
 
 @pytest.mark.parametrize(
-    ("seconds", "processes"), [(60.0, 1), pytest.param(0.1, 3, marks=pytest.mark.slow)]
+    ("seconds", "processes"), [(60.0, 1), pytest.param(0.1, 2, marks=pytest.mark.slow)]
 )
 def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
@@ -101,18 +109,6 @@ def test_workers_are_started_for_longer_studies_only(
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = compute(load_study(path, "process_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
-
-
-def test_a_worker_that_died_is_replaced(tidy):
-    with local_cluster.local_workers(1) as crew:
-        crew.client.wait_for_workers(1)
-        (first,) = workers()
-        first.kill()
-        end = time.monotonic() + 60
-        while not workers() - {first}:
-            assert time.monotonic() < end, "waited in vain"
-            crew.watch()
-            time.sleep(0.05)
 
 
 def test_workers_are_not_counted_for_every_chunk():
@@ -128,12 +124,8 @@ def test_workers_are_not_counted_for_every_chunk():
 @pytest.mark.slow
 def test_an_existing_cluster_is_used(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=100), "process_models:PROCESS")
-    with local_cluster.local_workers(1) as crew:
-        crew.client.wait_for_workers(1)
-        address = crew.client.scheduler.address
-        ds = compute(study, scheduler=address, chunk_rows=5)
-        assert address.startswith("tcp://127.0.0.1:")
-        assert crew.threads == 1
+    with cluster(n_workers=1, threads_per_worker=1) as there:
+        ds = compute(study, scheduler=there.scheduler_address, chunk_rows=5)
     assert len(set(ds["y"].values)) == 2
 
 
@@ -145,7 +137,7 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
             with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
                 compute(study, scheduler=address)
-    with LocalCluster(n_workers=0, dashboard_address=None) as empty:
+    with cluster(n_workers=0) as empty:
         address = empty.scheduler_address
         with pytest.raises(InputError, match=rf"^scheduler {address}: .* no workers; "):
             compute(study, scheduler=address)
@@ -155,9 +147,8 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
     study = load_study(write_study())
     other = provenance.versions() | {"numpy": "1.0", "Python": "2.7"}
     monkeypatch.setattr(remote_cluster, "versions", lambda: other)
-    with local_cluster.local_workers(1) as crew:
-        crew.client.wait_for_workers(1)
-        address = crew.client.scheduler.address
+    with cluster(n_workers=1) as there:
+        address = there.scheduler_address
         with pytest.raises(InputError) as refused:
             compute(study, scheduler=address)
     (line,) = refused.value.lines
@@ -187,16 +178,18 @@ def test_rows_go_to_the_child_that_started_before_them(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",)), "process_models:PROCESS")
     work = workload_of(study)
     rows, spec = work.block(0, 4), spec_of(work)
-    dask_task.begin_child(spec, None)
+    children = Children()
+    children.begin(1, spec)
     try:
         limit = time.monotonic() + 10
         while not workers() and time.monotonic() < limit:  # it has just been started
             time.sleep(0.01)
         (child,) = workers()
-        data = rows.x, rows.seed, 0
-        chunk, _ = evaluate_rows(spec, provenance.versions(), None, *data)
+        with dask_task.named(children) as run:
+            data = rows.x, rows.seed, 0, run
+            chunk, _ = evaluate_rows(spec, provenance.versions(), None, *data)
     finally:
-        dask_task.end_children()
+        children.close()
     assert set(chunk.columns["y"]) == {float(child.pid)}
 
 
@@ -240,27 +233,29 @@ def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy)
 
 
 @pytest.mark.slow
-def test_a_worker_ends_with_its_parent(folder):
+def test_workers_end_with_their_parent(write_study, folder):
+    path = write_study(samples=200)
+    temporary = folder / "temporary"
+    temporary.mkdir()
     program = (
-        "import os, time\n"
-        "from uq.running import local_cluster\n"
-        "context = local_cluster.local_workers(1)\n"
-        "crew = context.__enter__()\n"
-        "crew.client.wait_for_workers(1)\n"
-        "print(*crew.client.run(os.getpid).values(), flush=True)\n"
-        "work = crew.client.submit(time.sleep, 1000)\n"
-        "time.sleep(1)\n"
-        "os.kill(os.getpid(), 9)\n"
+        "import os, psutil, uq\n"
+        "def end(progress):\n"
+        "    if progress.done > 100:\n"
+        "        print(*(one.pid for one in psutil.Process().children()), flush=True)\n"
+        "        os.kill(os.getpid(), 9)\n"
+        f"uq.run({str(path)!r}, 'out.nc', workers=2, chunk_rows=5, progress=end)\n"
     )
     ended = subprocess.run(
         [sys.executable, "-c", program],
         capture_output=True,
         text=True,
-        env=os.environ | {"TMPDIR": str(folder)},
+        env=os.environ | {"TMPDIR": str(temporary)},
         timeout=60,
     )
-    worker = int(ended.stdout)
-    with contextlib.suppress(psutil.NoSuchProcess):
-        psutil.Process(worker).wait(30)
-    assert not psutil.pid_exists(worker)
-    assert not any(folder.iterdir())
+    started = [int(word) for word in ended.stdout.split()]
+    assert len(started) == 2
+    for worker in started:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            psutil.Process(worker).wait(30)
+        assert not psutil.pid_exists(worker)
+    assert not any(temporary.iterdir())

@@ -1,5 +1,7 @@
 """Dependent inputs drawn given some of them, and the Shapley effects of such paths."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from asked_indices import sensitivities
@@ -18,7 +20,10 @@ from uq.conclusions.rankings import ranking_of
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices import sensitivities as module
+from uq.indices.samples import sample_of
 from uq.inputs.conditional import conditional_paths
+from uq.methods.indices import SHAPLEY
+from uq.methods.registry import METHODS
 from uq.report.indices import sensitivity_of
 from uq.rows.sampling import row_block, rows
 
@@ -50,13 +55,13 @@ def assert_near(found, truth):
 
 
 def test_every_row_of_a_path_follows_the_copula():
-    found = conditional_paths(paths(20_000), RANKS, NONE)
+    found = conditional_paths(paths(10_000), RANKS, NONE)
     for row in range(4):
         np.testing.assert_allclose(stats.spearmanr(found[:, row]).statistic, RANKS, atol=0.03)
 
 
 def test_what_has_changed_depends_on_its_first_value_through_the_others_alone():
-    u = paths(100_000)
+    u = paths(30_000)
     matrix = 2 * np.sin(np.pi / 6 * np.array(RANKS))
     scores = stats.norm.ppf(conditional_paths(u, RANKS, NONE))
     for row, known in ((1, (0, 2)), (2, (1,)), (3, ())):
@@ -67,7 +72,7 @@ def test_what_has_changed_depends_on_its_first_value_through_the_others_alone():
         slopes = matrix[np.ix_(drawn, known)]
         shared = slopes @ np.linalg.solve(matrix[np.ix_(known, known)], slopes.T)
         between = first[:, drawn].T @ later[:, drawn] / kept.sum()
-        np.testing.assert_allclose(between, shared, atol=0.03)
+        np.testing.assert_allclose(between, shared, atol=0.05)
 
 
 def test_paths_of_inputs_without_correlation_stay_as_they_are():
@@ -75,26 +80,23 @@ def test_paths_of_inputs_without_correlation_stay_as_they_are():
     np.testing.assert_allclose(conditional_paths(u, np.eye(3).tolist(), NONE), u, rtol=1e-12)
 
 
-def thirds(u):
-    return np.floor(3 * u) / 3, np.floor(3 * u) / 3 + 1 / 3
+def signs(u):
+    return np.where(u < 0.5, 0.0, 0.5), np.where(u < 0.5, 0.5, 1.0)
 
 
 def test_discrete_inputs_are_known_by_their_values_not_by_what_is_behind_them():
-    # The number is drawn given one of three values of each of two inputs: what two draws share is
-    # the variance of its mean given these values, here from independent rows.
-    u = paths(60_000)
-    scores = stats.norm.ppf(conditional_paths(u, RANKS, (thirds, thirds, None)))[..., 2]
-    row = 1 + (u[:, 1, 2] == u[:, 0, 2])  # before another input changes, if the number comes first
-    both = (u[:, 1, :2] == u[:, 0, :2]).all(axis=1)
-    z = stats.multivariate_normal(cov=2 * np.sin(np.pi / 6 * np.array(RANKS))).rvs(
-        400_000, random_state=1
-    )
-    cell = (3 * stats.norm.cdf(z[:, :2])).astype(int) @ [3, 1]
-    means = np.bincount(cell, z[:, 2]) / np.bincount(cell)
-    assert (row[both] == 1).all()
-    product = scores[both, 0] * scores[both, 1]
-    error = product.std() / np.sqrt(both.sum())
-    assert abs(product.mean() - np.mean(means[cell] ** 2)) < 3 * error
+    # A number drawn given the signs of two others: its mean is that of rows with these signs.
+    matrix = np.array([[1.0, 0.9, 0.8], [0.9, 1.0, 0.5], [0.8, 0.5, 1.0]])
+    u = paths(40_000)
+    found = conditional_paths(u, dependent.ranks(matrix), (signs, signs, None))
+    alone = (u[:, 1, :2] == u[:, 0, :2]).all(axis=1)
+    z = np.random.default_rng(1).standard_normal((400_000, 3)) @ np.linalg.cholesky(matrix).T
+    for first in (False, True):
+        for second in (False, True):
+            drawn = alone & ((found[:, 0, :2] > 0.5) == [first, second]).all(axis=1)
+            scores = stats.norm.ppf(found[drawn, 1, 2])
+            truth = z[((z[:, :2] > 0) == [first, second]).all(axis=1), 2].mean()
+            assert abs(scores.mean() - truth) < 4 * scores.std() / np.sqrt(drawn.sum())
 
 
 MIXED = {
@@ -230,11 +232,96 @@ def test_few_paths_do_not_show_that_an_input_has_no_effect():
     assert "by_correlation" not in entry_of(weighted(0.9, 32))
 
 
+# The additive part by formula ---------------------------------------------------------------------
+
+
+def additive_of(ds):
+    (entry,) = sensitivities(ds, "shapley-additive")["outputs"].values()
+    return entry
+
+
+@pytest.mark.parametrize("r", dependent.CORRELATIONS)
+def test_effects_of_an_additive_output_are_exact(r):
+    found = additive_of(weighted(r, 256))
+    for name, value in dependent.of_normal(r).items():
+        assert found["shapley"][name]["value"] == pytest.approx(value, abs=1e-10)
+        if value:
+            one = found["shapley"][name]
+            assert 0 <= one["low"] < value < one["high"] < one["low"] + 1e-8
+
+
+def test_effects_of_polynomials_in_each_input_are_exact():
+    # Given one of two scores with correlation r, the mean of the other's Hermite polynomial of
+    # degree n has r^2n of its variance: here 2 of the square of x1, 1.5 of the cube of x4.
+    r, square, cube, own = 0.6, 2.0, 1.5, 1.0
+    ds = weighted(r, 512)
+    x1, x3, x4 = (ds[name].values for name in ("x1", "x3", "x4"))
+    y = x1**2 + (x4**3 - 3 * x4) / 2 + x3
+    found = additive_of(with_output(ds, "weighted", y))["shapley"]
+    alone = square + cube * r**6, cube + square * r**4
+    both, whole = square + cube, square + cube + own
+    truth = {
+        "x1": (alone[0] + both - alone[1]) / 2 / whole,
+        "x4": (alone[1] + both - alone[0]) / 2 / whole,
+        "x2": own * r**2 / 2 / whole,
+        "x3": own * (1 - r**2 / 2) / whole,
+    }
+    for name, value in truth.items():
+        assert found[name]["value"] == pytest.approx(value, abs=1e-9)
+
+
+def test_the_additive_part_leaves_what_interacts_to_the_paths():
+    laws = dict.fromkeys(dependent.NAMES, dependent.NORMAL)
+    study = dependent.study("interacting", laws, dependent.matrix(0.6), 2048)
+    ds = problems.computed(problems.with_seed(study, 1))
+    controlled, plain = additive_of(ds)["shapley"], entry_of(ds)["shapley"]
+    assert_near(controlled, dependent.of_normal(0.6, 1.0))
+    assert sum(one["value"] for one in controlled.values()) == pytest.approx(1.0)
+    widths = [[one["high"] - one["low"] for one in of.values()] for of in (controlled, plain)]
+    assert sum(widths[0]) < 0.8 * sum(widths[1])
+
+
+def test_elements_of_an_output_add_up():
+    # Of x1 + x2 + 2 x3, and of x3 alone, whose correlated inputs are x2 and x3.
+    r = 0.6
+    ds = weighted(r, 512)
+    both = np.stack([ds["weighted"].values, ds["x3"].values], axis=1)
+    found = METHODS["shapley-additive"].indices(replace(sample_of(ds), values=both))
+    sizes = 6.0 + 4.0 * r, 1.0
+    alone = {"x2": r**2 / 2, "x3": 1 - r**2 / 2}
+    for name, value in dependent.of_normal(r).items():
+        truth = (sizes[0] * value + sizes[1] * alone.get(name, 0.0)) / sum(sizes)
+        assert found.values[SHAPLEY][name].value == pytest.approx(truth, abs=1e-9)
+
+
+def test_the_additive_part_of_discrete_inputs_stays_with_the_paths():
+    study = dependent.study("sum", dependent.SIGNED, dependent.AMONG_SIGNS, 512)
+    ds = problems.computed(study)
+    assert additive_of(ds)["shapley"] == entry_of(ds)["shapley"]
+
+
+def test_few_paths_fit_no_additive_part():
+    ds = weighted(0.6, 32)
+    assert additive_of(ds)["shapley"] == entry_of(ds)["shapley"]
+
+
+def test_intervals_of_paths_are_narrower_than_those_of_nearest_neighbours():
+    # Of as many rows: 256 paths of 5, or 8 parts of 160 independent rows.
+    r = 0.9
+    x = np.random.default_rng(1).standard_normal((256 * 5, 4))
+    x = x @ np.linalg.cholesky(dependent.matrix(r)).T
+    y = x @ dependent.WEIGHTS
+    found = np.array([dependent.by_neighbours(x[i::8], y[i::8]) for i in range(8)])
+    theirs = 2 * 2.365 * found.std(axis=0, ddof=1) / np.sqrt(8)
+    ours = additive_of(weighted(r, 256))["shapley"].values()
+    assert max(one["high"] - one["low"] for one in ours) < 0.01 * theirs.min()
+
+
 def test_designs_for_dependent_inputs_are_named_with_what_they_feed():
     said = refusal(tables({"x1": UNIFORM, "x3": UNIFORM}, "saltelli", 128, dependence=PAIR))
     assert said.endswith(
         "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and pawn and"
-        " quantile and regional, or shapley for shapley"
+        " quantile and regional, or shapley for shapley and shapley-additive"
     )
 
 
@@ -270,3 +357,14 @@ def test_the_answer_does_not_count_a_share_by_correlation_as_a_contribution():
     y = ds["x1"].values + 0.01 * ds["x2"].values
     ranking = ranking_of(Findings(with_output(ds, "weighted", y)), "weighted", "shapley", ("", ""))
     assert [one.inputs for one in ranking.contributions] == [("x1",)]
+
+
+# Coverage -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_intervals_of_dependent_effects_hold_the_truth_in_93_to_97_of_100_cases():
+    lines = dependent.shapley(1000)
+    assert len(lines) == 3 + 3 * 4 + 2 * 4 + 3
+    assert all(line.given == 1000 for line in lines)
+    assert not [line for line in lines if line.unexplained]

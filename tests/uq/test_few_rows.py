@@ -33,6 +33,7 @@ def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
     refusal = of_event(0.013)["refused"]
     assert "hits in 2048 rows" in refusal and "5 are needed" in refusal
     assert "times the samples" in refusal
+    assert "'regional' of a 'monte-carlo' design needs 10 in all" in refusal
 
 
 def test_an_event_with_fewer_than_twenty_hits_is_warned_of():

@@ -15,6 +15,7 @@ from uq.outside.fmu import reduced
 from uq.outside.fmu_file import FmuOutputTable
 from uq.outside.fmu_said import cf_unit
 from uq.outside.returned import Censored
+from uq.study.registry import find_model
 
 STUDY = """
 [study]
@@ -108,6 +109,12 @@ def test_each_row_has_an_instance_of_its_own(uq, body):
     assert (ds["steps"] == 100).all()  # the library counts those of all its instances
 
 
+def test_an_fmu_for_model_exchange_is_integrated(uq, folder, library):
+    cooling_fmu.write(folder / "body.fmu", library, cooling_fmu.FOR_MODEL_EXCHANGE)
+    _, ds = run(uq, "body.fmu", name="body_rate")
+    assert np.allclose(ds["T"], 300 + 100 * np.exp(-4 * ds["body_rate"]), rtol=1e-4, atol=0)
+
+
 @pytest.mark.slow
 def test_rows_are_equal_to_the_bit_in_processes_of_their_own(uq, body):
     _, here = run(uq, "body.toml", "--workers", "0")
@@ -152,6 +159,15 @@ def test_another_fmu_is_noticed(uq, body, library):
     assert "other code" in run(uq, "body.toml")[0].err
 
 
+def test_an_fmu_that_changes_while_rows_are_computed_costs_them(body):
+    model = find_model("body.toml")
+    Path("body.fmu").write_bytes(Path("body.fmu").read_bytes() + b"\n")
+    x, seed = np.array([[0.5, 0.0]]), np.zeros(1, np.uint64)
+    _, status, messages = model.batch(x, seed, model.settings())
+    assert status == Status.RAISED and "changed after the run began" in messages[0]
+    assert find_model("body.toml").batch(x, seed, model.settings())[1] == Status.OK
+
+
 MISTAKES = {
     ('"body.fmu"', '"bodi.fmu"'): "bodi.fmu: no such file; did you mean 'body.fmu'?",
     ('"body.rate"', '"body.rat"'): "no such parameter of the FMU; did you mean 'body.rate'?",
@@ -184,7 +200,7 @@ BAD = {
     "no description": ({"description": "<x/>"}, "is no FMU"),
     "of FMI 1.0": (
         {"description": OLD},
-        "is of FMI 1.0; 2.0 and 3.0 are supported",
+        "is of FMI 1.0, not 2.0",
     ),
     "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
     "endless": ({"experiment": ""}, "does not say how long it is to be simulated"),

@@ -81,7 +81,7 @@ def workers_of(process):
     found = []
     for child in psutil.Process(process.pid).children():
         with contextlib.suppress(psutil.NoSuchProcess):  # it may end meanwhile
-            found += [child] * ("uq.running.dask_worker" in " ".join(child.cmdline()))
+            found += [child] * ("uq.running.child" in child.cmdline())
     return found
 
 

@@ -122,6 +122,20 @@ def test_a_threshold_with_a_unit_waits_for_the_outputs(uq, write):
     assert uq("check", "own.toml", "--model", write(text, STUDY + limits)).code == 0
 
 
+def test_a_life_is_counted_in_its_own_unit(uq, write):
+    text = WEAR.replace(
+        "@uq.machine",
+        '@uq.machine(returns={"life": uq.Returned("cycles", life=True), "profile": uq.Returned('
+        "shape=(2,))})",
+    )
+    uq("run", "own.toml", "--model", write(text), "-o", "own.nc", "--quiet", "--samples", "40")
+    ds = package.open_result("own.nc")
+    assert package.survival(ds, "life")["time"].attrs["units"] == "cycles"
+    ended = uq("fleet", "own.nc", "--size", "1", "--by", "2")
+    assert "life [cycles]" in ended.out and "by 2 cycles" in ended.out
+    assert "the unit 'h' does not fit" in uq("fleet", "own.nc", "--size", "1", "--by", "2 h").err
+
+
 def test_a_seed_is_that_of_the_row(uq, write):
     file = write(
         "import uq\n@uq.machine\n"

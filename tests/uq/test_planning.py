@@ -106,6 +106,7 @@ def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
         "seconds_low",
         "seconds_high",
         "disk",
+        "rows_needed",
         "widths",
     }
     assert plan["disk"]["run"] >= plan["disk"]["result"] > 0

@@ -16,9 +16,7 @@ from models.analytic import EXPONENTIAL_WEAR as WEAR
 from models.analytic import ISHIGAMI
 from uq.contract import Status
 from uq.outside import server, um_bridge
-from uq.outside.returned import Returned
 from uq.outside.serving import address_of, server_of
-from uq.study.registry import with_returns
 
 STUDY = """
 [study]
@@ -74,13 +72,11 @@ def ours():
         one.server_close()
 
 
-def run_known(address, **options):
-    """Run a study of a server of which it is known what it returns."""
+def run_here(address, samples, **options):
     Path("own.toml").write_text(
-        STUDY.format(model="m", name="x1", lower=0, upper=1, samples=options.pop("samples"))
+        STUDY.format(model="m", name="x1", lower=0, upper=1, samples=samples)
     )
-    study = package.load_study("own.toml", with_returns(address, {"y": Returned()}))
-    return package.run(study, "own.nc", **options)
+    return package.run(package.load_study("own.toml", address), "own.nc", **options)
 
 
 def run(uq, address, *more, **study):
@@ -128,6 +124,7 @@ def test_ours_keeps_names_units_bounds_and_lives_on_the_way(uq, ours):
 INFO = {
     "Info": {"protocolVersion": 1.0, "models": ["m"]},
     "InputSizes": {"inputSizes": [1]},
+    "OutputSizes": {"outputSizes": [1]},
     "ModelInfo": {"support": {"Evaluate": True}},
 }
 
@@ -221,7 +218,7 @@ def test_a_server_that_does_not_return_is_waited_for_once(uq, monkeypatch, hosti
     monkeypatch.setattr(um_bridge, "_silent", set())
     address = hostile(INFO | {"Evaluate": lambda count: {"output": [[2.0]]} if count < 3 else ""})
     began = time.monotonic()
-    ds = run_known(address, samples=40, workers=0)
+    ds = run_here(address, samples=40, workers=0)
     assert time.monotonic() - began < 10  # not a second for each row
     assert (ds["status"].values == Status.RAISED).sum() == 37
     assert "does not answer" in ds["status"].attrs["example_raised"]
@@ -235,7 +232,7 @@ def test_a_server_that_answers_late_costs_its_row(uq, hostile):
         return {"output": [[1.0]]}
 
     began = time.monotonic()
-    ds = run_known(hostile(INFO | {"Evaluate": late}), samples=4, row_limit=0.5)
+    ds = run_here(hostile(INFO | {"Evaluate": late}), samples=4, row_limit=0.5)
     assert (ds["status"].values == Status.TIMED_OUT).sum() == 1
     assert "did not answer within 0.5 s" in ds["status"].attrs["example_timed_out"]
     assert time.monotonic() - began < 10
@@ -271,6 +268,12 @@ def test_a_wrong_address_is_one_line(uq, monkeypatch, address, words):
     monkeypatch.setattr(server, "_SOON", 0.0)
     ended = uq("models", address)
     assert ended.code == 2 and words in ended.err and ended.err.count("\n") == 1
+
+
+def test_a_model_without_a_value_at_zero_is_run(uq, folder):
+    with TheirServer(folder, "return [[1.0 / parameters[0][0]]]") as one:
+        ds = run_here(one.address, samples=4, workers=0)
+    assert (ds["y"] == 1 / ds["x1"]).all()
 
 
 def test_a_model_that_is_not_there_is_one_line(uq, hostile):

@@ -87,6 +87,10 @@ def whole(path):
         pytest.param(
             {"method": "saltelli", "replicates": 4, "samples": 512}, marks=pytest.mark.slow
         ),
+        pytest.param(
+            {"method": "saltelli", "replicates": 4, "samples": 512, "index": "ST"},
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, design):

@@ -75,10 +75,10 @@ def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
 
 
 def test_times_are_said_in_the_unit_that_people_use(tmp_path):
-    of = wear({"b_life": "B10", "half_width": "1 days"})
+    of = wear({"b_life": "B10", "half_width": "30 hours"})
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     (note,) = summarised(ds)["notes"]
-    assert "B10 of life is" in note and "days: the required half-width of 1 day was" in note
+    assert "B10 of life is" in note and "days: the required half-width of 30 hours was" in note
 
 
 @pytest.mark.parametrize(
@@ -184,6 +184,13 @@ def test_mistakes_are_one_line(until, more, words):
     with pytest.raises(InputError, match=words) as refused:
         study_of(tables({"output": "y", "half_width": 1.0} | until, **more))
     assert len(refused.value.lines) == 1
+
+
+def test_an_unknown_element_is_refused_before_any_row():
+    until = {"output": "life[side=left,depth=0.6]", "half_width": 0.1}
+    given = tables(until) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+    with pytest.raises(InputError, match=r"until.output = .*no such element; did you mean .*0.5"):
+        study_of(given, "sample_models:KINDS")
 
 
 def test_the_editor_knows_the_keys():

@@ -50,13 +50,13 @@ def test_lives_that_may_never_end_are_judged_by_rank():
 def test_names_of_lifetimes_carry_their_element():
     ds = kinds("monte-carlo", 128, analysis={"thresholds": {"life": 1e6}})
     names = list(indices(ds)["outputs"])
-    assert names[:2] == ["work[side=left]", "work[side=right]"]
-    assert names[2:4] == [
+    assert names[:3] == ["work[side=left]", "work[side=right]", "work[:]"]
+    assert names[3:5] == [
         "rank(life[side=left,depth=0.5])",
         "P(life[side=left,depth=0.5]<1000000.0)",
     ]
     assert names[-3:] == ["angle", "P(regime=slow)", "P(regime=fast)"]
-    assert len(names) == 2 + 8 + 1 + 2
+    assert len(names) == 3 + 9 + 1 + 2
 
 
 def test_lives_censored_at_one_horizon_share_the_highest_rank():

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 from computed import computed, study_of
-from learnt_studies import lognormal, measured
+from learnt_studies import DEPTH, RATE, lognormal, measured, wear
 from scipy import stats
 
+from uq.analysis.fleet import fleet_of
+from uq.analysis.level_shares import by_level
 from uq.analysis.summary import summarise
+from uq.errors import InputError
 from uq.exploring.updating import update
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.result import as_unit
@@ -70,6 +73,26 @@ def test_without_rows_of_their_own_they_have_no_life():
     assert found["uninspected"] == {} and found["units"].keys() == {"A", "B"}
     assert any(why in note for note in found["notes"])
     assert not any(why in note for note in summarise(as_unit(ds, "A")).notes)
+
+
+def test_fleets_of_units_that_share_only_what_is_integrated():
+    """All rows then count alike: what is shared is narrower, and the units are as before."""
+    lives = np.array([6e5, 7e5, 5e5])
+    ds = update(wear(3000, depth="shared", units=4), measured(*lives, cv=CV))
+    own, noise = RATE[1], np.hypot(RATE[1], np.log1p(CV**2) ** 0.5)
+    spread = (DEPTH[1] ** -2 + 3 * noise**-2) ** -0.5
+    seen = np.log(lives) - np.log(DEPTH[0] / RATE[0])
+    middle = np.log(DEPTH[0] / RATE[0]) + spread**2 * seen.sum() / noise**2
+    z = np.linspace(-6, 6, 2001)
+    p = stats.norm.cdf((np.log(6e5) - middle - spread * z) / own)
+    none = np.average((1 - p) ** 3, weights=np.exp(-(z**2) / 2))
+    kept = fleet_of(ds, 3, [6e5]).by[6e5][1].estimate
+    assert kept.low < none < kept.high and kept.high - kept.low < 0.06
+    share = by_level(ds).outputs["log(life)"].shares["shared"]
+    truth = spread**2 / (spread**2 + own**2)
+    assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + own**2)
+    with pytest.raises(InputError, match="not with rows that inspections have weighted"):
+        fleet_of(as_unit(ds, "A"), 3)
 
 
 def test_units_that_do_not_differ_need_no_rows_of_their_own():

@@ -15,6 +15,7 @@ from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
 from uq.population.functionals import Population
+from uq.population.means import weighted_moments
 from uq.population.smoothing import largest_shape, smoothed, tail_shape
 from uq.rows.element import Element
 
@@ -205,6 +206,17 @@ def test_listed_values_are_no_tail():
     few = np.repeat([1e-3, 0.01, 0.02, 0.05, 0.4, 1.0], 150) * (1 + 1e-13 * np.arange(900))
     assert tail_shape(few) == -np.inf
     assert tail_shape(np.append(few, [2.0, 3.0, 8.0])) > 0.7
+
+
+def test_the_interval_of_a_weighted_mean_holds_the_truth():
+    """Weights times values are skewed, and samples without an outlier scatter too little."""
+    rng, held = np.random.default_rng(4), []
+    for _ in range(400):
+        z, rest = rng.standard_normal((2, 100))
+        by = smoothed(0.6 * z)
+        mean = weighted_moments(np.exp(0.5 * z + 0.25 * rest), by.weights)[0]
+        held += [mean.low < np.exp(0.3 + (0.5**2 + 0.25**2) / 2) < mean.high] * (not mean.reason)
+    assert len(held) > 200 and 0.9 < np.mean(held) < 0.98
 
 
 def test_a_probability_that_is_refused_says_why():

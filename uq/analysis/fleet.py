@@ -21,9 +21,10 @@ from uq.rows.elements import (
     shown_outputs,
     why_no_statistics,
 )
-from uq.rows.nesting import levels_that_vary, size_in_words
+from uq.rows.nesting import levels_that_vary, samples_have, size_in_words
 from uq.rows.variables import outputs_of
 from uq.rows.weights import refuse_weights
+from uq.units import beside
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,6 +52,8 @@ class Fleet:
     notes : list of str
     is_success : bool
         Whether the end of the life is wished for.
+    units : str
+        Of the life.
     """
 
     output: str
@@ -63,6 +66,7 @@ class Fleet:
     by: dict[float, tuple[Banded, Banded]]
     notes: list[str]
     is_success: bool = False
+    units: str = "s"
 
     @property
     def ended(self) -> str:
@@ -165,7 +169,7 @@ def fleet_of(
     plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
-    refuse_weights(ds, "fleets")
+    refuse_weights(ds, "fleets", but_equal=True)
     if why := why_no_statistics(ds):
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:
@@ -181,8 +185,9 @@ def fleet_of(
     for time in times:
         if count := int(element.unknown_sides(time).sum()):
             raise InputError(
-                f"uq fleet: {count} of {len(element.values)} lives were censored before {time!r} s;"
-                " ask for an earlier time, or compute a longer horizon"
+                f"uq fleet: {count} of {len(element.values)} lives were censored before"
+                f" {beside(repr(time), element.declared.unit)}; ask for an earlier time, or compute"
+                " a longer horizon"
             )
     part = None if has_independent_samples(rows) else units.place.replicate
     of = FleetNumbers(units, size, allow, part, SHARED in levels_that_vary(rows))
@@ -192,7 +197,7 @@ def fleet_of(
     enough = int(of.first_of.element.present.sum())
     notes = []
     if enough < place.samples:
-        notes.append(f"{place.samples - enough} samples have too few units with a life")
+        notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
     notes += filter(None, [units.why_not_more, why_no_intervals(ds)])
@@ -200,8 +205,8 @@ def fleet_of(
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)
     names = units.integrated
-    is_success = bool(element.declared.success)
-    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes, is_success)
+    of_life = bool(element.declared.success), element.declared.unit
+    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes, *of_life)
 
 
 def the_life(rows: xr.Dataset, output: str | None) -> Element:

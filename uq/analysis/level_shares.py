@@ -33,6 +33,7 @@ from uq.rows.nesting import (
     levels_of,
     levels_that_vary,
     nesting_of,
+    samples_have,
     size_in_words,
 )
 from uq.rows.variables import error_name
@@ -94,7 +95,7 @@ class LevelShares:
                 reasons.setdefault(one.reason, []).append(name)
         said = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
         if self.left_out:
-            said.append(f"{self.left_out} samples have too few values and are left out")
+            said.append(f"left out: {samples_have(self.left_out)} too few values")
         exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
         return [*exactly, *self.notes, *said]
 
@@ -156,7 +157,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
-    refuse_weights(ds, "shares of levels")
+    refuse_weights(ds, "shares of levels", but_equal=True)
     if why := why_no_statistics(ds):
         raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)

@@ -89,7 +89,7 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
         attrs = {"long_name": _MEANINGS[name], "units": "1"}
         data[name] = ((*dims, *along), values.reshape(shape + values.shape[1:]), attrs)
     coords = places if dims else chosen[0].place
-    axis = ("time", time, {"long_name": "time", "units": "s"})
+    axis = ("time", time, {"long_name": "time", "units": chosen[0].declared.unit})
     attrs = {"output": output, "long_name": of.attrs["long_name"]}
     attrs["band"] = _why_no_band(chosen[0], replicate) or BAND
     if chosen[0].law is not None:

@@ -164,6 +164,7 @@ def summarise(
     fits: bool = False,
     plain: bool = False,
     weighting: Weighting | None = None,
+    parts: Collection[str] = STATISTICS,
 ) -> Summary:
     """Describe a result.
 
@@ -181,6 +182,8 @@ def summarise(
         Whether lives are taken as computed, and nothing that only scales them is integrated.
     weighting : Weighting, optional
         Makes the rows those of another study; none within a regime.
+    parts : collection of str
+        Names in `STATISTICS` of those that are computed.
 
     Returns
     -------
@@ -200,7 +203,7 @@ def summarise(
     names = shown_outputs(ds, analysis)
     elements = population(rows, names, plain=plain) if not weighting else weighting.elements(names)
     for element in elements:  # one at a time in memory
-        outputs[element.name] = _described(element, context, fits)
+        outputs[element.name] = _described(element, context, fits, parts)
         most = max(most, int(element.failed.sum()))
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
@@ -216,8 +219,10 @@ def summarise(
     )
 
 
-def _described(element: Element, context: Context, fits: bool) -> Described:
-    parts = {name: tuple(make(element, context)) for name, make in STATISTICS.items()}
+def _described(
+    element: Element, context: Context, fits: bool, wanted: Collection[str]
+) -> Described:
+    parts = {name: tuple(STATISTICS[name](element, context)) for name in wanted}
     fitted = fits_of(element, context.replicate is None) if fits and element.is_lifetime else {}
     return Described(element.units, parts, fitted)
 

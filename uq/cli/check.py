@@ -11,8 +11,9 @@ from uq.rows.sampling import group_size, rows
 from uq.running import runner
 from uq.running.loading import load_study
 from uq.study.definition import Study
+from uq.study.file import DesignTable
 from uq.units import powers, typical, unit_of
-from uq.wording import in_brackets, law
+from uq.wording import in_brackets, law, listed, threshold
 
 
 def check(path: str, model: str | None) -> None:
@@ -41,6 +42,7 @@ def check(path: str, model: str | None) -> None:
             ("model", f"{study.model.name}, version {study.model.version}"),
             ("design", f"{design.method}: {kind.meaning}{stated}"),
             ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
+            *([("until", _until(design))] if design.until else ()),
             *([("seeds", seeds)] * shared),
             ("outputs", ", ".join(study.analysis.outputs)),
             ("sensitivity", f"this design can provide {', '.join(fed_by(kind, dependent))}"),
@@ -56,6 +58,19 @@ def check(path: str, model: str | None) -> None:
     else:
         grid(laws + ties, header=header)
     _show_sampled(study)
+
+
+def _until(design: DesignTable) -> str:
+    """Return at which sizes a run may stop, and on what."""
+    from uq.analysis.stopping import confidence, interim_sizes
+
+    assert design.until is not None
+    until, *sizes = design.until, *map(str, interim_sizes(design))
+    half_width = threshold(until.half_width, "1")
+    return (
+        f"{until.estimate} of {until.output} is known to +-{half_width}; checked at"
+        f" {listed(sizes)} samples, each time with a confidence of {confidence(design):.2%}"
+    )
 
 
 def _unit(study: Study, name: str) -> str:

@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from uq.analysis.fleet import fleet_of, reasons
+from uq.analysis.fleet import fleet_of, reasons, the_life
 from uq.analysis.fleet_json import fleet_json
 from uq.analysis.fleet_numbers import Banded
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.rows.elements import independent_rows
 from uq.rows.results import open_result
 from uq.units import typical, unit_of
 from uq.wording import failed_interval, in_brackets, interval, known, threshold
@@ -24,17 +25,18 @@ def fleet(
 ) -> None:
     """Show when the first of some units ends, and how many have ended by a time."""
     ds = open_result(result)
-    times = [read_threshold("--by", text, "a life", "s") for text in by]
+    units = the_life(independent_rows(ds), output).declared.unit if by else ""
+    times = [read_threshold("--by", text, "a life", units) for text in by]
     found = fleet_of(ds, size, times, allow, output, plain=plain)
     if json:
         print_json(fleet_json(found))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.design}")
-    unit = unit_of("s", typical(one.estimate.value for one in found.first.values()))
+    unit = unit_of(found.units, typical(one.estimate.value for one in found.first.values()))
     heading(f"\n{found.output}{in_brackets(unit)}", f"the first of {size} has {found.ended}")
     _show([(f"quantile {p!r}", one) for p, one in found.first.items()], unit.size)
     for time, (failed, at_most) in found.by.items():
-        heading(f"\nby {threshold(time, 's')}")
+        heading(f"\nby {threshold(time, found.units)}")
         kept = f"at most {allow} {'has' if allow == 1 else 'have'} {found.ended}"
         kept = kept if allow else f"none has {found.ended}"
         _show([(f"have {found.ended}", failed), (f"P({kept})", at_most)])

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from uq.analysis.joint_bounds import Needed, rows_needed
 from uq.analysis.widths import Widths, expected_widths
 from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say_compiling
@@ -19,14 +20,17 @@ def plan(study: Study, workers: int | None, json: bool) -> None:
     """Run a few rows of a study; show what the whole will cost, and how wide intervals will be."""
     cost, ds = pilot(study, workers, say_compiling)
     failures, widths = int(failed(ds).sum()), expected_widths(ds)
+    needed = rows_needed(ds, study.analysis)
     if json:
-        print_json(as_json(cost, failures, widths))
+        print_json(as_json(cost, failures, widths, needed))
     else:
-        _show(study, cost, failures)
+        _show(study, cost, failures, needed)
         _show_widths(widths)
 
 
-def as_json(cost: Cost, failures: int, widths: Mapping[str, Widths]) -> dict[str, Any]:
+def as_json(
+    cost: Cost, failures: int, widths: Mapping[str, Widths], needed: Mapping[str, Needed]
+) -> dict[str, Any]:
     """Return the JSON of ``uq plan``."""
     return {
         "rows": cost.rows,
@@ -37,6 +41,7 @@ def as_json(cost: Cost, failures: int, widths: Mapping[str, Widths]) -> dict[str
         "seconds_low": cost.seconds_low,
         "seconds_high": cost.seconds_high,
         "disk": {"result": cost.result_bytes, "run": cost.run_bytes},
+        "rows_needed": {name: one.rows for name, one in needed.items()},
         "widths": {
             name: {
                 "units": width.units,
@@ -50,7 +55,7 @@ def as_json(cost: Cost, failures: int, widths: Mapping[str, Widths]) -> dict[str
     }
 
 
-def _show(study: Study, cost: Cost, failures: int) -> None:
+def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed]) -> None:
     heading(study.path, study.description)
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
     pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
@@ -62,8 +67,18 @@ def _show(study: Study, cost: Cost, failures: int) -> None:
             ("a row", f"{cost.row_seconds:.3g} s", "of one process"),
             ("time", _clock(cost.seconds), f"with {processes}, once the model is compiled{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
+            *(
+                (name.replace("_", " "), f"{one.rows} rows", _why_needed(one, cost))
+                for name, one in needed.items()
+            ),
         ]
     )
+
+
+def _why_needed(needed: Needed, cost: Cost) -> str:
+    of = f"the {needed.bounds} bounds that hold at once" if needed.bounds > 1 else "a bound"
+    short = ": more than the study has" if needed.rows > cost.rows else ""
+    return f"needed for {of}, if none fails{short}"
 
 
 def _show_widths(widths: Mapping[str, Widths]) -> None:

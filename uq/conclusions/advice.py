@@ -177,7 +177,8 @@ def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advi
     if not open_ones or not rows:
         return
     worst = max(open_ones, key=lambda one: one.factor)
-    more = f"; {len(open_ones) - 1} more are not settled" if len(open_ones) > 1 else ""
+    others = len(open_ones) - 1
+    more = f"; {others} more {'is' if others == 1 else 'are'} not settled" if others else ""
     yield Advice(
         "rows",
         f"Compute {_needed(worst, findings.ds)} instead of {grouped(rows)}: {worst.what}{more}.",

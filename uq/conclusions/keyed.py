@@ -73,7 +73,7 @@ def leader(one: Quantity) -> Markup:
 
 def size(one: Quantity, number: int, of: Contribution) -> Markup:
     """Return the indices of a contribution, which has this number."""
-    return keyed(of.size, *_keys(one, number, "inputs", of))
+    return keyed(of.size.replace(" %", "\N{NO-BREAK SPACE}%"), *_keys(one, number, "inputs", of))
 
 
 def effect(one: Quantity, number: int, of: Contribution) -> Markup:

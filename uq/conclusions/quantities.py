@@ -12,7 +12,7 @@ from uq.analysis.findings import Findings
 from uq.analysis.statistics.quantiles import quantiles
 from uq.analysis.statistics.statistic import Context, Statistic
 from uq.analysis.statistics.tolerance import tolerance
-from uq.analysis.summary import Described, Summary, summarise
+from uq.analysis.summary import Described, summarise
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise, Range
@@ -64,7 +64,9 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     ds = findings.ds
     asked = analysis_of(ds, only and only.partition("[")[0])
     wanted = with_bounds(asked, findings)
-    summary = findings.summary if wanted == analysis_of(ds) else summarise(ds, wanted)
+    summary = summarise(ds, asked) if only else findings.summary
+    parts = [part for part in ("quantiles", "tolerance") if _asks(wanted, asked, part)]
+    more = summarise(ds, wanted, parts=parts).outputs if parts else {}
     declared = outputs_of(ds)
     # What the study is about comes first.
     names = sorted(
@@ -74,10 +76,22 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     part = replicates_of(findings.rows)
     context = Context(findings.rows, wanted, part, weights_of(findings.rows))
     return [
-        _quantity(findings, summary, context, one)
+        _quantity(findings, _with(summary.outputs[one.name], more.get(one.name)), context, one)
         for one in elements_of(findings.rows, names)  # one at a time in memory
         if one.present.any() and only in (None, one.name)
     ]
+
+
+def _asks(wanted: AnalysisTable, asked: AnalysisTable, part: str) -> bool:
+    """Return whether a part of the table asks for more than the study."""
+    return bool(getattr(wanted, part) != getattr(asked, part))
+
+
+def _with(described: Described, more: Described | None) -> Described:
+    """Return an element with more statistics."""
+    if more is None:
+        return described
+    return replace(described, parts={**described.parts, **more.parts})
 
 
 def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
@@ -96,8 +110,9 @@ def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
     return asked.model_copy(update=changes) if changes else asked
 
 
-def _quantity(findings: Findings, summary: Summary, context: Context, element: Element) -> Quantity:
-    described = summary.outputs[element.name]
+def _quantity(
+    findings: Findings, described: Described, context: Context, element: Element
+) -> Quantity:
     if element.is_angle:  # its sign is only a direction
         folded = replace(element, values=element.for_thresholds)
         described = Described(

@@ -152,7 +152,7 @@ def lifetime(
     rows = independent_rows(ds)
     chosen = named_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
-    unit = display_unit("s", ends)
+    unit = display_unit(chosen[0].declared.unit, ends)
     (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
     known = (summary or summarise(ds)).outputs

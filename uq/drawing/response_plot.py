@@ -1,5 +1,6 @@
 """Figures of a machine's response: curves, bifurcation diagrams and basins of attraction."""
 
+import re
 from collections.abc import Sequence
 from itertools import cycle
 
@@ -190,5 +191,6 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])
         rounded = float(f"{value.item():.3g}")
-        known.append(powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor))))
+        text = powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor)))
+        known.append(re.sub(r"^-", "\N{MINUS SIGN}", text))
     return as_label(", ".join([*known, percent(float(one["share"]))]), width=60)

@@ -16,6 +16,7 @@ from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.independent_inputs import correlated_inputs, independent_inputs
+from uq.indices.scores import with_scores
 from uq.methods.sample import Sample
 from uq.rows.elements import Floats, flags, study_file_of
 from uq.study.file import Tied
@@ -44,13 +45,17 @@ def sample_of(ds: xr.Dataset) -> Sample:
     if layout is PLAIN:
         return sample
     groups, blocks = _grouped_rows(ds)
-    return replace(
+    sample = replace(
         sample,
         groups=groups.transpose(0, 2, 1) if layout.by_block else groups,
         blocks=blocks,
-        direction=_directions(ds, groups) if layout.one_at_a_time else np.empty(0),
         correlated=correlated_inputs(ds),
     )
+    if not layout.one_at_a_time:
+        return sample
+    unit = _unit(ds, groups, len(sample.inputs))
+    sample = replace(sample, direction=_directions(ds, groups, unit))
+    return with_scores(sample, ds, unit) if layout.given_the_rest else sample
 
 
 def _grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
@@ -67,7 +72,7 @@ def _grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
     raise InputError("rows of the design are missing: its indices need whole groups")
 
 
-def _directions(ds: xr.Dataset, order: NDArray[np.intp]) -> Floats:
+def _directions(ds: xr.Dataset, order: NDArray[np.intp], unit: Floats) -> Floats:
     """Return the steps of a design in which one input changes at a time: `Sample.direction`.
 
     Raises
@@ -78,7 +83,7 @@ def _directions(ds: xr.Dataset, order: NDArray[np.intp]) -> Floats:
     entries = study_file_of(ds).uncertain
     scales = {name: e.times for name, e in entries.items() if not isinstance(e, Tied)}
     parameters = list(scales)
-    direction = np.sign(np.diff(_unit(ds, order, len(parameters)), axis=2))
+    direction = np.sign(np.diff(unit, axis=2))
     changing = direction != 0
     sound = bool((changing.sum(axis=-1) == 1).all())
     moving = changing.copy()

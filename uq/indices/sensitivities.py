@@ -16,6 +16,7 @@ from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.targets import Target, where_it_happens
 from uq.methods.indices import IndexKind, Indices, RefusedError
+from uq.methods.measures import MIN_SIDE
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.methods.sample import Sample
@@ -248,6 +249,8 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
     seen = f"only {rarer} {side} in {len(hits)} rows{each}"
     if rarer < FEWEST_HITS * replicates:
+        if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
+            remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"
         raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
     return (f"{seen}: the indices are rough, and intervals may be too narrow; {remedy}",)
 

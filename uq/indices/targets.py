@@ -49,7 +49,8 @@ class Target:
         if self.values.ndim == 1:
             return self.values
         whole = self.values[np.isfinite(self.values).all(axis=1)]
-        return np.asarray(np.linalg.norm(whole - whole.mean(axis=0), axis=1))
+        middle = whole.mean(axis=0) if len(whole) else 0.0
+        return np.asarray(np.linalg.norm(whole - middle, axis=1))
 
 
 def where_it_happens(event: Target) -> Floats:

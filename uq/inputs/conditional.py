@@ -60,8 +60,9 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
             low[:, i], high[:, i] = map(ndtri, cell(np.ascontiguousarray(first[:, i])))
     changed = u[:, 1:] != u[:, :1]
     kind = np.where(changed, 2, (low < high)[:, None])  # a point, an interval, anywhere
-    since = np.broadcast_to(changed.sum(axis=1, keepdims=True), changed.shape)
-    order = np.lexsort((since, kind), axis=-1)
+    since = changed.sum(axis=1, keepdims=True)
+    # Narrow intervals first: what is drawn in the others then is more often kept.
+    order = np.lexsort((np.where(changed, since, (high - low)[:, None]), kind), axis=-1)
 
     def ordered(values: Floats) -> Floats:
         taken = np.take_along_axis(np.broadcast_to(values, order.shape), order, axis=-1)
@@ -203,7 +204,9 @@ def _between(low: Floats, high: Floats, u: Floats | float) -> tuple[Floats, Floa
     from scipy.special import ndtr, ndtri
 
     upper = low > -high  # where the lower tail of the mirrored law has more digits
-    below = ndtr(np.where(upper, -high, low))
-    share = ndtr(np.where(upper, -low, high)) - below
+    least, most = np.where(upper, -high, low), np.where(upper, -low, high)
+    below = ndtr(least)
+    share = ndtr(most) - below
     found = ndtri(below + np.where(upper, 1 - u, u) * share)
+    found = np.where(np.isfinite(found), found, most)  # too far out to have a probability
     return np.where(upper, -found, found), share

@@ -24,6 +24,7 @@ _REASONS = {
     "greater_than_equal": "must be at least {ge}",
     "less_than": "must be less than {lt:g}",
     "less_than_equal": "must be at most {le}",
+    "literal_error": "must be {expected}",
     "value_error": "{error}",
 }
 

@@ -9,6 +9,7 @@ from functools import partial
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
+from uq.methods.additive import additive_shapley
 from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import EXPLAINED, hdmr_indices
@@ -107,7 +108,8 @@ METHODS = {
         CROSSED,
         sobol_indices,
         (S1, ST, S2),
-        source="Saltelli et al. (2010), on standardised outputs",
+        source="Janon et al. (2014) with a control variate (S1), Jansen (1999) (ST), Saltelli"
+        " (2002) (S2), on standardised outputs",
         intervals="Student's t from replicates",
         least=MIN_GROUPS,
         aggregates=True,
@@ -137,6 +139,18 @@ METHODS = {
         assumes_independence=False,
         aggregates=True,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+    ),
+    "shapley-additive": Method(
+        "the same shares, from fewer rows where the effects of inputs nearly add up",
+        PATHS,
+        additive_shapley,
+        (SHAPLEY,),
+        source="as shapley, with the additive part of the output by formula",
+        intervals="Student's t of independent paths",
+        least=MIN_PATHS,
+        assumes_independence=False,
+        noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+        aggregates=True,
     ),
     "fast": Method(
         "how much of the variance, alone and with others, without intervals",

@@ -32,6 +32,11 @@ class Sample:
         1, lowers it, -1, or neither, 0, in probability. Empty elsewhere.
     correlated : dict of str to tuple of str
         Input -> those it is correlated with, where the study states rank correlations.
+    scores : ndarray, shape (R, N, k, d)
+        Of paths, the normal scores of the inputs: their probabilities on the scale of a standard
+        normal law. NaN for discrete inputs, and for what is correlated with one.
+    matrix : ndarray, shape (d, d)
+        The correlations of normal scores.
     random : bool
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
@@ -48,6 +53,8 @@ class Sample:
     blocks: tuple[str, ...] = ("sample",)
     direction: Floats = field(default_factory=lambda: np.empty(0))
     correlated: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    scores: Floats = field(default_factory=lambda: np.empty(0))
+    matrix: Floats = field(default_factory=lambda: np.empty(0))
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
     confidence: float = CONFIDENCE

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.errors import choices
 from uq.estimate import Estimate
 from uq.intervals import ROUNDING, UNKNOWN, is_constant, scatter_interval
@@ -55,17 +56,51 @@ def shapley_indices(sample: Sample) -> Indices:
     .. [3] T. Goda, "A simple algorithm for global sensitivity analysis with Shapley effects",
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
     """
-    whole = sample.whole
-    y = sample.grouped[whole]
-    if sample.is_constant(y):
-        raise RefusedError(NO_VARIANCE)
+    y = sample.grouped[sample.whole]
+    return indices_from(sample, parts_of(sample, y))
+
+
+def parts_of(sample: Sample, y: Floats) -> Floats:
+    """Return what the steps of each input add to half the square of the change along each path.
+
+    Parameters
+    ----------
+    sample : Sample
+    y : ndarray, shape (n, k) or (n, k, e)
+        Any function of the rows of whole paths; its elements add up.
+
+    Returns
+    -------
+    ndarray, shape (n, d)
+        Unbiased for the Shapley values of its variance.
+    """
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
-    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)  # over the elements of a whole output
-    parts = np.einsum("ns,nsp->np", steps, sample.direction[whole] != 0)
-    total = parts.sum(axis=1)
+    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)
+    return np.asarray(np.einsum("ns,nsp->np", steps, sample.direction[sample.whole] != 0))
+
+
+def indices_from(sample: Sample, parts: Floats, rounding: float = 0.0) -> Indices:
+    """Return Shapley effects from independent estimates of their parts of the variance.
+
+    Parameters
+    ----------
+    sample : Sample
+    parts : ndarray, shape (n, d)
+        Of each whole path.
+    rounding : float, optional
+        What rounding may change in an effect: the least half-width of its interval.
+
+    Raises
+    ------
+    RefusedError
+    """
+    y = sample.grouped[sample.whole]
+    if sample.is_constant(y):
+        raise RefusedError(NO_VARIANCE)
     if is_constant(y - y[:, :1]):
         raise RefusedError(ALL_NOISE)
+    total = parts.sum(axis=1)
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
     found = {}
@@ -78,6 +113,8 @@ def shapley_indices(sample: Sample) -> Indices:
         # Errors of rounding alone give no interval.
         constant = is_constant(share + error)
         ends = UNKNOWN if constant else scatter_interval(share, error, sample.confidence)
+        if rounding:
+            ends = np.fmin(ends[0], share - rounding), np.fmax(ends[1], share + rounding)
         found[name] = Estimate(share, *ends)
     idle = {name: paths for name in found if (paths := _paths_without_effect(sample, name))}
     notes = tuple(

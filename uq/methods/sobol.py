@@ -31,7 +31,7 @@ Estimates = Callable[[Sequence[str], Floats], Values]
 def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices:
     """Estimate first-order, total and, where the design has them, second-order indices.
 
-    Those of a whole output are aggregated [2]_: parts of the variance are summed over its elements.
+    Those of a whole output are aggregated [5]_: parts of the variance are summed over its elements.
 
     Parameters
     ----------
@@ -54,6 +54,9 @@ def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices
 
     Notes
     -----
+    S1 is the estimator of [1]_ with a control variate, after [2]_; ST is that of [3]_, S2 that of
+    [4]_. `benchmarks/estimators.py` compares them with others on the same rows.
+
     For a random model A and AB_i share a seed, B and BA_i another, and `NOISE` has the inputs of A
     and the seed of B. S1 and S2 are means of products of rows with different seeds, which noise
     enters through the variance alone. ST is a mean square of differences at one seed: of the noise
@@ -61,9 +64,15 @@ def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices
 
     References
     ----------
-    .. [1] A. Saltelli et al., "Variance based sensitivity analysis of model output. Design and
-       estimator for the total sensitivity index", Comput. Phys. Commun. 181, 259-270 (2010).
-    .. [2] F. Gamboa, A. Janon, T. Klein, A. Lagnoux, "Sensitivity analysis for multidimensional
+    .. [1] A. Janon, T. Klein, A. Lagnoux, M. Nodet, C. Prieur, "Asymptotic normality and efficiency
+       of two Sobol index estimators", ESAIM: Probab. Stat. 18, 342-364 (2014).
+    .. [2] G. Glen, K. Isaacs, "Estimating Sobol sensitivity indices using correlations", Environ.
+       Model. Softw. 37, 157-166 (2012): spurious correlations are subtracted.
+    .. [3] M. J. W. Jansen, "Analysis of variance designs for model output", Comput. Phys. Commun.
+       117, 35-43 (1999).
+    .. [4] A. Saltelli, "Making best use of model evaluations to compute sensitivity indices",
+       Comput. Phys. Commun. 145, 280-297 (2002).
+    .. [5] F. Gamboa, A. Janon, T. Klein, A. Lagnoux, "Sensitivity analysis for multidimensional
        and functional outputs", Electron. J. Stat. 8, 575-603 (2014).
     """
     y, whole = sample.grouped, sample.whole
@@ -126,19 +135,28 @@ def _estimates(blocks: Sequence[str], y: Floats) -> Values:
 
 
 def first_order(a: Floats, ab: Floats, b: Floats) -> float:
-    """Return S1 from the blocks A, AB_i and B: Saltelli et al. (2010), Table 2 (b)."""
-    return _share(np.mean(b * (ab - a), axis=0), a, b)
+    """Return S1 from the blocks A, AB_i and B.
+
+    The mean product of B and AB_i, which share input i, over the variance of these rows (Janon et
+    al. 2014). The product of A and B, of mean zero, is a control variate: by chance, B correlates
+    with AB_i as far as it does with A and A is like AB_i, by 1 - ST (Glen & Isaacs 2012).
+    """
+    a, ab, b = (one - one.mean(axis=0) for one in (a, ab, b))
+    apart, spread = np.mean((a - ab) ** 2, axis=0) / 2, np.var(np.r_[a, ab], axis=0)
+    alike = 1 - np.divide(apart, spread, out=np.zeros_like(apart), where=spread > 0)
+    return _share(np.mean(b * (ab - alike * a), axis=0), b, ab)
 
 
 def total_order(a: Floats, ab: Floats, b: Floats) -> float:
-    """Return ST from the blocks A, AB_i and B: Jansen (1999), Table 2 (f) there."""
+    """Return ST from the blocks A, AB_i and B: Jansen (1999)."""
     return _share(0.5 * np.mean((a - ab) ** 2, axis=0), a, b)
 
 
 def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
     """Return S2 from the blocks A, AB_i, AB_j, BA_i and B: Saltelli (2002)."""
-    both = _share(np.mean(ba * ab_other - a * b, axis=0), a, b)
-    return both - first_order(a, ab, b) - first_order(a, ab_other, b)
+    parts = (ba * ab_other - a * b, b * (ab - a), b * (ab_other - a))
+    both, one, other = (_share(np.mean(part, axis=0), a, b) for part in parts)
+    return both - one - other
 
 
 def _share(part: Floats, a: Floats, b: Floats) -> float:
@@ -162,7 +180,12 @@ def pilot(sample: Sample) -> dict[IndexKind, float]:
     y = sample.grouped[sample.whole]
     block = dict(zip(sample.blocks, ((y - y.mean()) / y.std()).T, strict=True))
     mixed = [block[f"AB_{name}"] for name in _parameters(sample.blocks)]
-    return {
-        S1: max(np.std(block["B"] * (one - block["A"])) for one in mixed),
-        ST: max(np.std(0.5 * (block["A"] - one) ** 2) for one in mixed),
-    }
+    a, b = block["A"], block["B"]
+    spread: dict[IndexKind, list[float]] = {S1: [], ST: []}
+    for ab in mixed:
+        apart = (a - ab) ** 2 / 2
+        product = b * (ab - (1 - apart.mean()) * a)
+        # A ratio of means, whose error is that of a difference.
+        spread[S1].append(np.std(product - product.mean() * (b**2 + ab**2) / 2))
+        spread[ST].append(np.std(apart))
+    return {kind: max(of) for kind, of in spread.items()}

@@ -15,7 +15,14 @@ from uq.contract import Floats, Model, Parameter
 from uq.errors import InputError, one_line
 from uq.inputs.faults import Fault, unknown
 from uq.outside.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable, read_fmu_file
-from uq.outside.fmu_said import bounds_of, said_of, times_of, unit_of_variable, variables_of
+from uq.outside.fmu_said import (
+    bounds_of,
+    said_of,
+    stamp_of,
+    times_of,
+    unit_of_variable,
+    variables_of,
+)
 from uq.outside.folders import Folders
 from uq.outside.machine_tables import refuse
 from uq.outside.returned import Censored, NonFiniteError, Returned, censored, checked
@@ -54,7 +61,7 @@ def fmu_of(path: Path) -> Model:
     returned = {name: _returned(name, one, reals) for name, one in outputs.items()}
     inputs = {name: one.variable or name for name, one in parameters.items()}
     folders = Folders(path.absolute().parent / f"{machine.name}.rows", _UNPACKED)
-    runner = _Fmu(fmu, inputs, outputs, returned, times, folders)
+    runner = _Fmu(fmu, stamp_of(fmu), inputs, outputs, returned, times, folders)
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep)
     title = machine.title or said.description or said.modelName
     return model_from(machine.name, title, machine.version, fields, returned, batch, False)
@@ -139,6 +146,8 @@ class _Fmu:
     Attributes
     ----------
     path : Path
+    stamp : tuple of int
+        `stamp_of` the file that was read.
     inputs : dict of str to str
         Parameter -> variable.
     outputs : dict of str to FmuOutputTable
@@ -149,6 +158,7 @@ class _Fmu:
     """
 
     path: Path
+    stamp: tuple[int, int]
     inputs: Mapping[str, str]
     outputs: Mapping[str, FmuOutputTable]
     returned: Mapping[str, Returned]
@@ -194,9 +204,10 @@ class _Fmu:
             if status >= _DISCARDED:
                 log.append(" ".join(text.decode(errors="replace").split()))
 
+        if stamp_of(self.path) != self.stamp:
+            raise FmuError("the file was changed after the run began")
         said, (start, stop, step) = said_of(self.path), self.times
-        places = f"binaries/{fmpy.platform}/", f"binaries/{fmpy.platform_tuple}/"
-        wanted = "modelDescription.xml", "resources/", *places
+        wanted = "modelDescription.xml", "resources/", f"binaries/{fmpy.platform}/"
         fmpy.extract(str(self.path), str(unpacked), include=lambda name: name.startswith(wanted))
         instance = instantiate_fmu(str(unpacked), said, logger=logger)
         fatal = False

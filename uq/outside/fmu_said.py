@@ -15,12 +15,10 @@ from typing import Any
 from uq.errors import InputError, described
 from uq.outside.machine_tables import file_there
 
-_VERSIONS = ("2.0", "3.0")
-_REAL = ("Real", "Float64")
+_VERSION = "2.0"
 _UNBOUNDED = 1e300  # written by tools for no bound at all
 
 
-@cache
 def said_of(path: Path) -> Any:
     """Return the model description of an FMU, an `fmpy.model_description.ModelDescription`.
 
@@ -30,6 +28,17 @@ def said_of(path: Path) -> Any:
         When FMPy is not installed, or the file is no FMU that can be simulated here.
     """
     file_there(path)
+    return _read(path, stamp_of(path))
+
+
+def stamp_of(path: Path) -> tuple[int, int]:
+    """Return what changes when a file is written again."""
+    found = path.stat()
+    return found.st_mtime_ns, found.st_size
+
+
+@cache
+def _read(path: Path, stamp: tuple[int, int]) -> Any:
     try:
         import fmpy
     except ImportError:
@@ -39,9 +48,8 @@ def said_of(path: Path) -> Any:
         platforms = fmpy.supported_platforms(str(path))
     except Exception as error:
         raise InputError(f"{path}: is no FMU: {described(error)}") from None
-    if said.fmiVersion not in _VERSIONS:
-        known = " and ".join(_VERSIONS)
-        raise InputError(f"{path}: is of FMI {said.fmiVersion}; {known} are supported")
+    if said.fmiVersion != _VERSION:
+        raise InputError(f"{path}: is of FMI {said.fmiVersion}, not {_VERSION}")
     if said.coSimulation is None and said.modelExchange is None:
         raise InputError(f"{path}: is neither for co-simulation nor for model exchange")
     if fmpy.platform not in platforms:
@@ -51,11 +59,11 @@ def said_of(path: Path) -> Any:
 
 
 def variables_of(said: Any, causality: str = "") -> dict[str, Any]:
-    """Return the real scalar variables of an FMU, all or those of a causality, by name."""
+    """Return the real variables of an FMU, all or those of a causality, by name."""
     return {
         one.name: one
         for one in said.modelVariables
-        if one.type in _REAL and not one.dimensions and causality in ("", one.causality)
+        if one.type == "Real" and causality in ("", one.causality)
     }
 
 

@@ -16,6 +16,7 @@ from uq.outside.row_by_row import RowByRow, model_from
 from uq.outside.um_bridge import DESCRIBED, VERSION, ServerError, call, split_address
 
 _SOON = 5.0  # seconds for which a server is expected to start
+_LARGEST = 10_000_000  # numbers in an answer
 
 
 @dataclass(frozen=True)
@@ -25,18 +26,17 @@ class _Known:
     server: str
     name: str
     inputs: tuple[int, ...]
+    outputs: tuple[int, ...]
     information: Mapping[str, Any]
 
 
-def server_model(address: str, returned: Mapping[str, Returned] | None = None) -> Model:
+def server_model(address: str) -> Model:
     """Return the model at an address.
 
     Parameters
     ----------
     address : str
         ``http://HOST:PORT/NAME``.
-    returned : dict of str to Returned, optional
-        What it returns, where the server does not describe it; without, the model has no outputs.
 
     Returns
     -------
@@ -68,7 +68,10 @@ def server_model(address: str, returned: Mapping[str, Returned] | None = None) -
             name: (Parameter(name, "1", name, (-inf, inf), "assumed: none is stated"), 0.0)
             for name in _names(known.inputs)
         }
-        outputs = from_plain(described.get("outputs", {})) or dict(returned or {})
+        outputs = from_plain(described.get("outputs", {})) or {
+            name: Returned(shape=() if size == 1 else (size,))
+            for name, size in zip(_vectors(len(known.outputs)), known.outputs, strict=True)
+        }
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise InputError(f"{address}: describes itself wrongly: {error!r}") from None
     evaluate = _Evaluate(known, tuple(fields), tuple(outputs) if described else ())
@@ -82,7 +85,8 @@ def server_model(address: str, returned: Mapping[str, Returned] | None = None) -
 def code_of_server(address: str) -> str:
     """Return a hash of what a server says of a model: its code cannot be seen."""
     known = _known(address)
-    said = json.dumps([known.name, VERSION, known.inputs, known.information], sort_keys=True)
+    sizes = known.inputs, known.outputs
+    said = json.dumps([known.name, VERSION, *sizes, known.information], sort_keys=True)
     return hashlib.sha256(said.encode()).hexdigest()[:16]
 
 
@@ -101,6 +105,7 @@ def _known(address: str) -> _Known:
             raise InputError(f"{address}: no such model (there: {', '.join(models)})")
         own = {"name": name, "config": {}}
         sizes = tuple(int(n) for n in call(server, "InputSizes", own)["inputSizes"])
+        outputs = tuple(int(n) for n in call(server, "OutputSizes", own)["outputSizes"])
         about = call(server, "ModelInfo", own)
         if not about["support"].get("Evaluate"):
             raise InputError(f"{address}: this model cannot be evaluated")
@@ -110,7 +115,14 @@ def _known(address: str) -> _Known:
         raise InputError(f"{address}: {error}") from None
     if not 0 < sum(sizes) <= 10_000:
         raise InputError(f"{address}: has {sum(sizes)} inputs")
-    return _Known(server, name, sizes, about)
+    if not 0 < sum(outputs) <= _LARGEST or min(outputs) < 1:
+        raise InputError(f"{address}: has outputs of sizes {outputs}")
+    return _Known(server, name, sizes, outputs, about)
+
+
+def _vectors(count: int) -> list[str]:
+    """Return the names of output vectors of a server that does not describe itself."""
+    return ["y"] if count == 1 else [f"y{i + 1}" for i in range(count)]
 
 
 def _names(sizes: tuple[int, ...]) -> list[str]:
@@ -152,7 +164,7 @@ class _Evaluate:
             raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")
         if self.outputs:
             return self._named(output)
-        names = ["y"] if len(output) == 1 else [f"y{i + 1}" for i in range(len(output))]
+        names = _vectors(len(output))
         return {n: v[0] if len(v) == 1 else v for n, v in zip(names, output, strict=True)}
 
     def _named(self, output: list[list[float]]) -> dict[str, Any]:

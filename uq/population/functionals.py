@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from math import exp, isfinite, isnan, log, nan
 
 import numpy as np
@@ -117,6 +118,7 @@ class Population:
         weights, part = self._of(kept)
         few = rests_on_few(self._below(value)[kept], weights, part)
 
+        @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
             return weighted_share(self._below(y)[kept], weights, part, few, self.confidence)
 
@@ -143,6 +145,7 @@ class Population:
         return self._along_values(probability).value
 
     def _middle(self, probability: float) -> float:
+        @cache
         def reached(at: float) -> float:
             return self._average(exp(at)) - probability
 

@@ -87,7 +87,7 @@ def weighted_share(
         return Estimate(mean, reason=EXACT)
     low, high = _of_logit(mean, found, confidence)
     if 0 < mean < 1:
-        outlier = 2 * ((found.max() - mean) - (mean - found.min())) / parts
+        outlier = _outlier(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
     if cautious or (cautious is None and rests_on_few(numbers, weights, part)):
         of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)), confidence)
@@ -124,6 +124,18 @@ def share_to_compare(
         of_hits = wilson_interval(mean, effective_rows(per_sample(worth, part)))
         low, high = min(low, of_hits[0]), max(high, of_hits[1])
     return Estimate(mean, low, high)
+
+
+def _beyond_outliers(mean: float, found: Floats) -> tuple[float, float]:
+    """Return Student's interval, moved by what two more outliers as far would add."""
+    low, high = scatter_interval(mean, found)
+    move = _outlier(mean, found)
+    return low + min(move, 0.0), high + max(move, 0.0)
+
+
+def _outlier(mean: float, found: Floats) -> float:
+    """Return by how much two more parts as far out as the farthest on one side move a mean."""
+    return float(2 * ((found.max() - mean) - (mean - found.min())) / len(found))
 
 
 def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
@@ -166,8 +178,9 @@ def weighted_moments(
     mean = float(np.average(values, weights=weights))
     squares = (values - mean) ** 2
     variance = float(np.average(squares, weights=weights))
-    found = Estimate(mean, *scatter_interval(mean, pulls(values, weights, part)))
-    ends = np.asarray(scatter_interval(0.0, pulls(squares, weights, part) / max(variance, 1e-300)))
+    found = Estimate(mean, *_beyond_outliers(mean, pulls(values, weights, part)))
+    relative = pulls(squares, weights, part) / max(variance, 1e-300)
+    ends = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
     spread = Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
     both = zip((found, spread), (np.abs(values), squares), strict=True)
     parts = [trusted(one, of / max(of.max(), 1e-300), weights, part, most) for one, of in both]

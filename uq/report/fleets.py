@@ -34,12 +34,12 @@ def fleet_notes(findings: Findings) -> list[str]:
 def _rows(one: Fleet) -> Iterator[tuple[Cell, ...]]:
     options = {"size": str(one.size), "output": one.output}
     traced = partial(key_of, verb="fleet", options=options)
-    unit = unit_of("s", typical(banded.estimate.value for banded in one.first.values()))
+    unit = unit_of(one.units, typical(banded.estimate.value for banded in one.first.values()))
     for p, banded in one.first.items():
         words = f"{100 * p:g} % quantile of the first{in_brackets(unit)}"
         yield _row(one.output, words, banded, traced("first", "quantiles", repr(p)), unit.size)
     for time, (failed, at_most) in one.by.items():
-        by = f"{one.ended} by {threshold(time, 's')}"
+        by = f"{one.ended} by {threshold(time, one.units)}"
         of = ("by", repr(time))
         yield _row(one.output, f"number {by}", failed, traced(*of, "failed"))
         yield _row(one.output, f"P(none {by})", at_most, traced(*of, "at_most_allowed"))

@@ -71,7 +71,7 @@ def _share(one: Estimate) -> Cell:
     return Cell(percent(one.value), below, one.value, "", SHARE, (one.low, one.high))
 
 
-_VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance")
+_VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance", "joint_bounds")
 """First parts of the keys of statistics that are values of the output."""
 
 

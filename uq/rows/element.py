@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from uq.contract import Floats, Mask, Output
+from uq.element_names import places as places
 
 
 class RowLaw(Protocol):
@@ -155,29 +156,6 @@ def is_whole(name: str) -> bool:
 
 
 _WHOLE = "[:]"
-
-
-def places(
-    output: str, coordinates: Mapping[str, Any]
-) -> Iterator[tuple[str, tuple[int, ...], dict[str, Any]]]:
-    """Yield name, index and coordinates of each element of an output, in order.
-
-    Parameters
-    ----------
-    output : str
-    coordinates : dict of str to array
-        Of each dimension, in order.
-
-    Yields
-    ------
-    tuple
-        Coordinates in names are written like Python's repr, without quotes.
-    """
-    axes = {dim: np.asarray(axis) for dim, axis in coordinates.items()}
-    for index in np.ndindex(*map(len, axes.values())):
-        place = {dim: axes[dim][i].item() for dim, i in zip(axes, index, strict=True)}
-        label = ",".join(f"{dim}={value}" for dim, value in place.items())
-        yield f"{output}[{label}]" if label else output, index, place
 
 
 def elements_in(

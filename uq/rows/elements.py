@@ -166,7 +166,7 @@ def _no_such_element(name: str, known: Collection[str]) -> InputError:
 
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
     """Return the outputs that a study names, or all if it names none."""
-    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds)))
+    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)))
     return named if analysis.outputs else output_names(ds)
 
 

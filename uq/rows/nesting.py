@@ -102,6 +102,11 @@ def size_in_words(samples: int, units: int, repeats: int) -> str:
     return f"{samples} samples of {units} units" + f", {repeats} repeats of each" * (repeats > 1)
 
 
+def samples_have(count: int) -> str:
+    """Return the beginning of a sentence: ``1 sample has``, ``2 samples have``."""
+    return "1 sample has" if count == 1 else f"{count} samples have"
+
+
 def is_nested(ds: xr.Dataset) -> bool:
     """Whether samples of a result have several rows."""
     return "world" in ds.variables

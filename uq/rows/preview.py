@@ -30,7 +30,11 @@ class Preview:
         outputs = workload.model.outputs
         if "regime" in outputs and outputs["regime"].is_category:
             self._regimes = outputs["regime"].categories
-        lives = [name for name in workload.shown if outputs[name].is_lifetime]
+        lives = [
+            name
+            for name in workload.shown
+            if outputs[name].is_lifetime and outputs[name].unit == "s"
+        ]
         if lives:  # the first element of the first life represents all
             self._life, dims = lives[0], outputs[lives[0]].dims
             coordinates = workload.model.coordinates(workload.settings)

@@ -53,7 +53,7 @@ def largest_weight(ds: xr.Dataset) -> float:
     return float(ds[WEIGHT].attrs.get(MOST, np.inf)) if has_weights(ds) else np.inf
 
 
-def refuse_weights(ds: xr.Dataset, what: str) -> None:
+def refuse_weights(ds: xr.Dataset, what: str, *, but_equal: bool = False) -> None:
     """Refuse a question that weighted rows cannot answer.
 
     Parameters
@@ -62,13 +62,15 @@ def refuse_weights(ds: xr.Dataset, what: str) -> None:
         A result.
     what : str
         The question, such as ``uq levels``.
+    but_equal : bool
+        Whether equal weights will do: those of units that share only what is integrated.
 
     Raises
     ------
     InputError
         When rows have weights.
     """
-    if has_weights(ds):
+    if has_weights(ds) and not (but_equal and np.ptp(ds[WEIGHT].values) == 0):
         raise InputError(
             f"{what}: not with rows that inspections have weighted; ask it of the result before"
             " 'uq update'"

@@ -155,20 +155,18 @@ class Dispatcher:
             self._here(self._sizes.good(self.row_seconds))
 
     def finish_on(self, crew: "Workers") -> None:
-        """Run the remaining rows on workers, and here until a local worker is there."""
+        """Run the remaining rows on workers."""
         self._dashboard = crew.dashboard
         sent = SentChunks(self.workload, crew, self._options.row_limit)
         while self.left:
             threads = crew.threads
-            sharing = max(1, threads or crew.own)
+            sharing = max(1, threads)
             # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(sent) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
                 sent.send(*self._take(self._shared(sharing)))
             before, self._under_way = self._under_way, sent.begun(threads)
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
-            if crew.own and not threads and self._untaken:
-                self._here(self._shared(sharing))
             for start, some, chunk, seconds in sent.returned():
                 if seconds:  # unknown for a row that was given up
                     self.row_seconds = seconds / len(some.x)

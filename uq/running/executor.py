@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from uq.compilation import compilation
 from uq.contract import Floats
-from uq.interrupts import in_background
+from uq.interrupts import in_background, undone
 from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
+from uq.running.children import Children
 from uq.running.dispatch import Dispatcher
-from uq.running.isolation import Action, Evaluate, isolated, spec_of
+from uq.running.isolation import Action, Evaluate, spec_of
 from uq.running.options import RunOptions
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 SHORT_SECONDS = 4.0
 """Shorter work is not worth starting workers."""
+
+_SHARE_HERE = 1 / 64  # of the rows, to learn what they cost before workers take chunks of them
 
 
 def in_one_process(workers: int | None, seconds: float) -> bool:
@@ -68,6 +71,8 @@ class Executor:
         options.check()
         self._workload, self._options = workload, options
         self._compiling = compiling
+        self._spec = spec_of(workload)
+        self._children = Children()
         self._crew: Workers | None = None
         self._stack = ExitStack()
         self._seconds = 0.0
@@ -77,8 +82,9 @@ class Executor:
             self._stack.enter_context(compilation(self._compiling))
             self.evaluate = partial(_in_process, self._workload)
         else:
-            process = isolated(self._workload, self._options.row_limit, self._compiling)
-            self.evaluate = self._stack.enter_context(process)
+            self._stack.enter_context(undone(self._children.close))
+            self._begin(1)
+            self.evaluate = self._in_a_child
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -91,7 +97,7 @@ class Executor:
         workers = self._options.workers
         if self._options.scheduler is not None:
             crew = self._started(dispatcher)  # before anything is computed
-            dispatcher.begin_here(share=1 / 8)
+            dispatcher.begin_here(_SHARE_HERE)
             dispatcher.finish_on(crew)
             return
         begun = not workers and self._crew is None
@@ -104,7 +110,7 @@ class Executor:
         elif dispatcher.left:
             crew = self._started(dispatcher)
             if not begun:
-                dispatcher.begin_here(share=1 / 8)  # while they start
+                dispatcher.begin_here(_SHARE_HERE)
             dispatcher.finish_on(crew)
         self._seconds += dispatcher.row_seconds * dispatcher.rows
 
@@ -117,11 +123,18 @@ class Executor:
 
                 crew = remote_workers(self._options.scheduler)
             else:
-                wanted = spec_of(self._workload), self._options.row_limit
                 count = processes(dispatcher.workload, self._options.workers)
-                crew = local_workers(count, wanted)
+                self._begin(count)  # they import while dask does
+                crew = local_workers(count, self._children)
             self._crew = self._stack.enter_context(crew)
         return self._crew
+
+    def _begin(self, count: int) -> None:
+        self._children.begin(count, self._spec, self._options.row_limit, self._compiling)
+
+    def _in_a_child(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
+        with self._children.one(self._spec, self._options.row_limit) as child:
+            return child.evaluate(x, seed, start)
 
 
 def _in_process(workload: Workload, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:

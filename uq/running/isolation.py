@@ -73,8 +73,7 @@ def isolated(
     """
     process = Isolated(spec_of(workload), limit, compiling)
     with undone(process.close):
-        with suppress(OSError):  # it is tried again for the first rows
-            process.begin()
+        process.begin()
         yield process.evaluate
 
 
@@ -181,8 +180,12 @@ class Isolated:
             else:
                 return kind, value
 
-    def begin(self) -> Connection:
+    def begin(self) -> None:
         """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
+        with suppress(OSError):
+            self._begun()
+
+    def _begun(self) -> Connection:
         if self._connection:
             return self._connection
         self._process, self._connection = started("uq.running.child")
@@ -206,7 +209,7 @@ class Isolated:
             if self._closed.is_set():
                 raise RunError("the process for the rows was ended")
             try:
-                connection = self.begin()
+                connection = self._begun()
                 kind, value = connection.recv()
             except (EOFError, OSError):
                 reason = self._end()

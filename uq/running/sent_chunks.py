@@ -62,10 +62,9 @@ class SentChunks:
 
     def send(self, start: int, rows: Rows, tries: int = 1) -> None:
         """Have some rows computed."""
-        data = rows.x, rows.seed, start
-        future = self._crew.client.submit(
-            evaluate_rows, self._spec, versions(), self._row_limit, *data, pure=False
-        )
+        how = self._spec, versions(), self._row_limit
+        data = rows.x, rows.seed, start, self._crew.run
+        future = self._crew.client.submit(evaluate_rows, *how, *data, pure=False)
         self._under_way[future] = start, rows, tries
         self._arrivals.add(future)
 

@@ -20,11 +20,20 @@ class Workers:
     client : distributed.Client
     own : int
         Workers that this process started, 0 on an existing cluster.
+    run : str
+        Whose processes compute, as in `uq.running.dask_task.evaluate_rows`.
     """
 
-    def __init__(self, client: Client, watch: Callable[[int, bool], None], own: int = 0) -> None:
+    def __init__(
+        self,
+        client: Client,
+        watch: Callable[[int, bool], None] = lambda *_: None,
+        own: int = 0,
+        run: str = "",
+    ) -> None:
         self.client = client
         self.own = own
+        self.run = run
         self._watch = watch
         self._threads, self._counted = 0, 0.0
 
@@ -60,7 +69,7 @@ class Workers:
         return self._threads
 
     def watch(self, progress: bool = False) -> None:
-        """Replace dead workers if this process started them; to be called regularly.
+        """See whether there are workers; to be called regularly.
 
         Parameters
         ----------
@@ -70,7 +79,7 @@ class Workers:
         Raises
         ------
         RunError
-            When no workers are to be expected: they cannot start, keep dying, or stay away.
+            When no workers are to be expected.
         """
         self._watch(self.threads, progress)
 

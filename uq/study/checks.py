@@ -8,6 +8,7 @@ from uq.designs.design import Design
 from uq.designs.layouts import PATHS
 from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.designs.registry import DESIGNS
+from uq.element_names import places
 from uq.errors import choices, nearest
 from uq.inputs.faults import Fault, unknown
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
@@ -48,6 +49,9 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         for one in (value if isinstance(value, list) else [value]) * (not faults):
             yield from _unit_faults(model, name, path, one)
+    for name, side in analysis.get("joint_bounds", {}).items():
+        path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
+        yield from _output_faults(model, name, path, side, no_number)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
@@ -56,6 +60,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         if not faults and model.outputs:
             yield from _until_faults(model, name, until)
+            yield from _element_faults(model, name, until["output"], given)
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[Fault]:
@@ -73,6 +78,21 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
         yield from _unit_faults(model, name, (*path, "half_width"), half_width)
     elif isinstance(half_width, str) and (problem := misfit(half_width, pure, "1")):
         yield Fault((*path, "half_width"), problem, half_width)
+
+
+def _element_faults(
+    model: Model, name: str, element: str, given: Mapping[str, Any]
+) -> Iterator[Fault]:
+    """Yield whether an output has no such element with these settings."""
+    settings, _ = read_settings(model, given)
+    if element == name or settings is None:
+        return
+    coordinates = model.coordinates(settings)
+    axes = {dim: coordinates[dim] for dim in model.outputs[name].dims}
+    names = [label for label, *_ in places(name, axes)]
+    if element not in names:
+        problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
+        yield Fault(("design", "until", "output"), problem, element)
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -156,16 +176,18 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     for key, problem in problems.items():
         yield Fault(("design", key), problem, True if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
-    if "tolerance" in asks and several:
-        problem = f"refused: its confidence assumes independent rows, {_SEVERAL}"
-        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
-    elif "tolerance" in asks and not design.independent and not stated:
-        able = independent + ", independent = true if they are" * design.imported
-        problem = (
-            f"refused: its confidence assumes independent rows, and those of '{method}' are not;"
-            f" use method = {able}, or leave the bound out"
-        )
-        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
+    for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
+        why = ""
+        if several:
+            why = f"independent rows, {_SEVERAL}"
+        elif not design.independent and not stated:
+            able = independent + ", independent = true if they are" * design.imported
+            why = (
+                f"independent rows, and those of '{method}' are not; use method = {able}, or leave"
+                " the bound out"
+            )
+        if why:
+            yield Fault(("analysis", key), f"refused: its confidence assumes {why}", analysis[key])
     if "twin" in asks and several:
         problem = f"needs independent rows, {_SEVERAL}"
         yield Fault(("analysis", "twin"), problem, analysis["twin"])

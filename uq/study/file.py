@@ -7,7 +7,7 @@ comes from them (`uq.study.schema`).
 import re
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import (
     AfterValidator,
@@ -163,8 +163,15 @@ class Until(_Table):
         return self.quantile if self.b_life is None else float(self.b_life[1:]) / 100
 
     @property
+    def label(self) -> str:
+        """The input of an index, or the two whose difference is meant; "" for all."""
+        return self.input or " - ".join(self.difference or ())
+
+    @property
     def estimate(self) -> str:
         """What is estimated of an element, as tables call it."""
+        if self.index is not None:
+            return f"{self.index} {self.label}".strip()
         if self.b_life is not None:
             return self.b_life
         if self.quantile is not None:
@@ -317,6 +324,12 @@ class AnalysisTable(_Table):
             }
         ),
     ] = Field(None, description="bounds that cover a share of all values, monte-carlo only")
+    joint_bounds: dict[str, Literal["lower", "upper", "both"]] = Field(
+        {},
+        description='output = "lower", "upper" or "both": bounds that hold for all of these outputs'
+        " at once, with the coverage and confidence of `tolerance` (0.95 if not given),"
+        " monte-carlo only",
+    )
     thresholds: dict[
         str,
         Annotated[

@@ -69,7 +69,7 @@ def find_model(reference: str) -> Model:
     if plain.startswith(_SERVERS):
         from uq.outside.server import server_model
 
-        return server_model(plain, returned)
+        return server_model(plain)
     return _load(_point(plain), f"model '{plain}'", returned)
 
 

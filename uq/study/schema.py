@@ -96,6 +96,7 @@ def _model_schema(model: Model) -> dict[str, Schema]:
         "analysis": {
             "properties": {
                 "outputs": {"items": known_outputs},
+                "joint_bounds": {"propertyNames": known_outputs},
                 "thresholds": {"propertyNames": known_outputs},
                 "twin": {"anyOf": [{"enum": ["", *model.cheap]}, {"type": "object", **settings}]},
             }
@@ -121,7 +122,7 @@ def _design_schema(design: Design) -> dict[str, Schema]:
     table = {key: rule for key, holds, rule in rules if holds}
     analysis: Schema = {"sensitivity": {"items": {"enum": list(fed_by(design))}}}
     analysis |= {} if design.independent else {"twin": {"const": ""}}
-    analysis |= {} if may_be_stated else {"tolerance": absent}
+    analysis |= {} if may_be_stated else {"tolerance": absent, "joint_bounds": absent}
     needed: Schema = {} if design.imported else {"required": ["samples"]}
     return {"design": {"properties": table} | needed, "analysis": {"properties": analysis}}
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import xarray as xr
 
-from uq.analysis.fleet import fleet, fleet_of
+from uq.analysis.fleet import fleet, fleet_of, the_life
 from uq.analysis.fleet_json import fleet_json
 from uq.errors import InputError
 from uq.keys import Json, Options, Path
@@ -24,8 +24,11 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
         raise InputError(
             "a key of a fleet begins with fleet[size=N], or with by=T, allow=K, output=LIFE as well"
         ) from None
-    by = [read_threshold("by", options["by"], "a life", "s")] if "by" in options else []
-    return fleet_json(fleet_of(ds, size, by, allow, options.get("output")))
+    output, by = options.get("output"), list[float]()
+    if "by" in options:
+        units = the_life(independent_rows(ds), output).declared.unit
+        by = [read_threshold("by", options["by"], "a life", units)]
+    return fleet_json(fleet_of(ds, size, by, allow, output))
 
 
 def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:

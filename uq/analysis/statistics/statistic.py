@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Flag, auto
+from functools import cached_property
 from math import isfinite, isnan
 from typing import Any
 
@@ -10,6 +11,7 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.estimators import Estimator
+from uq.analysis.joint_bounds import JointBound, joint_bounds
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
 from uq.population.smoothing import Smoothed
@@ -49,6 +51,11 @@ class Context:
     analysis: AnalysisTable
     replicate: Replicates
     weights: Smoothed | None = None
+
+    @cached_property
+    def joint_bounds(self) -> list[JointBound]:
+        """The bounds of all elements that hold at once."""
+        return joint_bounds(self.rows, self.analysis)
 
     def present(self, element: Element) -> Replicates:
         """Return the replicate of each row in which the element has a value."""

@@ -5,6 +5,7 @@ from typing import Any
 from uq.analysis.statistics.between_regimes import between_regimes
 from uq.analysis.statistics.counts import accuracy, counts, effective
 from uq.analysis.statistics.integrated import integrated
+from uq.analysis.statistics.joint import joint
 from uq.analysis.statistics.moments import moments_of
 from uq.analysis.statistics.quantiles import b_lives, quantiles
 from uq.analysis.statistics.statistic import Maker
@@ -16,6 +17,7 @@ STATISTICS: dict[str, Maker] = {
     "quantiles": quantiles,
     "b_lives": b_lives,
     "tolerance": tolerance,
+    "joint_bounds": joint,
     "thresholds": thresholds,
     "between_regimes": between_regimes,
     "counts": counts,

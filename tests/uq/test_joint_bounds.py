@@ -1,0 +1,125 @@
+"""Tolerance bounds that hold for several outputs at once."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, as_text, computed, kinds, study_of, summarised
+from scipy import stats
+
+from uq.analysis.joint_bounds import Needed, rows_needed
+from uq.errors import InputError
+from uq.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
+from uq.rows.elements import analysis_of
+from uq.study.definition import study_from_text
+
+DEPENDENCE = {
+    "independent": lambda u, v: (u, v),
+    "equal": lambda u, v: (u, u),
+    "opposite": lambda u, v: (u, 1 - u),
+}
+
+
+def share_within(how, first, second):
+    """Return P(both lie below their bounds)."""
+    if how == "independent":
+        return first * second
+    return min(first, second) if how == "equal" else max(first + second - 1, 0.0)
+
+
+def test_rows_needed_are_those_of_guba_makai_and_pal():
+    assert [rows_for_bound(0.95, 0.95, bounds=p) for p in (1, 2, 3, 4)] == [59, 93, 124, 153]
+
+
+def test_one_bound_is_the_tolerance_bound():
+    values = np.random.default_rng(0).standard_normal(500)
+    for failed in (0, 3):
+        low, high = tolerance_bounds(values, failed, 0.95, 0.95)
+        assert joint_bounds([values], failed, 0.95, 0.95) == [high]
+        assert joint_bounds([-values], failed, 0.95, 0.95) == [-low]
+
+
+@pytest.mark.parametrize("failed", [0, 2])
+def test_too_few_rows_give_no_bound(failed):
+    needed = rows_for_bound(0.95, 0.95, failed, bounds=2)
+    values = np.random.default_rng(0).random((2, needed - failed))
+    assert np.isfinite(joint_bounds(values, failed, 0.95, 0.95)).all()
+    assert np.isnan(joint_bounds(values[:, 1:], failed, 0.95, 0.95)).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", DEPENDENCE)
+@pytest.mark.parametrize("rows", [93, 500])
+def test_bounds_hold_at_once_in_95_percent(how, rows):
+    rng = np.random.default_rng(rows)
+    shares = []
+    for _ in range(1000):
+        bounds = joint_bounds(DEPENDENCE[how](*rng.random((2, rows))), 0, 0.95, 0.95)
+        shares.append(share_within(how, *bounds))
+    held = np.mean(np.array(shares) >= 0.95)
+    print(f"\n{how}, {rows} rows: {held:.1%}")
+    assert 0.93 <= held <= 0.97
+    # The share within the bounds has the same law whatever the dependence.
+    outside = stats.binom.ppf(0.05, rows, 0.05)
+    law = stats.beta(rows + 1 - outside, outside)
+    assert stats.kstest(shares, law.cdf).pvalue > 1e-3
+
+
+def test_a_summary_has_them_beside_each_output():
+    ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
+    found = summarised(ds)["outputs"]
+    assert found["work[side=left]"]["joint_bounds"].keys() == {"upper", "rows_needed"}
+    assert found["angle"]["joint_bounds"].keys() == {"lower", "upper", "rows_needed"}
+    assert "joint_bounds" not in found["life[side=left,depth=0.5]"]
+    # Two sides, two bounds of the angle; rows without an angle say nothing of it.
+    defined = ~np.isnan(ds["angle"].values)
+    values = [ds["work"].values[defined, 0], ds["work"].values[defined, 1]]
+    angle = ds["angle"].values[defined]
+    expected = joint_bounds([*values, -angle, angle], 0, 0.95, 0.95)
+    got = [found[f"work[side={side}]"]["joint_bounds"]["upper"] for side in ("left", "right")]
+    got += [-found["angle"]["joint_bounds"]["lower"], found["angle"]["joint_bounds"]["upper"]]
+    assert got == expected
+    assert rows_needed(ds, analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
+
+
+def test_lives_are_never_or_beyond_the_horizon():
+    ds = kinds(samples=400, analysis={"joint_bounds": {"life": "both"}})
+    bounds = summarised(ds)["outputs"]["life[side=left,depth=0.5]"]["joint_bounds"]
+    assert bounds["upper"] is None and bounds["upper_never"] is True
+    assert bounds["lower"] >= 0.5
+
+
+def test_failed_rows_lie_outside():
+    tables = {
+        "study": {"name": "joint", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 120},
+        "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
+        "analysis": {"joint_bounds": {"y": "both"}},
+    }
+    sound = summarised(computed(study_of(tables)))["outputs"]["y"]["joint_bounds"]
+    failing = tables | {"settings": {"fail_above": 0.98}}
+    found = summarised(computed(study_of(failing)))["outputs"]["y"]["joint_bounds"]
+    assert sound["rows_needed"] == 93 < found["rows_needed"]
+    assert sound["upper"] is not None and found["upper"] is None
+
+
+@pytest.mark.parametrize(
+    ("asked", "method", "words"),
+    [
+        (
+            {"z": "upper"},
+            "monte-carlo",
+            r"joint_bounds.z = .upper.: no such output of model 'linear'",
+        ),
+        ({"y": "up"}, "monte-carlo", r"joint_bounds.y = .up.: must be 'lower', 'upper' or 'both'"),
+        ({"y": "upper"}, "halton", r"joint_bounds.*assumes independent rows, .*'monte-carlo'"),
+    ],
+)
+def test_mistakes_are_one_line(asked, method, words):
+    tables = {
+        "study": {"name": "joint", "model": "linear"},
+        "design": {"method": method, "samples": 100},
+        "uncertain": {"x1": UNIFORM},
+        "analysis": {"joint_bounds": asked},
+    }
+    with pytest.raises(InputError, match=words) as refused:
+        study_from_text(as_text(tables))
+    assert len(refused.value.lines) == 1
