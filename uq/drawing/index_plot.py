@@ -52,7 +52,8 @@ def index_bars(
         When there is no such output, the name is ambiguous, or there are no indices.
     """
     found = found or _only(ds, output, method)
-    kinds, name = found.kinds(), found.name
+    name, every = found.name, found.kinds().items()
+    kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [
