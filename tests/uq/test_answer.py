@@ -302,6 +302,7 @@ def test_twins_are_named_together():
     assert called_together(["bearing_constant_1", "bearing_constant_2"]) == "both bearing constants"
     assert called_together(["unbalance_1"]) == "unbalance 1"
     assert called_together(["a", "b_1", "c"]) == "a, b 1 and c"
+    assert called_together(["b_2", "c_1", "b_1", "a"]) == "both bs, c 1 and a"
 
 
 def test_bounds_are_rounded_to_the_safe_side():

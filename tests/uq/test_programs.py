@@ -1,6 +1,7 @@
 """A program as a machine: what a study makes of it, what goes wrong, what it leaves behind."""
 
 import os
+import resource
 import tempfile
 import time
 from contextlib import suppress
@@ -12,7 +13,9 @@ import pytest
 
 import uq as package
 from uq.contract import Status
+from uq.outside import descendants, program
 from uq.outside.folders import Folders
+from uq.study.registry import find_model
 
 STUDY = """
 [study]
@@ -183,6 +186,22 @@ def test_a_hostile_program_costs_its_rows_only(uq, machine, folder, line):
     assert not list(running_in(folder))
 
 
+def test_a_program_that_floods_the_disk_is_ended(machine, folder, monkeypatch):
+    machine("#!/bin/sh\nexec head -c 10000000 /dev/zero\n")
+    monkeypatch.setattr(descendants, "_adopting", True)
+    monkeypatch.setattr(descendants, "LARGEST", 100_000)
+    monkeypatch.setattr(program, "end_descendants", lambda: None)  # those of this process
+    model = find_model("machine.toml")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    try:
+        x, seed = np.array([[1.0, 3.0]]), np.zeros(1, np.uint64)
+        _, status, messages = model.batch(x, seed, model.settings())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert status == Status.RAISED
+    assert "was ended, as it wrote a file larger than 1e+05 bytes; see " in messages[0]
+
+
 MISTAKES = {
     ('name = "pad"', "nam = 'pad'"): "[machine] nam = \"pad\": no such key; did you mean 'name'?",
     ("nominal = 3.0", "nominal = 'x'"): '[parameters] depth.nominal = "x": must be a number',
@@ -217,6 +236,12 @@ LOST = {
     "kill -9 $PPID; exec sleep 300": ("crashed", "killed its process (Killed)"),
     "echo nan > out.json; printf 'a,b\\n0,nan\\n' > out.csv": ("non-finite", "'last' is nan"),
 }
+
+
+def test_a_parameter_that_is_a_word_of_python_is_one_line(uq, machine):
+    machine(text=MACHINE.replace("depth", "lambda"))
+    said = uq("check", "own.toml", "--model", "machine.toml").err
+    assert "parameter 'lambda' cannot have this name in Python" in said and said.count("\n") == 1
 
 
 @pytest.mark.parametrize("line", LOST)

@@ -109,6 +109,16 @@ def test_heads_of_tables_are_printed_on_every_page(browser, report):
     assert shown and set(shown) == {"contents"}  # Chromium repeats no box of a button
 
 
+def test_no_printed_figure_leaves_half_a_page_empty(browser, report):
+    browser.open(report, width=690)  # pixels between the margins of A4
+    browser.do("Emulation.setEmulatedMedia", media="print")
+    heights = browser.value(
+        "[...document.querySelectorAll('.pictures figure')].map(f => f.offsetHeight)"
+    )
+    browser.do("Emulation.setEmulatedMedia", media="")
+    assert 100 < min(heights) and max(heights) < 480  # of 1000 pixels, with its caption
+
+
 def test_a_printed_report_has_figures_instead_of_controls(browser, report):
     browser.open(report)
     shown = "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.offsetHeight)"

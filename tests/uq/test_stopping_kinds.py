@@ -75,10 +75,10 @@ def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
 
 
 def test_times_are_said_in_the_unit_that_people_use(tmp_path):
-    of = wear({"b_life": "B10", "half_width": "1 days"})
+    of = wear({"b_life": "B10", "half_width": "30 hours"})
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     (note,) = summarised(ds)["notes"]
-    assert "B10 of life is" in note and "days: the required half-width of 1 day was" in note
+    assert "B10 of life is" in note and "days: the required half-width of 30 hours was" in note
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,8 @@ from uq.population.scaling import population
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.rows.nesting import first_samples
 from uq.units import Unit, beside, unit_of
-from uq.wording import brief, in_unit
+from uq.wording import brief, in_unit, threshold
+from uq.written import Written
 
 if TYPE_CHECKING:
     from uq.study.file import DesignTable, Until
@@ -236,7 +237,7 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     if seen.lost:
         lost = "groups with failed rows" if until.index else "failed rows"
         known += f" (without {seen.lost} {lost})"
-    wanted = f"required half-width of {in_unit(until.half_width, unit)}"
+    wanted = f"required half-width of {_as_required(until.half_width, unit)}"
     if not seen.reached:
         return f"the budget of {samples} samples is spent: {known}; the {wanted} was not reached"
     sizes = interim_sizes(design)
@@ -247,6 +248,13 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
         " 95 % interval for a run that stops so; all other intervals assume a number of rows fixed"
         " beforehand"
     )
+
+
+def _as_required(half_width: float, unit: Unit) -> str:
+    """Return a half-width as written, or in the unit of the estimate."""
+    if isinstance(half_width, Written):
+        return threshold(half_width, unit.name)
+    return in_unit(half_width, unit)
 
 
 def _in_words(found: Estimate, unit: Unit) -> str:

@@ -101,8 +101,7 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
     leader, _ = _leading(answered)
     if leader is None:
         return
-    twins = tuple(one for one in leader.inputs if twin_of(one) == twin_of(leader.inputs[0]))
-    for inputs in dict.fromkeys((leader.inputs, twins, leader.inputs[:1])):
+    for inputs in dict.fromkeys((leader.inputs, _twins(leader), leader.inputs[:1])):
         found = list(tightened(findings.ds, answered[0], inputs))
         if any(not one.reason for one in found):  # the rows show what these would change
             break
@@ -131,15 +130,23 @@ def _keep(answered: Sequence[Quantity]) -> Iterator[Advice]:
         )
 
 
+def _twins(leader: Contribution) -> tuple[str, ...]:
+    """Return the first of the inputs that lead, and its twins among them."""
+    return tuple(one for one in leader.inputs if twin_of(one) == twin_of(leader.inputs[0]))
+
+
 def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     leader, _ = _leading(answered)
-    changes = None if leader is None else changes_of(findings.ds, answered[0], leader.inputs)
-    if leader is None or not changes:
+    if leader is None:
+        return
+    inputs = _twins(leader)  # of many at once, the rows may show nothing
+    changes = changes_of(findings.ds, answered[0], inputs)
+    if not changes:
         return
     given = " ".join(f"--set {name}={value:.6g}" for name, value in changes.items())
-    words = called_together(leader.inputs)
+    words = called_together(inputs)
     text = f"See what half the scatter of {words} would change: uq what-if OUT {given}"
-    yield Advice("tighten", text, leader.inputs)
+    yield Advice("tighten", text, inputs)
 
 
 def verdict(findings: Findings, output: str | None = None) -> list[str]:

@@ -10,6 +10,7 @@ Reading order; a module imports only those above it:
     importance        rows not drawn from the study's laws, and what they count
     unit_likelihood   all inspections of a unit, were it each of some rows
     evidence          what inspections say of worlds
+    drawn_scale       the integrated input as the inspections leave it
     posterior         the rows as the inspections leave them
     trust             whether rows can represent that
     proposal          where to draw new rows if they cannot

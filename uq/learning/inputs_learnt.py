@@ -12,10 +12,10 @@ from uq.designs.levels import SHARED
 from uq.estimate import Estimate
 from uq.learning.importance import importance_of
 from uq.learning.result import as_unit, prior_of
-from uq.population.means import weighted_moments
+from uq.population.means import moments_of_rows
 from uq.rows.elements import analysis_of, replicates_of
 from uq.rows.nesting import levels_of
-from uq.rows.weights import WEIGHT, largest_weight
+from uq.rows.weights import WEIGHT
 
 QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 
@@ -30,8 +30,7 @@ class Spread:
     Attributes
     ----------
     mean, sd : Estimate
-        Of the posterior with intervals, which say how well the rows determine them; or why the
-        weights do not allow a number.
+        Of the posterior with intervals, which say how well the rows determine them.
     quantiles : dict of float to float
     """
 
@@ -160,7 +159,7 @@ def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread
 
 def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
     values, weights = ds[name].values, ds[WEIGHT].values
-    moments = weighted_moments(values, weights, replicates_of(ds), largest_weight(ds))
+    moments = moments_of_rows(values, weights, replicates_of(ds))
     return Spread(*moments, _quantiles(values, weights, asked))
 
 

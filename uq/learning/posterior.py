@@ -13,6 +13,7 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
+from uq.learning.drawn_scale import drawn_scale, in_order, in_random_order
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
@@ -31,9 +32,7 @@ NO_OTHERS = (
     " stands for an inspected one; set [design] units = {} or more"
 )
 
-_GOLDEN = (5**0.5 - 1) / 2
 _HUGE = 700.0
-_TINY = 2.0**-53
 
 
 @dataclass(frozen=True)
@@ -223,8 +222,8 @@ def _uninspected(
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     worth = np.exp(log_rows - log_rows.max())
-    at = np.modf((place.sample + 1) * _GOLDEN)[0]
-    return Weighted(rows, weights, _drawn(found.grids[0], worth, scale, at))
+    at = in_order(place.samples)[place.sample]
+    return Weighted(rows, weights, drawn_scale(found.grids[0], worth, scale, at))
 
 
 def _inspected(
@@ -255,29 +254,5 @@ def _inspected(
     kept = np.isin(np.arange(len(world)), rows)
     with np.errstate(divide="ignore"):
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
-    return Weighted(rows, weights, _drawn(grid, worth, scale) if scale else None)
-
-
-def _drawn(grid: Grid, worth: Floats, scale: Scale, at: Floats | None = None) -> Floats:
-    """Draw the integrated input of each row from its law given the inspections.
-
-    The numbers drawn with are evenly spread over the rows, in their order, unless given.
-
-    Parameters
-    ----------
-    grid : Grid
-    worth : ndarray, shape (n, g)
-    scale : Scale
-    at : ndarray, shape (n,), optional
-    """
-    if at is None:
-        at = np.modf((np.arange(len(worth)) + 1) * _GOLDEN)[0]
-    above = np.cumsum(worth, axis=1)
-    wanted = at * above[:, -1]
-    node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)
-    here = np.arange(len(worth)), node
-    with np.errstate(divide="ignore", invalid="ignore"):
-        within = (wanted - (above[here] - worth[here])) / worth[here]
-    edges = grid.edges
-    places = edges[node] + np.nan_to_num(within).clip(0.0, 1.0) * (edges[node + 1] - edges[node])
-    return scale.quantiles(np.where(above[:, -1] > 0, places.clip(_TINY, 1 - _TINY), at))
+    at = in_random_order(len(rows))
+    return Weighted(rows, weights, drawn_scale(grid, worth, scale, at) if scale else None)

@@ -15,6 +15,7 @@ from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
 from uq.population.scaling import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
+from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import MOST, ONLY_INSPECTED, WEIGHT, has_weights
 
@@ -23,6 +24,8 @@ UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_
 _WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
+WORLDS = "worlds"
+_NESTING = ("world", "unit", "repeat")
 
 
 def as_result(
@@ -83,6 +86,7 @@ def as_result(
         INSPECTIONS: json.dumps([as_table(one) for one in inspections]),
         LEDGER: json.dumps([digest(one) for one in inspections]),
         MODEL_ERROR: float(model_cv),
+        WORLDS: len(found.evidence.log_worlds),
         "prior_title": _prior_title(rows),
     }
     for variable in ds.variables.values():
@@ -106,7 +110,10 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
     return found
 
 
-_OF_POSTERIOR = (INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, ONLY_INSPECTED, "prior_title")
+_OF_POSTERIOR = (
+    *(INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR),
+    *(WORLDS, ONLY_INSPECTED, "prior_title"),
+)
 
 
 def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
@@ -142,7 +149,10 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
         scale = ds[UNIT_SCALE].values[place]
         drawn = rows[name].values
         rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
-    weight = ds[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
+    if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
+        # Rows of one sample have nothing in common: each has a value of the integrated input.
+        rows = rows.drop_vars(_NESTING, errors="ignore")
+    weight = ds.variables[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
     weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
     return rows.assign({WEIGHT: weight}).assign_attrs(title=f"{_prior_title(ds)}, unit {label}")
 

@@ -1,6 +1,7 @@
 """An FMU as a machine: each row simulates an instance of its own."""
 
 import hashlib
+import keyword
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -15,7 +16,14 @@ from uq.contract import Floats, Model, Parameter
 from uq.errors import InputError, one_line
 from uq.inputs.faults import Fault, unknown
 from uq.outside.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable, read_fmu_file
-from uq.outside.fmu_said import bounds_of, said_of, times_of, unit_of_variable, variables_of
+from uq.outside.fmu_said import (
+    bounds_of,
+    said_of,
+    stamp_of,
+    times_of,
+    unit_of_variable,
+    variables_of,
+)
 from uq.outside.folders import Folders
 from uq.outside.machine_tables import refuse
 from uq.outside.returned import Censored, NonFiniteError, Returned, censored, checked
@@ -42,8 +50,9 @@ def fmu_of(path: Path) -> Model:
     fmu = _fmu(path, file)
     said = said_of(fmu)
     reals = variables_of(said)
-    parameters = file.parameters or _declared(variables_of(said, "parameter"), FmuParameterTable)
-    outputs = file.outputs or _declared(variables_of(said, "output"), FmuOutputTable)
+    settable = variables_of(said, "parameter")
+    parameters = file.parameters or _declared(path, settable, FmuParameterTable)
+    outputs = file.outputs or _declared(path, variables_of(said, "output"), FmuOutputTable)
     machine = file.machine
     refuse(path, _faults(parameters, outputs, reals))
     try:
@@ -54,7 +63,7 @@ def fmu_of(path: Path) -> Model:
     returned = {name: _returned(name, one, reals) for name, one in outputs.items()}
     inputs = {name: one.variable or name for name, one in parameters.items()}
     folders = Folders(path.absolute().parent / f"{machine.name}.rows", _UNPACKED)
-    runner = _Fmu(fmu, inputs, outputs, returned, times, folders)
+    runner = _Fmu(fmu, stamp_of(fmu), inputs, outputs, returned, times, folders)
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep)
     title = machine.title or said.description or said.modelName
     return model_from(machine.name, title, machine.version, fields, returned, batch, False)
@@ -84,11 +93,21 @@ def _fmu(path: Path, file: FmuFile) -> Path:
 
 def _as_name(variable: str) -> str:
     """Return a variable such as ``spring.k[1]`` as a name: ``spring_k_1``."""
-    return re.sub(r"\W+", "_", variable, flags=re.ASCII).strip("_")
+    name = re.sub(r"\W+", "_", variable, flags=re.ASCII).strip("_")
+    if keyword.iskeyword(name):
+        return f"{name}_"
+    return name if name.isidentifier() else f"x{name}"
 
 
-def _declared(variables: Iterable[str], kind: Any) -> dict[str, Any]:
-    return {_as_name(one): kind(variable=one) for one in variables}
+def _declared(path: Path, variables: Iterable[str], kind: Any) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for one in variables:
+        name = _as_name(one)
+        if name in found:
+            both = f"'{found[name].variable}' and '{one}'"
+            raise InputError(f"{path}: {both} would both be '{name}'; name them in a machine file")
+        found[name] = kind(variable=one)
+    return found
 
 
 def _faults(
@@ -139,6 +158,8 @@ class _Fmu:
     Attributes
     ----------
     path : Path
+    stamp : tuple of int
+        `stamp_of` the file that was read.
     inputs : dict of str to str
         Parameter -> variable.
     outputs : dict of str to FmuOutputTable
@@ -149,6 +170,7 @@ class _Fmu:
     """
 
     path: Path
+    stamp: tuple[int, int]
     inputs: Mapping[str, str]
     outputs: Mapping[str, FmuOutputTable]
     returned: Mapping[str, Returned]
@@ -194,6 +216,8 @@ class _Fmu:
             if status >= _DISCARDED:
                 log.append(" ".join(text.decode(errors="replace").split()))
 
+        if stamp_of(self.path) != self.stamp:
+            raise FmuError("the file was changed after the run began")
         said, (start, stop, step) = said_of(self.path), self.times
         wanted = "modelDescription.xml", "resources/", f"binaries/{fmpy.platform}/"
         fmpy.extract(str(self.path), str(unpacked), include=lambda name: name.startswith(wanted))

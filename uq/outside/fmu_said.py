@@ -19,7 +19,6 @@ _VERSION = "2.0"
 _UNBOUNDED = 1e300  # written by tools for no bound at all
 
 
-@cache
 def said_of(path: Path) -> Any:
     """Return the model description of an FMU, an `fmpy.model_description.ModelDescription`.
 
@@ -29,6 +28,17 @@ def said_of(path: Path) -> Any:
         When FMPy is not installed, or the file is no FMU that can be simulated here.
     """
     file_there(path)
+    return _read(path, stamp_of(path))
+
+
+def stamp_of(path: Path) -> tuple[int, int]:
+    """Return what changes when a file is written again."""
+    found = path.stat()
+    return found.st_mtime_ns, found.st_size
+
+
+@cache
+def _read(path: Path, stamp: tuple[int, int]) -> Any:
     try:
         import fmpy
     except ImportError:

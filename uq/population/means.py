@@ -156,24 +156,21 @@ def rests_on_few(numbers: Floats, weights: Floats | None, part: Replicates) -> b
     return effective_rows(per_sample(worth * rarer, part)) < FEW
 
 
-def weighted_moments(
-    values: Floats, weights: Floats, part: Replicates = None, most: float = inf
+def moments_of_rows(
+    values: Floats, weights: Floats, part: Replicates = None
 ) -> tuple[Estimate, Estimate]:
-    """Estimate mean and standard deviation from rows with weights.
+    """Estimate mean and standard deviation from rows whose weights can be trusted.
 
     Parameters
     ----------
     values, weights : ndarray, shape (n,)
     part : ndarray of int, shape (n,), optional
-    most : float, optional
-        The largest weight that a row can have, where no value is farther out than those here.
 
     Returns
     -------
     mean, sd : Estimate
         With Student's intervals from the parts' influences, that of the standard deviation by its
-        logarithm; without, and with the reason, where the Pareto k of weight times value, or times
-        its square, is too large.
+        logarithm.
     """
     mean = float(np.average(values, weights=weights))
     squares = (values - mean) ** 2
@@ -181,10 +178,23 @@ def weighted_moments(
     found = Estimate(mean, *_beyond_outliers(mean, pulls(values, weights, part)))
     relative = pulls(squares, weights, part) / max(variance, 1e-300)
     ends = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
-    spread = Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
-    both = zip((found, spread), (np.abs(values), squares), strict=True)
-    parts = [trusted(one, of / max(of.max(), 1e-300), weights, part, most) for one, of in both]
-    return parts[0], parts[1]
+    return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
+
+
+def weighted_moments(
+    values: Floats, weights: Floats, part: Replicates = None
+) -> tuple[Estimate, Estimate]:
+    """Estimate mean and standard deviation, if weights allow it; see `moments_of_rows`.
+
+    Returns
+    -------
+    mean, sd : Estimate
+        Without interval, and with the reason, where the Pareto k of weight times value, or times
+        its square, is too large.
+    """
+    mean, sd = moments_of_rows(values, weights, part)
+    squares = (values - mean.value) ** 2
+    return trusted(mean, values, weights, part), trusted(sd, squares, weights, part)
 
 
 def trusted(
@@ -198,11 +208,11 @@ def trusted(
     numbers, weights : ndarray, shape (n,)
     part : ndarray of int, shape (n,), or None
     most : float, optional
-        The largest weight that a row can have, where numbers are at most 1.
+        The largest weight that a row can have, where numbers are at most 1. If no row can carry
+        much of all, 20 effective rows that carry the estimate suffice.
     """
     of_samples = per_sample(np.abs(weights * numbers), part)
-    mean = float(np.average(numbers, weights=weights))
-    if mean > 0 and carries_little(most / mean, len(of_samples)):
+    if carries_little(most, len(of_samples)) and effective_rows(of_samples) >= FEW:
         return found
     why = refusal(tail_shape(of_samples), len(of_samples))
     return Estimate(reason=why) if why else found

@@ -17,7 +17,7 @@ from uq.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied
-from uq.units import beside, unit_of
+from uq.units import beside, typical, unit_of
 from uq.wording import law
 
 
@@ -81,8 +81,8 @@ def _uncertain(ds: xr.Dataset) -> Table:
 
 
 def _quantiles(name: str, units: str, found: Floats) -> list[Cell]:
-    """Return quantiles in the unit of the median, to the digits that tell them apart."""
-    unit = unit_for(units, abs(found[1]))
+    """Return quantiles in the unit of a typical one, to the digits that tell them apart."""
+    unit = unit_for(units, typical(found))
     step = np.ptp(found) / unit.per / 30
     places = max(0, -floor(log10(step))) if step > 0 else 0
     texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
