@@ -208,3 +208,10 @@ def rows_for_bound(coverage: float, confidence: float, failed: int = 0, bounds: 
     """
     beyond = failed + bounds  # rows that must lie outside
     return beyond + negative_binomial(confidence, beyond, 1 - coverage)
+
+
+def mid_ranks(values: Floats) -> Floats:
+    """Return the share of values below each, shape (n,), ties counted by half."""
+    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
+    middle = np.cumsum(counts) - counts / 2
+    return np.asarray(middle[place] / max(len(values), 1))

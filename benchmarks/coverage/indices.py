@@ -190,15 +190,20 @@ def bootstraps(repetitions):
     return tally.lines()
 
 
+LIMIT = 2.5
+
+
 def nulls(method, repetitions):
     """Count how often an input without effect stays below the dummy of the indices."""
-    samples = {"hdmr": 1024, "quantile": 512}.get(method, 256)
+    samples = {"hdmr": 1024, "quantile": 512, "hsic-conditional": 512}.get(method, 256)
     laws = dict.fromkeys(("x1", "x2", "x3"), {"distribution": "uniform", "lower": 0, "upper": 1})
-    study = study_of(
-        "monte-carlo", samples, laws=laws, analysis={"outputs": ["jump"], "quantiles": [0.5]}
-    )
+    asked = {"outputs": ["jump"], "quantiles": [0.5], "thresholds": {"jump": LIMIT}}
+    study = study_of("monte-carlo", samples, laws=laws, analysis=asked)
     tally = Tally(f"input without effect, {samples} independent rows", REASONS)
-    output = "P(regime=upper)" if method == "regional" else "jump"
+    event, above = "P(regime=upper)", f"P(jump>{LIMIT!r})"
+    output = {"regional": event, "hsic-target": event, "hsic-conditional": above}.get(
+        method, "jump"
+    )
     for seed, ds in enumerate(repeated(study, repetitions)):
         idle = np.random.default_rng((seed, 1)).random(samples)
         ds = ds.assign(x2=("sample", idle, ds["x2"].attrs))
@@ -208,6 +213,8 @@ def nulls(method, repetitions):
         kind, null = next(iter(entry["dummy"].items()))
         value = entry[kind]["x2"]["value"]
         tally.add(f"{method}: below the dummy of {kind}", value, -np.inf, null)
+        if "p" in entry:
+            tally.add(f"{method}: p-value above 5 %", entry["p"]["x2"]["value"], 0.05, np.inf)
     return tally.lines()
 
 

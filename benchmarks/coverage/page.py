@@ -36,9 +36,9 @@ without any. Their true values are closed forms or quadratures (`benchmarks/cove
 Since refusals depend on the rows, the intervals that are given do not represent all samples.
 
 Some numbers are reported without an interval, because none would be valid: within-regime sd,
-extended FAST, RBD-FAST, delta, PAWN, HDMR and quantile-oriented indices. The tables *input without
-effect* count what is given instead, the dummy: such an input should stay below it in 95 % of cases.
-Bootstrap intervals of other libraries for such indices are counted, too.
+extended FAST, RBD-FAST, delta, PAWN, HDMR, HSIC and quantile-oriented indices. The tables *input
+without effect* count what is given instead, the dummy: such an input should stay below it in 95 %
+of cases. Bootstrap intervals of other libraries for such indices are counted, too.
 """
 
 

@@ -45,7 +45,8 @@ class Part(NamedTuple):
     repetitions: int = REPETITIONS
 
 
-NULLS = ("rbd-fast", "delta", "pawn", "regional", "quantile", "hdmr")
+HSIC = ("hsic-target", "hsic-conditional")
+NULLS = ("rbd-fast", "delta", "pawn", "regional", "quantile", "hdmr", *HSIC)
 
 PARTS = {
     **{f"plain-{name}": Part(partial(plain.plain, name)) for name in plain.DESIGNS},
@@ -79,7 +80,10 @@ PARTS = {
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
     "levels-integrated": Part(nested.integrated),
     "morris": Part(indices.morris),
-    **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
+    **{
+        f"null-{name}": Part(partial(indices.nulls, name), 1000 if name in HSIC else REPETITIONS)
+        for name in NULLS
+    },
     "effects": Part(effects.average),
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences),

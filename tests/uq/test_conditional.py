@@ -319,10 +319,8 @@ def test_intervals_of_paths_are_narrower_than_those_of_nearest_neighbours():
 
 def test_designs_for_dependent_inputs_are_named_with_what_they_feed():
     said = refusal(tables({"x1": UNIFORM, "x3": UNIFORM}, "saltelli", 128, dependence=PAIR))
-    assert said.endswith(
-        "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and pawn and"
-        " quantile and regional, or shapley for shapley and shapley-additive"
-    )
+    assert "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and" in said
+    assert said.endswith(", or shapley for shapley and shapley-additive")
 
 
 def test_paths_have_no_effects_within_a_regime():

@@ -98,7 +98,7 @@ def test_methods_for_independent_inputs_are_refused_and_others_named():
     given = tables({"x1": UNIFORM, "x3": UNIFORM}, samples=256, dependence=CORRELATED)
     said = refusal(given | {"analysis": {"sensitivity": ["rbd-fast"]}})
     assert said.startswith('[analysis] sensitivity = "rbd-fast": assumes independent inputs')
-    assert said.endswith("those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'")
+    assert "those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'" in said
     ds = computed(study_of(given))
     assert sensitivities(ds)["method"] == "delta"
     with pytest.raises(InputError, match="'rbd-fast' assumes independent inputs.*delta, pawn, "):

@@ -104,6 +104,12 @@ def test_variables_are_reduced_over_time(uq, body):
     assert (ds["life"].values[cut] == 5).all() and ds["life"].attrs["units"] == "s"
 
 
+def test_a_variable_that_is_a_word_of_python_gets_another_name(uq, folder, library):
+    cooling_fmu.write(folder / "body.fmu", library, DESCRIPTION.replace('"T0"', '"lambda"'))
+    shown = uq("models", "body.fmu")
+    assert shown.code == 0 and "lambda_" in shown.out
+
+
 def test_each_row_has_an_instance_of_its_own(uq, body):
     _, ds = run(uq, "body.toml")
     assert (ds["steps"] == 100).all()  # the library counts those of all its instances
@@ -190,6 +196,7 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, body, folder, change):
     assert MISTAKES[change] in ended.err and ended.err.count("\n") == 1
 
 
+TWICE = DESCRIPTION.replace('"T0"', '"body_rate"')
 OLD = DESCRIPTION.replace(
     'fmiVersion="2.0"',
     'fmiVersion="1.0" numberOfContinuousStates="0" numberOfEventIndicators="0"',
@@ -203,6 +210,10 @@ BAD = {
         "is of FMI 1.0, not 2.0",
     ),
     "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
+    "two of a name": (
+        {"description": TWICE},
+        "'body.rate' and 'body_rate' would both be 'body_rate'",
+    ),
     "endless": ({"experiment": ""}, "does not say how long it is to be simulated"),
     "in whole steps": (
         {"description": DESCRIPTION.replace("true", "false"), "experiment": ODD_STEP},

@@ -238,6 +238,12 @@ LOST = {
 }
 
 
+def test_a_parameter_that_is_a_word_of_python_is_one_line(uq, machine):
+    machine(text=MACHINE.replace("depth", "lambda"))
+    said = uq("check", "own.toml", "--model", "machine.toml").err
+    assert "parameter 'lambda' cannot have this name in Python" in said and said.count("\n") == 1
+
+
 @pytest.mark.parametrize("line", LOST)
 def test_a_lost_row_keeps_its_folder_without_large_files(uq, machine, folder, line):
     writing = "head -c 11000000 /dev/zero > large\ntouch small\necho life = 1\n"

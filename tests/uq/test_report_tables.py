@@ -160,7 +160,7 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
         ("m", [2.09e-4, 2.5e-4, 2.91e-4], ["209 µm", "250 µm"]),
         ("1", [0.2467, 0.295, 0.3435], ["0.247", "0.295"]),
         ("N", [5.0, 5.0, 5.0], ["5 N", "5 N"]),
-        ("m s-1", [-1.8, -0.07, 1.79], ["-1.8\xa0m\xa0s⁻¹", "-0.1\xa0m\xa0s⁻¹", "1.8\xa0m\xa0s⁻¹"]),
+        ("m s-1", [-1.8, -0.07, 1.79], ["-1.8 m s⁻¹", "-0.1 m s⁻¹"]),
     ],
 )
 def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):

@@ -74,7 +74,8 @@ def method_for(ds: xr.Dataset, event: bool) -> str | None:
         return None
     fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
     for name in (*(one for one in methods(ds) if one in fed), *fed):
-        if METHODS[name].takes_events if event else METHODS[name].takes_numbers:
+        own = METHODS[name]
+        if not own.conditional and (own.takes_events if event else own.takes_numbers):
             return name
     return None
 

@@ -52,7 +52,8 @@ def index_bars(
         When there is no such output, the name is ambiguous, or there are no indices.
     """
     found = found or _only(ds, output, method)
-    kinds, name = found.kinds(), found.name
+    name, every = found.name, found.kinds().items()
+    kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [
@@ -61,7 +62,8 @@ def index_bars(
         for parameter in parameters
     ]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
-    (panel,) = column(axes, 0.8 + 0.13 * lines.sum())
+    said = as_label(subject(ds, name), width=56)
+    (panel,) = column(axes, 0.8 + 0.13 * (lines.sum() + said.count("\n")))
     middle = np.cumsum(lines) - lines / 2
     thickness, ends = 0.8 * lines.min() / len(kinds), []
     for i, (kind, values) in enumerate(kinds.items()):
@@ -92,7 +94,7 @@ def index_bars(
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
     axis = "Sensitivity index" if shares else unit
     panel.set_xlabel(axis + known * ",\nwith 95 % interval")
-    heading(panel, as_label(subject(ds, name), width=56))
+    heading(panel, said)
     return finish(panel)
 
 

@@ -16,6 +16,7 @@ from uq.indices.targets import (
     with_tail_note,
 )
 from uq.indices.whole import wholes
+from uq.methods.method import Method
 from uq.methods.registry import METHODS
 from uq.rows.element import Element, is_whole, whole_name
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
@@ -48,7 +49,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         found = False
         for name in shown_outputs(ds, analysis_of(ds)):
             for target in targets_of(ds, name):
-                if asked.takes_events if target.event else asked.takes_numbers:
+                if _suits(asked, target):
                     yield target if asked.scale_free else lightened(target)
                     found = True
             if asked.aggregates:
@@ -56,7 +57,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         if not found and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a time of a lifetime in"
-                " [analysis] thresholds"
+                " [analysis] thresholds; name that of a value: --output 'P(y > t)'"
             )
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
@@ -78,6 +79,12 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
     yield from named if asked.scale_free else map(with_tail_note, named)
+
+
+def _suits(method: Method, target: Target) -> bool:
+    if target.event:
+        return method.takes_events and not (method.conditional and target.element is None)
+    return method.takes_numbers
 
 
 def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:

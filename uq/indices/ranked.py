@@ -1,7 +1,7 @@
 """The indices of a target as the lines of a table that ends with inputs without effect."""
 
 from collections.abc import Mapping
-from math import isfinite
+from math import isfinite, nan
 
 from uq.estimate import Estimate
 from uq.methods.indices import IndexKind, Null
@@ -35,8 +35,8 @@ def lines(values: Values, nulls: Mapping[IndexKind, Null]) -> list[tuple[str, li
     """
     ranked = ranking(values)
     found = [(label, [one[label] for one in values.values()]) for label in ranked]
-    known = [nulls[kind] for kind in values if kind in nulls]
-    if known:
+    known = [nulls.get(kind, Null(nan)) for kind in values]
+    if any(isfinite(null.one) for null in known):
         found.append(("(an input without effect)", [Estimate(null.one) for null in known]))
     if any(isfinite(null.largest) for null in known):
         label = f"(largest of {len(ranked)} such inputs)"

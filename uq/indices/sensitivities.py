@@ -14,7 +14,7 @@ from uq.estimate import Estimate
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
-from uq.indices.targets import Target
+from uq.indices.targets import Target, where_it_happens
 from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.measures import MIN_SIDE
 from uq.methods.method import Method
@@ -196,11 +196,21 @@ def indices_of_target(
         if method.of_variance and not target.event and lacks_variance(target.sizes):
             raise RefusedError(_no_variance(target))
         few = few_hits(ds, target)
-        found = method.indices(sample)
+        found = method.indices(_conditioned(target, sample) if method.conditional else sample)
     except RefusedError as refusal:
         return TargetIndices(target.name, *counts, refused=str(refusal))
     combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
     return TargetIndices(target.name, *counts, replace(found, notes=combined))
+
+
+def _conditioned(target: Target, sample: Sample) -> Sample:
+    """Return the output of the rows in which an event happens."""
+    if not target.event or target.element is None:
+        raise RefusedError(
+            "not an event of an output: ask for P(y > t) or P(T < t) by a threshold in [analysis];"
+            " for what matters within a regime, use --regime"
+        )
+    return replace(sample, values=where_it_happens(target))
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:

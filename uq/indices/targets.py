@@ -53,6 +53,12 @@ class Target:
         return np.asarray(np.linalg.norm(whole - middle, axis=1))
 
 
+def where_it_happens(event: Target) -> Floats:
+    """Return the output that an event is about in the rows in which it happens, NaN in others."""
+    assert event.element is not None
+    return np.where(event.values == 1, event.element.for_thresholds, np.nan)
+
+
 def targets(
     elements: Iterable[Element],
     thresholds: Mapping[str, tuple[float, ...]],
@@ -132,8 +138,9 @@ def canonical(name: str) -> str:
     found = re.fullmatch(r"P\(\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)", name)
     if found is None:
         return name
-    with suppress(ValueError):
-        return f"P({found[1]}{found[2]}{float(read_quantity(found[3]))!r})"
+    for read in (float, read_quantity):
+        with suppress(ValueError):
+            return f"P({found[1]}{found[2]}{float(read(found[3]))!r})"
     return f"P({found[1]}{found[2]}{found[3]})"
 
 

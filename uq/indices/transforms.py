@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uq.order_statistics import mid_ranks
 from uq.rows.elements import Element, Floats
 from uq.tails import heavier_tail
 from uq.wording import percent
@@ -120,10 +121,7 @@ def rank(element: Element) -> Transformed:
             " ended; ask for P(T < t) by a threshold in [analysis], or lengthen the horizon",
         )
     ranks = np.full(len(values), np.nan)
-    known = np.where(beyond, np.inf, values)[present]
-    _, place, counts = np.unique(known, return_inverse=True, return_counts=True)
-    middle = np.cumsum(counts) - counts / 2
-    ranks[present] = middle[place] / max(len(known), 1)
+    ranks[present] = mid_ranks(np.where(beyond, np.inf, values)[present])
     return Transformed(ranks)
 
 

@@ -18,15 +18,16 @@ class IndexKind:
         Its name in tables and JSON.
     words : str
         What the legend of a figure calls it.
-    unit : {"variance", "1", "output"}
-        A share of the variance, another number without a unit, or a number in the output's unit.
+    unit : {"variance", "1", "output", "p-value"}
+        A share of the variance, another number without a unit, a number in the output's unit, or a
+        probability that is no size of an effect.
     of_pairs : bool
         Whether it belongs to pairs of inputs, named ``"first,second"``.
     """
 
     key: str
     words: str
-    unit: Literal["variance", "1", "output"] = "1"
+    unit: Literal["variance", "1", "output", "p-value"] = "1"
     of_pairs: bool = False
 
     def text(self, value: float) -> str:
@@ -35,6 +36,8 @@ class IndexKind:
             return "-"
         if self.unit == "output":
             return f"{value:.3g}"
+        if self.unit == "p-value" and value < 0.001:
+            return "< 0.001"
         return f"{round(value, 3) + 0.0:.3f}"  # no minus sign before what is zero
 
     def interval(self, estimate: Estimate) -> str:

@@ -159,8 +159,14 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     .. [1] R. C. Spear, G. M. Hornberger, "Eutrophication in Peel Inlet II", Water Res. 14, 43-49
        (1980).
     """
-    happens = event == 1
-    if not (happens | (event == 0)).all():
+    happens = as_event(event)
+    return np.array([_distance(column, happens) for column in x.T])
+
+
+def as_event(values: Floats) -> Mask:
+    """Return where an event happens, from 0 and 1; refuse other numbers, and few on one side."""
+    happens = values == 1
+    if not (happens | (values == 0)).all():
         raise RefusedError(
             "not an event: the rows in which something happens are compared with the rest; ask for"
             " a category, or for P(T < t) by a threshold in [analysis]"
@@ -168,7 +174,7 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     least = int(min(happens.sum(), (~happens).sum()))
     if least < MIN_SIDE:
         raise RefusedError(f"only {least} rows on one side of the event; {MIN_SIDE} are needed")
-    return np.array([_distance(column, happens) for column in x.T])
+    return np.asarray(happens)
 
 
 def _distance(column: Floats, happens: Mask) -> float:

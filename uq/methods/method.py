@@ -48,6 +48,8 @@ class Method:
         explains of their variances, over the sum of these variances (Gamboa et al. 2014).
     takes_events, takes_numbers : bool
         Whether it is for events, outputs of 0 or 1, and for other outputs.
+    conditional : bool
+        Whether it is about an output among the rows in which an event happens, not about the event.
     scale_free : bool
         Whether it compares distributions: no increasing function of an output changes its indices.
     noise : str
@@ -71,6 +73,7 @@ class Method:
     aggregates: bool = False
     takes_events: bool = True
     takes_numbers: bool = True
+    conditional: bool = False
     scale_free: bool = False
     noise: str = ""
     pilot: Callable[[Sample], dict[IndexKind, float]] | None = None

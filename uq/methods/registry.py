@@ -13,6 +13,7 @@ from uq.methods.additive import additive_shapley
 from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import EXPLAINED, hdmr_indices
+from uq.methods.hsic import HSIC, MOST_ROWS, P, conditional_indices, target_indices
 from uq.methods.indices import S1, S2, SHAPLEY, ST, IndexKind
 from uq.methods.measures import delta, ks_distances, pawn, rbd_fast
 from uq.methods.method import Method
@@ -81,6 +82,25 @@ METHODS = {
         kinds=(KS,),
         source="Spear & Hornberger (1980)",
         takes_numbers=False,
+        scale_free=True,
+    ),
+    "hsic-target": _of_any_inputs(
+        "which inputs decide a regime or an event, with p-values",
+        estimate=target_indices,
+        kinds=(P, HSIC),
+        source="Marrel & Chabridon (2021), by OpenTURNS",
+        most_rows=MOST_ROWS,
+        takes_numbers=False,
+        scale_free=True,
+    ),
+    "hsic-conditional": _of_any_inputs(
+        "which inputs matter for an output given that an event of it happens",
+        estimate=conditional_indices,
+        kinds=(P, HSIC),
+        source="Marrel & Chabridon (2021), by OpenTURNS",
+        most_rows=MOST_ROWS,
+        takes_numbers=False,
+        conditional=True,
         scale_free=True,
     ),
     "sobol": Method(

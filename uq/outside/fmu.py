@@ -1,6 +1,7 @@
 """An FMU as a machine: each row simulates an instance of its own."""
 
 import hashlib
+import keyword
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -49,8 +50,9 @@ def fmu_of(path: Path) -> Model:
     fmu = _fmu(path, file)
     said = said_of(fmu)
     reals = variables_of(said)
-    parameters = file.parameters or _declared(variables_of(said, "parameter"), FmuParameterTable)
-    outputs = file.outputs or _declared(variables_of(said, "output"), FmuOutputTable)
+    settable = variables_of(said, "parameter")
+    parameters = file.parameters or _declared(path, settable, FmuParameterTable)
+    outputs = file.outputs or _declared(path, variables_of(said, "output"), FmuOutputTable)
     machine = file.machine
     refuse(path, _faults(parameters, outputs, reals))
     try:
@@ -91,11 +93,21 @@ def _fmu(path: Path, file: FmuFile) -> Path:
 
 def _as_name(variable: str) -> str:
     """Return a variable such as ``spring.k[1]`` as a name: ``spring_k_1``."""
-    return re.sub(r"\W+", "_", variable, flags=re.ASCII).strip("_")
+    name = re.sub(r"\W+", "_", variable, flags=re.ASCII).strip("_")
+    if keyword.iskeyword(name):
+        return f"{name}_"
+    return name if name.isidentifier() else f"x{name}"
 
 
-def _declared(variables: Iterable[str], kind: Any) -> dict[str, Any]:
-    return {_as_name(one): kind(variable=one) for one in variables}
+def _declared(path: Path, variables: Iterable[str], kind: Any) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for one in variables:
+        name = _as_name(one)
+        if name in found:
+            both = f"'{found[name].variable}' and '{one}'"
+            raise InputError(f"{path}: {both} would both be '{name}'; name them in a machine file")
+        found[name] = kind(variable=one)
+    return found
 
 
 def _faults(

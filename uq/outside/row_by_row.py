@@ -1,5 +1,6 @@
 """Rows computed one after the other by something that takes numbers and returns a dict."""
 
+import keyword
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -96,6 +97,8 @@ def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[s
         fields, "of a parameter"
     )
     for name in fields:
+        if not name.isidentifier() or keyword.iskeyword(name) or name.startswith("_"):
+            yield f"parameter '{name}' cannot have this name in Python; choose another"
         if name in _TAKEN:
             yield f"parameter '{name}' has the name of one {taken[name]}; choose another"
     for name, one in returned.items():

@@ -132,7 +132,8 @@ def _table(
     def cells(label: str, estimates: Sequence[Estimate]) -> Iterator[Cell]:
         for kind, one in zip(values, estimates, strict=True):
             dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
-            yield _cell(kind, one, traced(*((kind.key, label) if label in values[kind] else dummy)))
+            path = (kind.key, label) if label in values[kind] else dummy
+            yield _cell(kind, one, traced(*path) if path != dummy or kind in indices.nulls else "")
 
     rows = [
         (Cell(label, BY_CORRELATION * (label in indices.by_correlation)), *cells(label, found))
@@ -143,5 +144,5 @@ def _table(
 
 def _cell(kind: IndexKind, one: Estimate, traced: str) -> Cell:
     key = one.value if isfinite(one.value) else None
-    scale = SHARE if kind.unit == "variance" else kind.key
+    scale = {"variance": SHARE, "p-value": ""}.get(kind.unit, kind.key)
     return Cell(kind.text(one.value), kind.interval(one), key, traced, scale, (one.low, one.high))
