@@ -82,4 +82,5 @@ def test_intervals_hold_the_closed_form(case):
                 held[what].append(found.low <= exact <= found.high)
     for what, those in held.items():
         assert len(those) > 0.85 * REPETITIONS, what  # others have a reason, not an interval
-        assert 0.93 <= np.mean(those) <= 0.985, what
+        # Lives with an integrated input of their own scatter less than rows drawn at random.
+        assert 0.93 <= np.mean(those) <= (0.97 if what in ("mean", "sd") else 0.995), what
