@@ -86,8 +86,8 @@ def test_tables_report_and_figures_show_shares(uq, folder):
     page = (folder / "out.html").read_text()
     (table,) = re.findall(r"<table>\s*<caption>Period, .*?</table>", page, re.DOTALL)
     assert [table.count(f'"categories/period/{label}/share"') for label in LABELS] == [1, 1, 1, 0]
-    for verb in ("levels", "convergence"):
-        assert "period" not in uq(verb, "out.nc").out
+    assert "P(period=1)" in uq("levels", "out.nc").out
+    assert "period" not in uq("convergence", "out.nc").out
 
 
 def test_two_studies_compare_shares():

@@ -183,7 +183,7 @@ def test_basins_are_coloured_by_attractor_and_explained(basins):
     colours = [to_hex(colour).upper() for colour in mesh.get_facecolors()]
     assert colours == [COLOURS[0], COLOURS[1], COLOURS[0], COLOURS[0], "#FFFFFF", COLOURS[0]]
     text = entries(figure)[0]
-    assert text.startswith("No-impact, period 1, -") and "µm s⁻¹, " in text and text.endswith(" %")
+    assert text.startswith("No-impact, period 1, −") and "µm s⁻¹, " in text and text.endswith(" %")
     assert entries(figure)[-1] == "failed, 16.7 %"
     share = float(basins["share"][0])
     many = basins.isel(basin=[0] * (len(COLOURS) + 2))

@@ -18,7 +18,7 @@ from uq.analysis.overview import summary
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.dataset import sensitivity
-from uq.methods.registry import fed_by
+from uq.methods.registry import METHODS, fed_by
 
 
 def values_of(entry):
@@ -55,7 +55,7 @@ _LAST = {method: name for name, one in DESIGNS.items() if one.draw for method in
 FED = [
     pytest.param(design, method, marks=[pytest.mark.slow] * (method == "hdmr"))
     for method, design in _LAST.items()
-    if method != "regional"
+    if METHODS[method].takes_numbers
 ]
 
 

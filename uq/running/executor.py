@@ -1,7 +1,7 @@
 """Who computes rows: this computer, and dask workers if the work is worth starting them."""
 
 from contextlib import ExitStack
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -13,6 +13,7 @@ from uq.interrupts import in_background, undone
 from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
+from uq.running.child import ModelSpec
 from uq.running.children import Children
 from uq.running.dispatch import Dispatcher
 from uq.running.isolation import Action, Evaluate, spec_of
@@ -71,7 +72,6 @@ class Executor:
         options.check()
         self._workload, self._options = workload, options
         self._compiling = compiling
-        self._spec = spec_of(workload)
         self._children = Children()
         self._crew: Workers | None = None
         self._stack = ExitStack()
@@ -129,11 +129,16 @@ class Executor:
             self._crew = self._stack.enter_context(crew)
         return self._crew
 
+    @cached_property
+    def _wanted(self) -> tuple[ModelSpec, float | None]:
+        """What processes compute, with the time limit of a row [s]."""
+        return spec_of(self._workload), self._options.row_limit
+
     def _begin(self, count: int) -> None:
-        self._children.begin(count, self._spec, self._options.row_limit, self._compiling)
+        self._children.begin(count, *self._wanted, self._compiling)
 
     def _in_a_child(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
-        with self._children.one(self._spec, self._options.row_limit) as child:
+        with self._children.one(*self._wanted) as child:
             return child.evaluate(x, seed, start)
 
 
