@@ -9,7 +9,8 @@ from noisy_studies import noisy
 from scipy import stats
 
 import uq as api
-from uq.analysis.level_shares import by_level, shares_of
+from uq.analysis.apportioned import shares_of
+from uq.analysis.level_shares import by_level
 from uq.errors import InputError
 from uq.nested_variance import nested_shares
 from uq.rows.nesting import nesting_of

@@ -14,10 +14,11 @@ from uq.analysis.summary import REGIME, Described, Shares, Summary, share_json
 from uq.population.smoothing import Smoothed
 
 if TYPE_CHECKING:
+    from uq.analysis.apportioned import LevelShares
     from uq.analysis.comparison import Comparison, Side
     from uq.analysis.converging import Converging
     from uq.analysis.differences import Compared, ComparedOutput
-    from uq.analysis.level_shares import ByLevel, LevelShares
+    from uq.analysis.level_shares import ByLevel
     from uq.analysis.twin import Sharpened, TwoFidelities
 
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.analysis.level_shares import SOURCES, by_level
+from uq.analysis.apportioned import SOURCES
+from uq.analysis.level_shares import by_level
 
 
 def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> xr.Dataset:

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 
+from uq.analysis.apportioned import SOLVER, LevelShares
 from uq.analysis.as_json import levels_json
-from uq.analysis.level_shares import SOLVER, LevelShares, by_level
+from uq.analysis.level_shares import by_level
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.conclusions.targets import Target
 from uq.designs.levels import LEVELS

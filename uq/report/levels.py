@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from uq.analysis.apportioned import SOURCES
 from uq.analysis.findings import Findings
-from uq.analysis.level_shares import SOURCES
 from uq.conclusions.targets import Target
 from uq.estimate import Estimate
 from uq.keys import key_of
