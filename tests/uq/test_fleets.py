@@ -350,6 +350,16 @@ def test_nothing_shared_has_no_band():
     assert fleet_of(ds, 1, [5e5]).by[5e5][0].low.reason == "samples share nothing that varies"
 
 
+def test_a_few_shared_values_have_no_points_between_them():
+    listed = {"distribution": "discrete-choice", "values": [1e-9, 2e-9], "level": "shared"}
+    both = {"rate": listed, "depth": LISTED}
+    (failed, _) = fleet_of(fleet_result(units=10, **both), 1, [5e5]).by[5e5]
+    assert np.isfinite(failed.estimate.value)
+    assert "one of a few values" in failed.low.reason == failed.high.reason
+    known = fleet_of(fleet_result(units=10, rate=listed), 1, [5e5]).by[5e5][0]
+    assert known.low.value < known.high.value  # each probability is known
+
+
 def test_the_noise_of_units_is_no_spread():
     """Samples that differ by the luck of their units alone have no band."""
     rng = np.random.default_rng(3)

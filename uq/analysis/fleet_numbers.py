@@ -143,6 +143,8 @@ class FleetNumbers:
 
     def _spread(self, time: float) -> worlds.Exceeding:
         units, world = self._units, self._alone[0].element
+        if not units.are_alike and units.worlds_repeat:
+            return lambda probability: Estimate(reason=worlds.REPEATED)
         if not units.are_alike:
             return worlds.Noisy(units.ended(time), units.weights, self._part)
         part = replicates_of_some(self._part, world.present)

@@ -5,7 +5,7 @@ these. What scales the lives of units alone is integrated inside each unit; what
 units of a world is integrated once per world, outside the product over its units.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, nan
@@ -19,7 +19,7 @@ from uq.intervals import Replicates
 from uq.population.counting import more_than, turns
 from uq.population.functionals import Population
 from uq.population.scale_laws import Scale
-from uq.population.scaling import inputs_of, integrated, not_integrated, why_not_integrated
+from uq.population.scaling import Inputs, inputs_of, integrated, not_integrated, why_not_integrated
 from uq.rows.element import Element
 from uq.rows.nesting import Nesting, levels_of, nesting_of
 
@@ -51,6 +51,8 @@ class Units:
         the probability of a unit's life is known in each world.
     why_not_more : str
         A sentence on the inputs that scale lives but are not integrated, or "".
+    worlds_repeat : bool
+        Whether what worlds share, but for what is integrated, is the same in some of them.
     """
 
     element: Element
@@ -58,6 +60,7 @@ class Units:
     shared: Scale | None
     varying: tuple[str, ...]
     why_not_more: str = ""
+    worlds_repeat: bool = False
 
     @property
     def integrated(self) -> tuple[str, ...]:
@@ -205,7 +208,18 @@ def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Unit
     varying = _unknown(levels, inputs.tied, known)
     if rows.attrs.get("random"):
         varying = (*varying, "the model's own chance")
-    return Units(replace(element, law=own), place, shared, varying, why)
+    known = () if shared is None else shared.inputs
+    repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
+    return Units(replace(element, law=own), place, shared, varying, why, repeats)
+
+
+def _repeats(
+    inputs: Inputs, shared: Collection[str], known: Collection[str], place: Nesting
+) -> bool:
+    """Return whether what worlds share, but for what is integrated, is the same in some of them."""
+    names = {inputs.tied.get(name, name) for name in shared} - {*known}
+    values = [inputs.values[name] for name in sorted(names)]
+    return bool(values) and len(np.unique(values, axis=1).T) < place.samples
 
 
 def _unknown(
