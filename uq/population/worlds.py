@@ -27,7 +27,7 @@ _SETTLED = 1e-7
 ASSUMES = "that probits of the units' probability are about normal where noise hides their spread"
 FEW = f"needs {FEWEST_WORLDS} samples for points over what is shared"
 FEW_ENDED = f"fewer than {FEWEST_WORLDS} units have ended, or not ended, by then"
-REPEATED = "samples share one of a few values, between which nothing is normal: run each as a study of its own"
+REPEATED = "samples share one of a few values, with no points between: study each of them alone"
 NO_SPREAD = "samples do not differ by more than the noise of their units"
 ONE_UNIT = "a single unit cannot show what is shared and what is own; set units = 2"
 
