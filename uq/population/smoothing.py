@@ -163,8 +163,8 @@ def largest_shape(rows: int) -> float:
 
 
 HOPELESS = (
-    "the rows hardly visit what the other laws would; no moderate number of rows helps, so run it"
-    " as a study of its own"
+    "the rows hardly visit what the other laws would; run it as a study of its own, or with many"
+    " times the rows"
 )
 
 
