@@ -173,6 +173,6 @@ def test_indices_depend_on_nothing_but_the_rows():
 def test_small_p_values_are_shown_as_such(uq, tmp_path):
     path = tmp_path / "decided.nc"
     decided().to_netcdf(path)
-    told = uq("sensitivity", str(path), "--method", TARGET, "--output", "P(z > 9)").out
-    (line,) = (one for one in told.splitlines() if one.split()[:1] == ["x1"])
+    shown = uq("sensitivity", str(path), "--method", TARGET, "--output", "P(z > 9)").out
+    (line,) = (one for one in shown.splitlines() if one.split()[:1] == ["x1"])
     assert line.split()[1:3] == ["<", "0.001"]

@@ -102,9 +102,9 @@ def test_every_reader_tells_how_intermingled_the_regimes_are(uq, tmp_path):
     said = loads(uq("summary", str(path), "--json").out)["boundary"]["uncertainty_exponent"]
     assert (said["value"], said["low"], said["high"]) == one.estimate.numbers
     assert "reason" not in said
-    told = " ".join(uq("summary", str(path)).out.split())
-    assert f"uncertainty exponent {one.words()} (" in told
-    assert "fewer outcomes are uncertain (50 % where" in told
+    shown = " ".join(uq("summary", str(path)).out.split())
+    assert f"uncertainty exponent {one.words()} (" in shown
+    assert "fewer outcomes are uncertain (50 % where" in shown
     found = api.regimes(ds)
     ends = [float(found[f"uncertainty_exponent{end}"]) for end in ("", "_low", "_high")]
     assert tuple(ends) == one.estimate.numbers

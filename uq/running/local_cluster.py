@@ -69,7 +69,7 @@ def local_workers(count: int, children: Children) -> "Iterator[Workers]":
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False))
         stack.enter_context(undone(children.close))  # first: workers wait for their rows
-        yield Workers(client, own=count, run=stack.enter_context(named(children)))
+        yield Workers(client, run=stack.enter_context(named(children)))
 
 
 @contextmanager

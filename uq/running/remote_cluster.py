@@ -87,7 +87,7 @@ def _check_versions(client: Client, where: str) -> None:
         raise InputError(f"{where}: the cluster has no workers; start some with 'dask worker'")
     for worker, wrong in there.items():
         if isinstance(wrong, Exception):
-            reason = " ".join(str(wrong).split())
+            reason = one_line(wrong)
             raise InputError(
                 f"{where}: worker {worker} lacks vibrolife: {reason}; install it there"
             )

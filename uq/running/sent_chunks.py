@@ -9,7 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from uq.contract import Status
-from uq.errors import InputError, RunError
+from uq.errors import InputError, RunError, one_line
 from uq.provenance import versions
 from uq.rows.evaluate import Chunk, Fault, lost_rows
 from uq.rows.sampling import Rows
@@ -117,7 +117,7 @@ class SentChunks:
         elif tries < TRIES:
             self.send(start, rows, tries + 1)
         else:
-            reason = " ".join(str(error.__cause__ or error).split())
+            reason = one_line(error.__cause__ or error)
             raise RunError(
                 f"no worker could compute rows {start} to {start + count - 1}: "
                 f"{type(error).__name__}: {reason}"

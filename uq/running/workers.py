@@ -18,21 +18,18 @@ class Workers:
     Attributes
     ----------
     client : distributed.Client
-    own : int
-        Workers that this process started, 0 on an existing cluster.
     run : str
-        Whose processes compute, as in `uq.running.dask_task.evaluate_rows`.
+        Whose processes compute, as in `uq.running.dask_task.evaluate_rows`; "" on an existing
+        cluster.
     """
 
     def __init__(
         self,
         client: Client,
         watch: Callable[[int, bool], None] = lambda *_: None,
-        own: int = 0,
         run: str = "",
     ) -> None:
         self.client = client
-        self.own = own
         self.run = run
         self._watch = watch
         self._threads, self._counted = 0, 0.0
@@ -45,7 +42,7 @@ class Workers:
     @property
     def dashboard(self) -> str:
         """Address of the dashboard of an existing cluster, or ""."""
-        if self.own:  # nothing is behind the address that dask reports
+        if self.run:  # nothing is behind the address that dask reports
             return ""
         try:
             return str(self.client.dashboard_link or "")
