@@ -114,9 +114,8 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
 def _keep(answered: Sequence[Quantity]) -> Iterator[Advice]:
     """Yield where to keep the input that decides an event, where the event is settled to differ."""
     _, event = _leading(answered)
-    if event is None or event.curve is None:
+    if event is None or event.curve is None or (more := answered[0].wants_more) is None:
         return
-    more = answered[0].wants_more(event)
     place = event.curve.most if more else event.curve.least
     there, overall = event.curve.shares[place], event.share
     if there.low > overall.high if more else there.high < overall.low:

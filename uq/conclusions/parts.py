@@ -111,6 +111,8 @@ class Quantity:
     range : Range or None
     events : tuple of Event
     ranking : Ranking or None
+    wanted : {"above", "below", ""}
+        The side of its values that is wanted; "" where that is not known, and for lives.
     """
 
     name: str
@@ -120,6 +122,7 @@ class Quantity:
     range: Range | None = None
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
+    wanted: str = ""
 
     @property
     def is_life(self) -> bool:
@@ -131,13 +134,15 @@ class Quantity:
         """Whether it is a life that ends with a success."""
         return self.promise is not None and self.promise.ends == "succeed"
 
-    def wants_more(self, event: Event) -> bool:
-        """Whether more of an event is better.
+    @property
+    def wants_more(self) -> bool | None:
+        """Whether more of its events is better; None where that is not known.
 
-        Of successes; of lives that end, fewer. A study does not state which side of the threshold
-        of a value is good: the rarer one is taken for what is to be avoided.
+        Of successes; of lives that end, fewer; of values above a threshold, as the study states.
         """
-        return self.is_success if self.is_life else event.share.value >= 0.5
+        if self.is_life:
+            return self.is_success
+        return self.wanted == "above" if self.wanted else None
 
     @property
     def ranking_sentence(self) -> str:
