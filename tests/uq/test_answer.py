@@ -232,7 +232,7 @@ def test_inputs_that_indices_do_not_tell_apart_are_named_together():
     ds = with_output(ds, "even", ds["x1"].values + ds["x2"].values)
     ranking = answer(asking(ds, outputs=["even"])).lead.ranking
     assert set(ranking.contributions[0].inputs) == {"x1", "x2"}
-    assert ranking.sentence.startswith(("X1 and x2 contribute most", "X2 and x1 contribute most"))
+    assert ranking.sentence.startswith(("x1 and x2 contribute most", "x2 and x1 contribute most"))
 
 
 def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_it():

@@ -9,6 +9,7 @@ from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Answer, Quantity
 from uq.conclusions.words import sentence
 from uq.literals import plain
+from uq.wording import capitalized
 
 _STYLE = """
 .answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
@@ -66,7 +67,7 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
         lines = [keyed.promise(one), why, keyed.likely(one)]
         lines += [*keyed.events(one), keyed.leader(one)]
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
-        title = f"{one.words[:1].upper()}{one.words[1:]}"
+        title = capitalized(one.words)
         found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(title), items))
     return Markup("").join(found)
 
@@ -90,9 +91,7 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     promise = lead.promise
     if promise is not None and promise.sentence:
         yield Markup('<p class="answer-promise">{}</p>').format(keyed.promise(lead))
-    yield Markup('<p class="answer-why">{}</p>').format(
-        plain(f"{lead.words[:1].upper()}{lead.words[1:]}.")
-    )
+    yield Markup('<p class="answer-why">{}</p>').format(plain(f"{capitalized(lead.words)}."))
     if promise is not None and promise.why:
         yield _small(promise.why)
     if likely := keyed.likely(lead):
@@ -127,7 +126,7 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     return Markup(
         '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>{}</div>'
     ).format(
-        plain(f"{one.words[:1].upper()}{one.words[1:]}"),
+        plain(capitalized(one.words)),
         track,
         keyed.size(lead, number, one),
         effect if one.effect else "",

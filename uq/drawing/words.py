@@ -12,12 +12,12 @@ from uq.greek import symbol as as_text
 from uq.literals import plain
 from uq.rows.elements import Element
 from uq.units import powers as powers
-from uq.wording import percent, quantity
+from uq.wording import capitalized, percent, quantity
 
 
 def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
     """Return text for an axis or a panel: capitalised, with symbols and its unit, wrapped."""
-    text = typeset(plain(text[:1].upper() + text[1:]))
+    text = typeset(plain(capitalized(text)))
     if symbol:
         text += f" ({formula(plain(symbol))})"
     if unit and unit != "1":
