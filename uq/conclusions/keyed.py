@@ -39,8 +39,20 @@ def likely(one: Quantity) -> Markup:
 
 def events(one: Quantity) -> list[Markup]:
     """Return the probabilities that are known, and what decides them."""
-    of = ("quantities", one.name, "events")
-    return [_event(each, (*of, each.name)) for each in one.events if each.sentence]
+    return [_event(each, _path(one, each)) for each in one.events if each.sentence]
+
+
+def others(one: Quantity) -> list[Markup]:
+    """Return the same of the events that do not stand first."""
+    return [_event(each, _path(one, each)) for each in one.others if each.sentence]
+
+
+def first(one: Quantity) -> tuple[Markup, Markup]:
+    """Return the probability that stands first, and what decides it; "" where there is none."""
+    if one.first is None:
+        return Markup(), Markup()
+    path = _path(one, one.first)
+    return _share(one.first, path), _cause(one.first, path)
 
 
 def regime(one: Event, with_cause: bool = True) -> Markup:
@@ -49,12 +61,22 @@ def regime(one: Event, with_cause: bool = True) -> Markup:
 
 
 def _event(one: Event, path: Path, with_cause: bool = True) -> Markup:
-    known = [keyed(one.sentence, _answer(*path, "share"))]
-    if with_cause:
-        settled = one.curve is not None
-        key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
-        known.append(keyed(one.decided_by, _answer(*key)))
+    known = [_share(one, path), _cause(one, path) if with_cause else ""]
     return Markup(" ").join(filter(None, known))
+
+
+def _share(one: Event, path: Path) -> Markup:
+    return keyed(one.sentence, _answer(*path, "share"))
+
+
+def _cause(one: Event, path: Path) -> Markup:
+    settled = one.curve is not None
+    key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
+    return keyed(one.decided_by, _answer(*key))
+
+
+def _path(one: Quantity, of: Event) -> Path:
+    return ("quantities", one.name, "events", of.name)
 
 
 def leader(one: Quantity) -> Markup:
