@@ -24,6 +24,7 @@ from uq.keys import key_of
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested
 from uq.rows.results import failed
+from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
 
 
@@ -159,13 +160,20 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     """
     rows = findings.ds.sizes["sample"]
     asked = [one for one in quantities(findings) if output in (None, one.name, one.output)]
-    open_ones = [one for quantity in asked for one in unsettled(quantity)]
+    open_ones = _open(asked, findings.ds)
     if not open_ones:
         return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
         f"Not enough rows: {one.what}; {_needed(one, findings.ds)} would settle it."
         for one in sorted(open_ones, key=lambda one: -one.factor)
     ]
+
+
+def _open(asked: Sequence[Quantity], ds: xr.Dataset) -> list[Unsettled]:
+    """Return what is not settled; how well numerical errors are known is not asked."""
+    known = outputs_of(ds)
+    own = [one for one in asked if not is_error(one.output, known)] or asked
+    return [each for one in own for each in unsettled(one)]
 
 
 def _needed(one: Unsettled, ds: xr.Dataset) -> str:
@@ -179,7 +187,7 @@ def _needed(one: Unsettled, ds: xr.Dataset) -> str:
 
 def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     rows = findings.ds.sizes["sample"]
-    open_ones = [one for quantity in answered for one in unsettled(quantity)]
+    open_ones = _open(answered, findings.ds)
     if not open_ones or not rows:
         return
     worst = max(open_ones, key=lambda one: one.factor)

@@ -8,6 +8,7 @@ from uq.conclusions.remedies import Advice
 from uq.conclusions.words import sentence
 from uq.keys import key_of
 from uq.literals import plain
+from uq.printed import printed
 
 Path = tuple[str, ...]
 
@@ -18,7 +19,7 @@ def keyed(text: str, *keys: str) -> Markup:
         return Markup()
     found = "\n".join(keys)
     return Markup('<span data-trace="{0}" title="uq trace: {0}">{1}</span>').format(
-        plain(found), plain(text)
+        plain(found), plain(printed(text))
     )
 
 
@@ -95,7 +96,7 @@ def leader(one: Quantity) -> Markup:
 
 def size(one: Quantity, number: int, of: Contribution) -> Markup:
     """Return the indices of a contribution, which has this number."""
-    return keyed(of.size.replace(" %", "\N{NO-BREAK SPACE}%"), *_keys(one, number, "inputs", of))
+    return keyed(of.size, *_keys(one, number, "inputs", of))
 
 
 def effect(one: Quantity, number: int, of: Contribution) -> Markup:
@@ -109,7 +110,7 @@ def advice(one: Advice) -> Markup:
         return keyed(one.text, one.key)
     if one.rows is not None:
         return keyed(one.text, _answer("advice", one.rule, "rows"))
-    return escape(plain(one.text))
+    return escape(plain(printed(one.text)))
 
 
 def _key(one: Quantity, *path: str) -> str:

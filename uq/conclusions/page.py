@@ -10,6 +10,7 @@ from uq.conclusions.parts import Answer, Quantity
 from uq.conclusions.words import called, sentence
 from uq.errors import choices
 from uq.literals import plain
+from uq.printed import printed
 from uq.wording import capitalized
 
 _STYLE = """
@@ -67,12 +68,12 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     """Return what is known of some quantities, in sentences."""
     found = []
     for one in quantities:
-        why = "" if one.promise is None else plain(one.promise.why)
+        why = "" if one.promise is None else plain(printed(one.promise.why))
         lines = [keyed.promise(one), why, keyed.likely(one)]
         lines += [*keyed.events(one), keyed.leader(one)]
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
         title = capitalized(one.words)
-        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(title), items))
+        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
     return Markup("").join(found)
 
 
@@ -98,7 +99,9 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
         yield Markup('<p class="answer-promise">{}</p>').format(verdict)
     if cause:
         yield _line(cause)
-    yield Markup('<p class="answer-why">{}</p>').format(plain(f"{capitalized(lead.words)}."))
+    yield Markup('<p class="answer-why">{}</p>').format(
+        plain(printed(f"{capitalized(lead.words)}."))
+    )
     if promise is not None and promise.why:
         yield _small(promise.why)
     if likely := keyed.likely(lead):
@@ -107,7 +110,7 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     elements = [one for one in answer.quantities[1:] if one.output == lead.output]
     promised = [one for one in elements if one.promise is not None and one.promise.sentence]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:
-        yield _small(Markup("{}: {}").format(plain(other.place), keyed.promise(other)))
+        yield _small(Markup("{}: {}").format(plain(printed(other.place)), keyed.promise(other)))
 
 
 def _ranking(answer: Answer) -> Markup:
@@ -167,4 +170,4 @@ def _small(text: str) -> Markup:
 
 
 def _shown(text: str) -> str:
-    return text if isinstance(text, Markup) else plain(text)
+    return text if isinstance(text, Markup) else plain(printed(text))
