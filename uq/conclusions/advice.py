@@ -1,6 +1,7 @@
 """What to do, by rules: mend, add rows, measure, tighten, or nothing."""
 
 from collections.abc import Iterator, Sequence
+from math import isfinite, isinf
 
 import xarray as xr
 
@@ -9,7 +10,7 @@ from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.quantities import quantities
 from uq.conclusions.remedies import Advice
-from uq.conclusions.settling import MOST, Unsettled, unsettled
+from uq.conclusions.settling import MOST, Unsettled, bounds_unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened
 from uq.conclusions.words import (
@@ -17,6 +18,7 @@ from uq.conclusions.words import (
     called_together,
     grouped,
     rows_in_words,
+    sentence,
     share_text,
     twin_of,
 )
@@ -46,7 +48,7 @@ def advise(
         return
     tighten = _tighten if weighed else _ask
     found = [
-        *_mend(findings),
+        *_mend(findings, answered),
         *_measure(findings, answered),
         *([*tighten(findings, answered)] or _keep(answered)),
         *_add_rows(findings, answered),
@@ -58,14 +60,16 @@ def advise(
     yield from found
 
 
-def _mend(findings: Findings) -> Iterator[Advice]:
+def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     ds = findings.ds
     lost, rows = int(failed(ds).sum()), ds.sizes["sample"]
     most = analysis_of(ds).max_failed
-    if rows and lost > most * rows:
+    why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
+    why += [one.what for one in bounds_unsettled(findings, answered) if isinf(one.factor)]
+    if why:
         yield Advice(
             "failed",
-            f"Mend the {lost} failed rows first: the study allows {100 * most:g} % to fail;"
+            f"Mend the {lost} failed rows first: {why[0]};"
             " 'uq rerun --failed' computes them again, if necessary with other settings.",
         )
 
@@ -160,20 +164,27 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     """
     rows = findings.ds.sizes["sample"]
     asked = [one for one in quantities(findings) if output in (None, one.name, one.output)]
-    open_ones = _open(asked, findings.ds)
+    open_ones = _open(findings, asked)
     if not open_ones:
         return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
         f"Not enough rows: {one.what}; {_needed(one, findings.ds)} would settle it."
-        for one in sorted(open_ones, key=lambda one: -one.factor)
+        if isfinite(one.factor)
+        else f"{sentence(one.what)} More rows would not help."
+        for one in open_ones
     ]
 
 
-def _open(asked: Sequence[Quantity], ds: xr.Dataset) -> list[Unsettled]:
-    """Return what is not settled; how well numerical errors are known is not asked."""
-    known = outputs_of(ds)
-    own = [one for one in asked if not is_error(one.output, known)] or asked
-    return [each for one in own for each in unsettled(one)]
+def _open(findings: Findings, answered: Sequence[Quantity]) -> list[Unsettled]:
+    """Return what the rows do not settle, the least settled first.
+
+    How well numerical errors are known is asked only where nothing else is.
+    """
+    known = outputs_of(findings.ds)
+    own = [one for one in answered if not is_error(one.output, known)] or answered
+    found = [one for quantity in own for one in unsettled(quantity)]
+    found += bounds_unsettled(findings, own)
+    return sorted(found, key=lambda one: -one.factor)
 
 
 def _needed(one: Unsettled, ds: xr.Dataset) -> str:
@@ -187,10 +198,10 @@ def _needed(one: Unsettled, ds: xr.Dataset) -> str:
 
 def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     rows = findings.ds.sizes["sample"]
-    open_ones = _open(answered, findings.ds)
+    open_ones = [one for one in _open(findings, answered) if isfinite(one.factor)]
     if not open_ones or not rows:
         return
-    worst = max(open_ones, key=lambda one: one.factor)
+    worst = open_ones[0]
     others = len(open_ones) - 1
     more = f"; {others} more {'is' if others == 1 else 'are'} not settled" if others else ""
     yield Advice(

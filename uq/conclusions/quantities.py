@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import isfinite, isnan, nan
+from math import inf, isfinite, isnan, nan
 
 import numpy as np
 import xarray as xr
@@ -38,7 +38,7 @@ from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
-from uq.wording import threshold
+from uq.wording import percent, threshold
 
 COVERAGE = 0.95
 CONFIDENCE = 0.95
@@ -228,8 +228,10 @@ def _why_no_bound(
     ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
 ) -> str:
     needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    if needed == inf:
+        return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
     if needed:
-        return f"it needs {needed} rows"
+        return f"it needs {needed:.0f} rows"
     if any(not isnan(one) for one in bounds):
         return f"too few {_end_of(element)}"
     if has_weights(ds):

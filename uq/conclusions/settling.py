@@ -1,9 +1,10 @@
 """What is not settled, and how many rows would settle it: intervals narrow as one over root n."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
+from uq.analysis.findings import Findings
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise
 from uq.wording import percent
@@ -22,6 +23,9 @@ MOST = 100.0
 """Beyond so many times the rows, the root of n is no forecast."""
 
 
+_BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
+
+
 @dataclass(frozen=True)
 class Unsettled:
     """Something that the rows do not settle.
@@ -31,7 +35,7 @@ class Unsettled:
     what : str
         A clause.
     factor : float
-        How many times the rows would settle it.
+        How many times the rows would settle it; infinite where no number would.
     """
 
     what: str
@@ -54,6 +58,19 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
     for ranking in rankings:
         if ranking is not None and isfinite(ranking.rows_factor):
             yield Unsettled(ranking.reason, ranking.rows_factor)
+
+
+def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
+    """Yield the bounds that the study asks for and the rows do not give."""
+    rows = findings.rows.sizes["sample"]
+    for key, words in _BOUNDS.items():
+        described = (findings.summary.outputs[one.name] for one in answered)
+        found = (one.find(key, side) for one in described for side in ("lower", "upper"))
+        needed = max((one.rows_needed or 0.0 for one in found if one), default=0.0)
+        if needed:
+            asked = f"the {words} that the study asks for"
+            what = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
+            yield Unsettled(what or f"too many rows failed for {asked}", needed / max(rows, 1))
 
 
 def _of_share(event: Event) -> Iterator[Unsettled]:
