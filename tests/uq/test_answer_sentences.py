@@ -77,6 +77,40 @@ def test_a_success_succeeds():
     assert "5 % succeed within" in said and "more than 5 % never succeed" in said
 
 
+def test_where_nothing_can_be_promised_a_probability_comes_first():
+    times = np.r_[np.linspace(1, 9, 150), np.full(50, np.inf)]
+    ds = linear(samples=200)
+    ds = with_output(ds, "locking", times[np.argsort(np.argsort(ds["x4"].values))], "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    found = answer(asking(ds, outputs=["locking"], thresholds={"locking": 20.0}))
+    (event,) = found.lead.events
+    assert found.lead.promise.sentence == "" and found.lead.first is event
+    assert found.lead.head[:2] == [event.sentence, event.decided_by] == found.lines[:2]
+    share, least, edge, most, same = numbers(
+        r"# % \(.*\) succeed within 20 s. Decided most by x4: from # % where it is above #"
+        r" to # % where it is below #\.",
+        " ".join(found.lines[:2]),
+    )
+    there = np.isfinite(times[np.argsort(np.argsort(ds["x4"].values))])
+    assert share == pytest.approx(100 * there.mean(), abs=0.05)
+    assert least == pytest.approx(100 * there[ds["x4"].values > edge].mean(), abs=3)
+    assert most == 100 and there[ds["x4"].values < same - 0.005].all() and same > 0.5
+
+
+def test_more_rows_are_not_advised_for_numerical_errors():
+    ds = linear(samples=100)
+    ds = with_output(ds, "z", ds["x1"].values)
+    ds = with_output(ds, "z_error", np.random.default_rng(0).lognormal(0, 1, 100))
+
+    def rows_advised(*outputs):
+        return [
+            one.text for one in answer(asking(ds, outputs=outputs)).advice if one.rule == "rows"
+        ]
+
+    assert rows_advised("z", "z_error") == rows_advised("z")
+    assert len(rows_advised("z_error")) == 1
+
+
 def test_failed_rows_widen_a_probability():
     ds = linear(samples=200)
     ds = with_status(ds.assign(y=ds["y"].copy()), range(10), Status.RAISED)

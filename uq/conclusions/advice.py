@@ -27,6 +27,7 @@ from uq.keys import key_of
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested
 from uq.rows.results import failed
+from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
 
 
@@ -182,9 +183,14 @@ def _no_intervals(ds: xr.Dataset) -> str:
 
 
 def _open(findings: Findings, answered: Sequence[Quantity]) -> list[Unsettled]:
-    """Return what the rows do not settle, the least settled first."""
-    found = [one for quantity in answered for one in unsettled(quantity)]
-    found += bounds_unsettled(findings, answered)
+    """Return what the rows do not settle, the least settled first.
+
+    How well numerical errors are known is asked only where nothing else is.
+    """
+    known = outputs_of(findings.ds)
+    own = [one for one in answered if not is_error(one.output, known)] or answered
+    found = [one for quantity in own for one in unsettled(quantity)]
+    found += bounds_unsettled(findings, own)
     return sorted(found, key=lambda one: -one.factor)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 
 from uq.analysis.findings import Findings
 from uq.conclusions.parts import Event, Quantity
@@ -88,9 +88,9 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
     likely = quantity.range
     if likely is None:
         return
-    for bound, estimate, end in (
-        (promise.lower, likely.low, promise.quantiles[0].low),
-        (promise.upper, likely.high, promise.quantiles[1].high),
+    for bound, estimate, end, outwards in (
+        (promise.lower, likely.low, promise.quantiles[0].low, -inf),
+        (promise.upper, likely.high, promise.quantiles[1].high, inf),
     ):
         reached = bound if isfinite(bound) else end
         if not (isfinite(reached) and isfinite(estimate.value)):
@@ -101,7 +101,8 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
         away = abs(estimate.value - reached)
         # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
-            text, best = promise.unit.text(reached), promise.unit.text(estimate.value)
+            text = promise.unit.text(reached, outwards)
+            best = promise.unit.text(estimate.value)
             bound_is = f"the cautious bound, {text}, is far from the estimate, {best}"
             what = f"{bound_is} ({quantity.words})"
             yield Unsettled(what, (away / (BOUND * scale)) ** 2)
