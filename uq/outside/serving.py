@@ -110,6 +110,7 @@ class _Offered:
                     "life": one.is_lifetime,
                     "shape": [int(np.prod([len(axes[dim]) for dim in one.dims]))] * bool(one.dims),
                     "may_be_undefined": one.may_be_undefined,
+                    "scales": dict(one.scales),
                 }
                 for name, one in model.outputs.items()
             },

@@ -17,6 +17,7 @@ import numpy as np
 from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.returned import Returned, as_plain, from_plain, joined
+from uq.outside.row_by_row import RowByRow
 from uq.running.environment import started
 from uq.running.options import Say, ignore
 from uq.study.registry import code_of, find_model, located, with_returns
@@ -65,7 +66,12 @@ def load_study(path: str | PathLike[str], model: str | None = None, say: Say = i
     """
     from uq.study import definition
 
-    return _known(definition.load_study(path, model and located(model)), say)
+    study = _known(definition.load_study(path, model and located(model)), say)
+    if isinstance(study.model.batch, RowByRow):
+        from uq.running.scales import check_scales
+
+        check_scales(study)
+    return study
 
 
 def study_of_text(text: str, source: str, model: str | None) -> "Study":

@@ -55,6 +55,13 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     for name, side in analysis.get("joint_bounds", {}).items():
         path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
         yield from output_faults(name, path, side, no_number)
+    for name, side in analysis.get("wanted", {}).items():
+        path = ("analysis", "wanted", name)
+        faults = list(output_faults(name, path, side, "it has shares, not sides"))
+        yield from faults
+        if not faults and model.outputs and model.outputs[name].is_lifetime:
+            problem = "is a lifetime, whose model states if its end is wanted; leave it out"
+            yield Fault(path, problem, side)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
