@@ -11,6 +11,13 @@ from uq.units import Unit, beside, powers, time_unit, unit_of
 from uq.written import Written
 
 
+def capitalized(text: str) -> str:
+    """Return text with a capital first letter; symbols such as ``k`` or ``x1`` stay as they are."""
+    first = text.split(" ", 1)[0].rstrip(",.:;")
+    symbol = len(first) == 1 and first != "a" or re.search(r"[\d_]", first)
+    return text if symbol else f"{text[:1].upper()}{text[1:]}"
+
+
 def number(value: float | None) -> str:
     """Return a number for a table; a dash if there is none."""
     return "-" if value is None else f"{value:.5g}"

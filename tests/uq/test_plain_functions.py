@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+from computed import summarised
 
 import uq as package
 from uq.contract import Status
@@ -159,6 +160,60 @@ def test_a_life_is_counted_in_its_own_unit(uq, write):
     ended = uq("fleet", "own.nc", "--size", "1", "--by", "2")
     assert "life [cycles]" in ended.out and "by 2 cycles" in ended.out
     assert "the unit 'h' does not fit" in uq("fleet", "own.nc", "--size", "1", "--by", "2 h").err
+
+
+SCALED = """
+import math
+import uq
+
+@uq.machine(returns={"life": uq.Returned("s", life=True, scales={"load": -1.0, "depth": 2.0})})
+def wear(load: float = 1.0, depth: float = 3.0, hard: float = 1.0):
+    if hard > 1.5:
+        return {"life": math.inf}
+    life = hard * depth**2 / load
+    return {"life": life if life < 20.0 else uq.censored(20.0)}
+"""
+SCALES_STUDY = (
+    STUDY.replace("lower = 0.0", "lower = 1.0")
+    + """
+[uncertain.hard]
+distribution = "uniform"
+lower = 0.2
+upper = 0.9
+source = "assumed"
+[analysis]
+thresholds = {life = 4.0}
+"""
+)
+
+
+def test_what_only_scales_a_life_is_integrated(uq, write):
+    file = write(SCALED, SCALES_STUDY)
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet")
+    assert "load integrated exactly, worth" in uq("summary", "own.nc").out
+    ds = package.open_result("own.nc")
+    by = summarised(ds)["outputs"]["life"]["thresholds"]["4.0"]["below"]["value"]
+    hard = ds["hard"].values
+    assert by == pytest.approx((2.0 - 9.0 * hard / 4.0).clip(0, 1).mean(), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (("/ load", "/ (load + 1e-6)"), "'life' does not scale as declared: at load = "),
+        (("hard > 1.5", "load > 1.5"), "not inf|it is inf, not"),
+        (("censored(20.0)", "censored(1e9)"), "it is 1e+09, not"),
+        (('"depth": 2.0', '"dept": 2.0'), "scales: no such parameter; did you mean 'depth'?"),
+        (('"depth": 2.0', '"depth": 0.0'), "depth = 0.0 must be a number but 0"),
+        (("life=True, ", ""), "only a life has scales"),
+        (("depth: float = 3.0", "depth: float = -3.0"), "value of 'depth' must be positive"),
+    ],
+)
+def test_a_life_that_does_not_scale_as_declared_is_refused(uq, write, wrong, said):
+    file = write(SCALED.replace(*wrong), SCALES_STUDY)
+    for verb in (("check", "own.toml"), ("run", "own.toml", "-o", "own.nc", "--quiet")):
+        ended = uq(*verb, "--model", file)
+        assert ended.code == 2 and any(one in ended.err for one in said.split("|")), ended.err
 
 
 def test_a_seed_is_that_of_the_row(uq, write):

@@ -10,6 +10,7 @@ from uq.methods.indices import S1, ST
 from uq.methods.morris import MU, MU_STAR
 from uq.wording import (
     brief,
+    capitalized,
     duration,
     estimated,
     interval,
@@ -126,3 +127,17 @@ def test_a_power_of_ten_is_multiplied():
 def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
     assert interval(Estimate(low=inf)) == ""
     assert interval(Estimate(low=2.0, high=inf)) == "2 to never"
+
+
+@pytest.mark.parametrize(
+    ("text", "title"),
+    [
+        ("contact stiffness", "Contact stiffness"),
+        ("a stiffer stop", "A stiffer stop"),
+        ("k: more shortens it", "k: more shortens it"),
+        ("x1 and x2", "x1 and x2"),
+        ("k_c", "k_c"),
+    ],
+)
+def test_a_name_that_is_a_symbol_keeps_its_case_at_the_head_of_a_sentence(text, title):
+    assert capitalized(text) == title

@@ -1,6 +1,6 @@
 """Shares of the variance: shared by the units of a sample, own to a unit, due to chance."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -33,7 +33,7 @@ from uq.rows.nesting import (
     nesting_of,
     size_in_words,
 )
-from uq.rows.variables import error_name
+from uq.rows.variables import is_error
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 
@@ -106,7 +106,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     place, varying = nesting_of(rows), levels_that_vary(rows)
     replicate = None if has_independent_samples(rows) else place.replicate
     known = output_names(rows)
-    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not _is_error(one, known)]
+    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not is_error(one, known)]
     found = {}
     for name in shown if output is None else [output]:
         for target in targets_of(rows, name):
@@ -116,10 +116,6 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     switches = "regime" in known and output is None
     mean, each = switching(rows, place, varying) if switches else (None, np.empty(0))
     return ByLevel(place.samples, place.units, place.repeats, levels_of(rows), found, mean, each)
-
-
-def _is_error(name: str, known: Collection[str]) -> bool:
-    return name in {error_name(one) for one in known}
 
 
 def _scales(rows: xr.Dataset, target: Target) -> Scales:

@@ -13,7 +13,7 @@ from uq.exploring.row_again import RowAgain, row_again
 from uq.exploring.simulation import with_trajectory
 from uq.rows.results import open_result
 from uq.running.loading import load_model
-from uq.wording import quantity
+from uq.wording import capitalized, quantity
 
 
 def row(
@@ -87,7 +87,7 @@ def _show(found: RowAgain, rows: int) -> None:
 
 def _in_words(found: RowAgain) -> str:
     if found.again is None:
-        return found.reason[:1].upper() + found.reason[1:] + "."
+        return f"{capitalized(found.reason)}."
     code = "; the code of the model has changed since" if "code" in found.versions else ""
     if found.equal:
         return f"Computed again: equal to the bit{code}."

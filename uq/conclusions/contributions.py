@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from uq.conclusions.words import Unit, called_together, sentence
 from uq.estimate import NOTHING, Estimate
+from uq.wording import capitalized
 
 SMALL = 0.05
 """A smaller share of the variance does not lead."""
@@ -152,7 +153,7 @@ class Ranking:
         if not self.leads:
             return f"No single input explains much: {leader.words} {leader.size}."
         verb = "contribute" if len(leader.inputs) > 1 else "contributes"
-        return f"{leader.words[:1].upper()}{leader.words[1:]} {verb} most: {leader.size}."
+        return f"{capitalized(leader.words)} {verb} most: {leader.size}."
 
     @property
     def with_effect(self) -> str:

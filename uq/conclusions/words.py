@@ -11,7 +11,7 @@ from uq.estimate import Estimate
 from uq.greek import readable
 from uq.rows.element import Element
 from uq.units import beside, powers, unit_of
-from uq.wording import percent, percent_interval
+from uq.wording import capitalized, percent, percent_interval
 
 _TWIN = re.compile(r"(.+)_(\d+)")
 
@@ -130,7 +130,7 @@ def element_called(ds: xr.Dataset, element: Element) -> str:
 
 def sentence(text: str) -> str:
     """Return text as a sentence."""
-    return f"{text[:1].upper()}{text[1:]}."
+    return f"{capitalized(text)}."
 
 
 def rows_in_words(rows: float) -> str:

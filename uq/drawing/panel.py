@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from uq.drawing.figure import Drawing
 from uq.drawing.style import WIDTH
 from uq.errors import InputError
+from uq.printed import minus
 from uq.rows.elements import Floats
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
@@ -87,8 +88,7 @@ def whole_numbers(axis: Axis) -> None:
     """Write each number in full: a common factor at the end of the axis would cover its label."""
 
     def short(value: float, _: float) -> str:
-        text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}")
-        return text.replace("-", "\N{MINUS SIGN}")
+        return minus(re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}"))
 
     axis.set_major_formatter(short)
 
@@ -97,7 +97,7 @@ class _PlainLog(LogFormatter):
     """Plain numbers instead of TeX, at the ticks that matplotlib would label."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        return f"{x:g}".replace("-", "\N{MINUS SIGN}") if super().__call__(x, pos) else ""
+        return minus(f"{x:g}") if super().__call__(x, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:

@@ -20,6 +20,7 @@ from uq.indices.targets import split_name
 from uq.keys import key_of
 from uq.methods.indices import BY_CORRELATION, S1, IndexKind, Indices
 from uq.report.cells import SHARE, Cell, Table
+from uq.wording import capitalized
 
 
 class Subject(NamedTuple):
@@ -92,8 +93,7 @@ def _method(findings: Findings, name: str) -> Method:
 
 def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     name, indices = found.name, found.indices
-    words = readable(subject(ds, name))
-    words = words[:1].upper() + words[1:]
+    words = capitalized(readable(subject(ds, name)))
     if found.refused:
         return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)

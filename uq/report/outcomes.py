@@ -18,7 +18,7 @@ from uq.keys import key_of
 from uq.report.cells import SHARE, Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.units import typical, unit_of
-from uq.wording import percent, percent_interval, threshold
+from uq.wording import capitalized, percent, percent_interval, threshold
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
@@ -46,7 +46,7 @@ def category_table(name: str, shares: Shares) -> Table:
         for one in shares.values()
         for count in [one.facts["count"]]
     ]
-    title = f"{name[:1].upper()}{name[1:]}, with 95 % intervals"
+    title = f"{capitalized(name)}, with 95 % intervals"
     return Table(title, (name, "rows", "share"), rows)
 
 

@@ -18,6 +18,7 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.outside.descendants import end_with_descendants
 from uq.outside.returned import Returned, as_plain, from_plain, joined
+from uq.outside.row_by_row import RowByRow
 from uq.running.child import FIRST_SECONDS, REFUSED, Action, answer_of
 from uq.running.environment import started
 from uq.running.options import Say, ignore
@@ -74,7 +75,12 @@ def load_study(
     """
     from uq.study import definition
 
-    return _known(definition.load_study(path, model and located(model)), say, row_limit)
+    study = _known(definition.load_study(path, model and located(model)), say, row_limit)
+    if isinstance(study.model.batch, RowByRow):
+        from uq.running.scales import check_scales
+
+        check_scales(study, row_limit)
+    return study
 
 
 def study_of_text(text: str, source: str, model: str | None) -> "Study":
