@@ -61,7 +61,8 @@ def test_tables_sort_by_a_click_and_back(browser, report):
     column = (
         "(() => { const t = [...document.querySelectorAll('table')].find(t =>"
         " t.caption?.textContent.startsWith('Statistics'));"
-        " const i = [...t.tHead.rows[0].cells].findIndex(c => c.textContent === '50\u00a0% quantile');"
+        " const i = [...t.tHead.rows[0].cells].findIndex("
+        "c => c.textContent === '50\u00a0% quantile');"
         " {}; return [...t.tBodies[0].rows].map(r => Number(r.cells[i].dataset.key)) })()"
     )
     click = "t.tHead.rows[0].cells[i].querySelector('button').click()"
