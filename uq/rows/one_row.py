@@ -80,7 +80,7 @@ def run_row(
         raise InputError(*faults)
 
     values = model.nominal | {name: float(value) for name, value in parameters.items()}
-    return computed(model, frozen, values, seed)
+    return computed(model.given(frozen), frozen, values, seed)
 
 
 def computed(

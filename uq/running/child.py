@@ -62,8 +62,10 @@ class ModelSpec(NamedTuple):
                 f"the process that computes rows has other code of model '{model.name}' than this "
                 "process: start again if it was edited meanwhile, or install the same on both"
             )
-        wanted = model.alone(self.output) if self.output else model
-        return wanted, model.settings(**dict(self.settings))
+        wanted, settings = model, model.settings(**dict(self.settings))
+        if self.output:
+            wanted = model.alone(self.output)
+        return wanted.given(settings), settings
 
 
 READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
