@@ -189,7 +189,7 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
                 f"a '{method}' design without replicates gives no interval; set replicates = 8"
             )
     for key, problem in problems.items():
-        yield Fault(("design", key), problem, True if key == "until" else table[key])
+        yield Fault(("design", key), problem, None if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
     for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
         why = ""
