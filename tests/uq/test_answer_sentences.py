@@ -17,7 +17,7 @@ from nested_studies import nested_result
 from test_answer import numbers
 
 from uq.analysis.findings import Findings
-from uq.conclusions.advice import advise
+from uq.conclusions.advice import advise, verdict
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.remedies import Tightened
@@ -217,3 +217,26 @@ def test_the_rarer_regimes_say_what_decides_them():
     x = ds["x1"].values
     assert (never, always) == (0, 100)
     assert not fast[x < 0.99 * below].any() and fast[x > 1.01 * above].all()
+
+
+@pytest.mark.parametrize("method", ["saltelli", "shapley", "sobol"])
+def test_nothing_is_settled_without_intervals(method):
+    found = Findings(linear(method, samples=512))
+    (said,) = verdict(found)
+    assert said.startswith("Whether the rows are enough is not known: the rows of a")
+    assert said.endswith("set replicates = 8.")
+    own = answer(found.ds)
+    rules = {one.rule: one.text for one in own.advice}
+    assert "set replicates = 8" in rules["rows"] and "nothing" not in rules
+    ranking = own.lead.ranking
+    assert all(not one.effect for one in ranking.contributions)  # no direction is called unclear
+    if method == "saltelli":
+        assert ranking.sentence.startswith("Which inputs matter is not settled: ST of x4 is 0.5")
+        assert ranking.sentence.endswith(", without an interval.")
+
+
+def test_an_input_that_alone_has_an_effect_decides_without_an_interval():
+    ds = linear("saltelli", samples=64, replicates=8)
+    ds = asking(with_output(ds, "half", (ds["x4"].values > 0.5).astype(float)), outputs=["half"])
+    (line,) = answer(ds).quantities
+    assert line.ranking.sentence == "x4 contributes most: 100 %."

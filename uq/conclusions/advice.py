@@ -6,6 +6,7 @@ from math import isfinite, isinf
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.analysis.summary import why_no_intervals
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.quantities import quantities
@@ -164,6 +165,8 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     """
     rows = findings.ds.sizes["sample"]
     asked = [one for one in quantities(findings) if output in (None, one.name, one.output)]
+    if rows and (why := _no_intervals(findings.ds)):
+        return [f"Whether the rows are enough is not known: {why}."]
     open_ones = _open(findings, asked)
     if not open_ones:
         return ["Enough rows: what the study asks is settled."] if rows and asked else []
@@ -173,6 +176,10 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
         else f"{sentence(one.what)} More rows would not help."
         for one in open_ones
     ]
+
+
+def _no_intervals(ds: xr.Dataset) -> str:
+    return why_no_intervals(ds).removeprefix("no intervals: ")
 
 
 def _open(findings: Findings, answered: Sequence[Quantity]) -> list[Unsettled]:
@@ -198,6 +205,8 @@ def _needed(one: Unsettled, ds: xr.Dataset) -> str:
 
 def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     rows = findings.ds.sizes["sample"]
+    if answered and (why := _no_intervals(findings.ds)):
+        yield Advice("rows", f"Let the estimates have intervals: {why}.")
     open_ones = [one for one in _open(findings, answered) if isfinite(one.factor)]
     if not open_ones or not rows:
         return

@@ -50,7 +50,8 @@ class _Offered:
     """What is asked of a model."""
 
     def __init__(self, model: Model):
-        self.model, self._settings = model, model.settings()
+        self._settings = model.settings()
+        self.model = model.given(self._settings)
         self._one_at_a_time = Lock()
         row = self._row([list(model.nominal.values())], {})
         self._sizes = {name: values.size for name, values in row.items()}
