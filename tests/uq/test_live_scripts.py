@@ -5,10 +5,11 @@ import json
 import numpy as np
 import pytest
 from report_scripts import scripts
+from scipy import special
 
 from uq.inputs.conditioning import cdf_within, log_density_between
 from uq.inputs.registry import LAWS, law_of
-from uq.population.smoothing import refusal
+from uq.population.smoothing import refusal, tail_shape
 from uq.population.sums import LogTerm, law_of_sum
 from uq.report.tolerances import KNOWN
 
@@ -157,3 +158,10 @@ def test_arguments_of_laws_keep_the_digits_of_their_change(asked):
 def test_a_law_that_leaves_no_row_is_refused(asked):
     assert "No row" in asked("smoothed(Float64Array.of(-Infinity, NaN), null).refusal")
     assert asked("refusal(0.3, 7)") == refusal(0.3, 7)
+
+
+def test_a_tail_that_begins_amid_equal_weights_has_the_same_shape(asked):
+    normal = np.random.default_rng(0).standard_normal(500)
+    in_steps = special.ndtr(np.round(-16 * (np.log(2) + 0.5 * normal) / 0.3) / 16)
+    found = asked(f"tailShape(Float64Array.from({in_steps.tolist()}))")
+    assert found == pytest.approx(tail_shape(in_steps))

@@ -202,6 +202,15 @@ def test_what_an_inspection_taught_and_how_strange_it_was(result):
     assert found.notes == []
 
 
+def test_what_survival_taught_where_units_share_an_input():
+    ds = wear(rate="shared", samples=2000, units=1)
+    survived = {"unit": "A", "time": 2e6, "output": "life", "kind": "survived"}
+    bits = -norm.logsf(np.log(2) / (0.5**2 + 0.3**2) ** 0.5) / np.log(2)
+    assert [one.bits for one in learnt(update(ds, [survived])).taught] == [
+        pytest.approx(bits, rel=0.05)
+    ]
+
+
 def test_strange_inspections_come_with_a_warning():
     ds = wear(rate="own", depth="shared", samples=2000, units=3)
     found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))

@@ -208,6 +208,12 @@ def test_listed_values_are_no_tail():
     assert tail_shape(np.append(few, [2.0, 3.0, 8.0])) > 0.7
 
 
+def test_a_tail_that_begins_amid_equal_weights_is_bounded_where_they_are():
+    normal = np.random.default_rng(0).standard_normal(2000)
+    in_steps = special.ndtr(np.round(-16 * (np.log(2) + 0.5 * normal) / 0.3) / 16)
+    assert tail_shape(in_steps) < 0.3
+
+
 def test_the_interval_of_a_weighted_mean_holds_the_truth():
     """Weights times values are skewed, and samples without an outlier scatter too little."""
     rng, held = np.random.default_rng(4), []

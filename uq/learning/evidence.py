@@ -173,8 +173,8 @@ def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
 
 
 def _shared(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
-    log_worlds = np.sum(units, axis=0) + grids[0].log_share - np.log(worlds)
-    return _evidence(log_worlds, [log_worlds - one for one in _finite(units)], grids)
+    log_worlds, rest = _with_all_but_each(units, grids[0].log_share, worlds)
+    return _evidence(log_worlds, rest, grids)
 
 
 def _own(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
@@ -182,16 +182,23 @@ def _own(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidenc
         special.logsumexp(one + grid.log_share, axis=1, keepdims=True)
         for one, grid in zip(units, grids, strict=True)
     ]
-    log_worlds = np.sum(of_unit, axis=0) - np.log(worlds)
-    rest = [
-        log_worlds - one + grid.log_share for one, grid in zip(_finite(of_unit), grids, strict=True)
-    ]
+    log_worlds, rest = _with_all_but_each(of_unit, np.zeros(1), worlds)
+    rest = [one + grid.log_share for one, grid in zip(rest, grids, strict=True)]
     return _evidence(log_worlds, rest, grids)
 
 
-def _finite(units: Sequence[Floats]) -> list[Floats]:
-    """Return logarithms with 0 for -inf: what is impossible for a unit is so with the rest."""
-    return [np.where(np.isneginf(one), 0.0, one) for one in units]
+def _with_all_but_each(
+    units: Sequence[Floats], log_share: Floats, worlds: int
+) -> tuple[Floats, list[Floats]]:
+    """Return logarithms of products with the prior, of all units and of all but each."""
+    impossible = [np.isneginf(one) for one in units]
+    finite = [np.where(is_so, 0.0, one) for is_so, one in zip(impossible, units, strict=True)]
+    count, total = np.sum(impossible, axis=0), np.sum(finite, axis=0) + log_share - np.log(worlds)
+    rest = [
+        np.where(count > is_so, -np.inf, total - one)
+        for is_so, one in zip(impossible, finite, strict=True)
+    ]
+    return np.where(count > 0, -np.inf, total), rest
 
 
 def _evidence(log_worlds: Floats, rest: Sequence[Floats], grids: Sequence[Grid]) -> Evidence:

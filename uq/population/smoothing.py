@@ -134,7 +134,8 @@ def tail_shape(numbers: Floats) -> float:
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
     where all others are equal, or the largest are a few values that many rows have, as under
-    listed values; infinite where there are too few.
+    listed values; infinite where there are too few. Rows that share the value at which the tail
+    begins are left out of it, as under a limit that is integrated on a grid.
 
     References
     ----------
@@ -151,8 +152,10 @@ def tail_shape(numbers: Floats) -> float:
     if _are_few_values(counted, count):
         return -inf
     excess = counted
-    if len(counted) > count and counted[-count] > counted[-count - 1]:
-        excess = counted[-count:] - counted[-count - 1]
+    if len(counted) > count:
+        above = counted[-count:][counted[-count:] > counted[-count - 1]]
+        if 2 * len(above) > count:  # few would hide behind rows of one value
+            excess = above - counted[-count - 1]
     if np.ptp(excess) == 0:
         return -inf if len(excess) > 1 else inf
     return shrunk(generalised_pareto(excess)[0], len(excess))

@@ -74,7 +74,8 @@ function tailShape(numbers) {
   const counted = numbers.filter(one => one > NEGLIGIBLE * most), m = counted.length;
   if (m === 0 || (m === n && most - numbers.reduce((a, b) => Math.min(a, b)) <= ROUNDING * most)) return -Infinity;
   if (m < FEWEST) return Infinity;
-  const excess = m > count && top[1] > top[0] ? top.slice(1).map(one => one - top[0]) : counted.sort();
+  const above = m > count ? top.filter(one => one > top[0]) : [];
+  const excess = 2 * above.length > count ? above.map(one => one - top[0]) : counted.sort();
   if (excess.at(-1) === excess[0]) return excess.length > 1 ? -Infinity : Infinity;
   return shrunk(generalisedPareto(excess)[0], excess.length);
 }
