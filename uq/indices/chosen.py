@@ -101,9 +101,7 @@ def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
     written, name = name, canonical(name)
     form, inside, _ = split_name(name)
     if (output := inside.partition("[")[0]) in ds and (text := threshold_text(written)):
-        read_threshold(
-            "threshold", text, output, ds[output].attrs["units"]
-        )  # refuses what does not fit
+        read_threshold("threshold", text, output, ds[output].attrs["units"])  # or refuse it
     if is_whole(inside):
         every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
