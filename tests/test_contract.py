@@ -39,8 +39,14 @@ def near_nominal(model, rows, seed=1):
 
 def run(model, settings, x, seed):
     """Return what a batch gives, contract checked, as one dict of arrays."""
-    chunk = evaluate(model, settings, x, seed)
+    chunk = evaluate(model.given(settings), settings, x, seed)
     return chunk.columns | {"status": chunk.status}
+
+
+def with_all_outputs(model):
+    """Return settings under which a model has every output."""
+    optional = [name for name in model.setting_names if model.setting(name).optional]
+    return replace(model.settings(), **dict.fromkeys(optional, (1.0, 2.0)))
 
 
 def bits(columns):
@@ -102,9 +108,10 @@ def test_settings_are_documented_frozen_and_travel(model, settings):
             setattr(settings, name, None)
 
 
-def test_outputs_are_documented(model, settings):
+def test_outputs_are_documented(model):
+    settings = with_all_outputs(model)
     coordinates = model.coordinates(settings)
-    assert model.outputs
+    assert model.outputs and model.given(settings) is model
     for name, output in model.outputs.items():
         assert output.unit.strip() and output.meaning.strip() and "\n" not in output.meaning, name
         assert output.unit not in TIME_UNITS, name
@@ -126,7 +133,25 @@ def test_the_nominal_row_is_sound(model, settings):
     assert run(model, settings, x, seed)["status"] == [Status.OK]
 
 
-def test_a_row_does_not_depend_on_its_neighbours(model, settings):
+@pytest.mark.parametrize(
+    "model",
+    [m for m in map(find_model, model_names()) if with_all_outputs(m) != m.settings()],
+    ids=lambda m: m.name,
+)
+def test_outputs_along_optional_coordinates_leave_the_others_as_they_are(model):
+    settings, more = model.settings(), with_all_outputs(model)
+    optional = [name for name in model.setting_names if model.setting(name).optional]
+    assert all(getattr(settings, name) == () for name in optional)
+    assert model.choices_of(settings).keys() == set(model.setting_names) - set(optional)
+    assert model.choices_of(more).keys() == set(model.setting_names)
+    x, seed = near_nominal(model, 5)
+    few, many = bits(run(model, settings, x, seed)), bits(run(model, more, x, seed))
+    assert few.keys() < many.keys()
+    assert few == {name: many[name] for name in few}
+
+
+def test_a_row_does_not_depend_on_its_neighbours(model):
+    settings = with_all_outputs(model)
     x, seed = near_nominal(model, 7)
     whole = run(model, settings, x, seed)
     for i in (0, 3, 6):
@@ -134,7 +159,8 @@ def test_a_row_does_not_depend_on_its_neighbours(model, settings):
         assert bits(alone) == bits({name: column[i : i + 1] for name, column in whole.items()})
 
 
-def test_permuted_rows_permute_the_results(model, settings):
+def test_permuted_rows_permute_the_results(model):
+    settings = with_all_outputs(model)
     x, seed = near_nominal(model, 2 * min(model.block, 16) + 3, seed=2)
     order = np.random.default_rng(3).permutation(len(x))
     whole = run(model, settings, x, seed)

@@ -9,7 +9,7 @@ settings), a dict of `Output` and two functions, ``batch`` and ``simulate``; put
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from enum import IntEnum
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
@@ -60,12 +60,16 @@ class Setting:
         Both ends included; for a list of numbers, or of lists of them, they apply to each.
     choices : tuple of str
         The allowed values of a setting that is a word.
+    optional : bool
+        For a list, empty by default, of the coordinates of a dimension: while it is empty, the
+        model has no outputs along it, and studies are as if there were no such setting.
     """
 
     meaning: str
     unit: str = "1"
     bounds: tuple[float, float] | None = None
     choices: tuple[str, ...] = ()
+    optional: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +271,8 @@ class Model:
     simulate : callable, optional
         ``simulate(params, settings, seed=0) -> Trajectory``.
     coordinates : callable
-        ``coordinates(settings) -> {dimension: values}`` for every dimension the outputs name.
+        ``coordinates(settings) -> {dimension: values}`` for every dimension the outputs name. For
+        an empty one, ``batch`` returns no outputs along it.
     dimensions : dict of str to tuple
         Dimension -> (unit, meaning), for coordinates that are quantities.
     cheap : dict of str to Batch
@@ -305,6 +310,27 @@ class Model:
         return replace(
             self, outputs={output: self.outputs[output]}, batch=self.cheap[output], cheap={}
         )
+
+    def given(self, settings: Any) -> "Model":
+        """Return the model with the outputs that it computes under these settings.
+
+        Those along a dimension without coordinates are left out.
+        """
+        axes = self.coordinates(settings)
+        some = {
+            name: output
+            for name, output in self.outputs.items()
+            if all(len(axes[dim]) for dim in output.dims)
+        }
+        return self if len(some) == len(self.outputs) else replace(self, outputs=some)
+
+    def choices_of(self, settings: Any) -> dict[str, Any]:
+        """Return the settings by name, without empty ones that are `Setting.optional`."""
+        return {
+            name: value
+            for name, value in asdict(settings).items()
+            if value or not self.setting(name).optional
+        }
 
     @property
     def parameter_names(self) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from uq.exact_shares import are_few, exact_interval
 from uq.quantile_functions import normal, student
 
 CONFIDENCE = 0.95
+ONE_ROW = "a single row does not show any scatter"
 ROUNDING = 64 * np.finfo(float).eps
 """Values are equal but for rounding if they differ by less than this part of the largest."""
 

@@ -8,6 +8,7 @@ from uq.clusters import Clusters
 from uq.estimate import Estimate
 from uq.intervals import (
     CONFIDENCE,
+    ONE_ROW,
     UNKNOWN,
     Ends,
     Floats,
@@ -73,6 +74,8 @@ def moments(
     if not no_sd and replicate is None and 1 < len(values) < FEWEST_ROWS:
         if not is_constant(values):
             no_sd = f"needs {FEWEST_ROWS} rows to judge how heavy the tails are"
+    if len(values) == 1:
+        no_mean = no_sd = ONE_ROW
     has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance
     return Moments(
         Estimate(

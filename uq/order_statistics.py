@@ -210,6 +210,29 @@ def rows_for_bound(coverage: float, confidence: float, failed: int = 0, bounds: 
     return beyond + negative_binomial(confidence, beyond, 1 - coverage)
 
 
+def rows_still_needed(
+    rows: int, failed: int, coverage: float, confidence: float, bounds: int = 1
+) -> float:
+    """Return how many rows bounds need if no more fail than have failed.
+
+    Parameters
+    ----------
+    rows : int
+        There are, the failed ones included.
+    failed, coverage, confidence, bounds
+        As for `rows_for_bound`.
+
+    Returns
+    -------
+    float
+        Infinite where as large a share failed as may lie outside: further rows, of which as many
+        fail, never give a bound.
+    """
+    if rows and failed >= (1 - coverage) * rows:
+        return np.inf
+    return rows_for_bound(coverage, confidence, failed, bounds)
+
+
 def mid_ranks(values: Floats) -> Floats:
     """Return the share of values below each, shape (n,), ties counted by half."""
     _, place, counts = np.unique(values, return_inverse=True, return_counts=True)

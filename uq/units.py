@@ -28,8 +28,10 @@ def beside(number: str, unit: str) -> str:
     """Return a number with its unit, if it has one: ``250 µm``, ``12°``, ``3 × 10⁻¹⁵ m² N⁻¹``."""
     if number == "1" and unit in _TIME_WORDS:
         unit = unit.removesuffix("s")
+    if unit in ("", "1"):
+        return number
     between = "" if unit == DEGREES else " × " if unit.startswith("10") else " "
-    return f"{number}{between}{powers(unit)}".strip().removesuffix(" 1")
+    return f"{number}{between}{powers(unit)}"
 
 
 class TimeUnit(NamedTuple):

@@ -48,7 +48,10 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
-    dimensions={"depth": ("m", "growth of the gap by wear")},
+    dimensions={
+        "depth": ("m", "growth of the gap by wear"),
+        "instant": ("s", "time since wear began"),
+    },
     random=True,
     random_unless={"random_force_level": 0.0},
     block=1024,

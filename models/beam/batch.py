@@ -58,7 +58,9 @@ def batch(
     halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
     given = x.copy()
     given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load has no effect
-    dynamic = np.hstack([np.delete(given, _SCALES, axis=1), halves.astype(float)])
+    # The instants of such rows differ in the time of the simulation.
+    shared = [] if settings.instants else _SCALES
+    dynamic = np.hstack([np.delete(given, shared, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     some: Rows = Params._make(np.ascontiguousarray(x[first].T))
     simulated = simulate_rows(some, settings, seed[first])
@@ -84,8 +86,9 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     """
     b = beams(p, settings, seed)
     propagator = PROPAGATORS[settings.propagator]
-    n, depths = len(p.length), len(settings.depths)
-    whole = Simulated(Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
+    n = len(p.length)
+    lives = Lives.nothing(n, len(settings.depths), len(settings.instants))
+    whole = Simulated(Response.nothing(n), lives, b.frequency[:, 0])
     possible = np.flatnonzero(has_band(p))
     for some, system in propagator.groups(b.take(possible), settings):
         rows = possible[some]
@@ -108,14 +111,15 @@ def _simulate_group(
     add_neighbour_error(propagator, system, begin, gaps, settled)
     share = wear_shares(p)
     growths = np.asarray(settings.depths) / p.initial_gap[:, None]
-    lives = Lives.nothing(*growths.shape)
+    clock = np.asarray(settings.instants) * (p.forcing_frequency * wear_per_work(p))[:, None]
+    lives = Lives.nothing(len(growths), growths.shape[1], clock.shape[1])
     known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
         rows = np.flatnonzero(known & (system.beams.is_random == is_random))
         if not len(rows):
             continue
         start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])
-        wear = (share[rows], growths[rows], settings.accuracy)
+        wear = (share[rows], growths[rows], clock[rows], settings.accuracy)
         part = (
             find_random_lives(*start, error[rows] / NINE_IN_TEN, *wear)
             if is_random
@@ -180,6 +184,9 @@ def _in_units(
         "regime_changes": np.where(lost, np.nan, s.lives.changes),
         "fundamental_frequency": s.fundamental / (2 * np.pi),
     }
+    if settings.instants:
+        worn = np.minimum(s.lives.depth * p.initial_gap[:, None, None], depths[-1])
+        outputs |= {"worn_depth": worn, "largest_worn_depth": worn.max(axis=1)}
     outputs["regime"] = np.where(lost, np.int8(-1), s.response.regime)
     outputs["period"] = np.where(lost, -1, s.response.period).astype(np.int8)
     unfinished = (censored & (time < settings.horizon)).any(axis=(1, 2))

@@ -118,6 +118,16 @@ class Settings:
         tuple[float, ...],
         Setting("gap growths whose lifetimes are reported", "m", bounds=(1e-9, 1e-1)),
     ] = (1.25e-4, 2.5e-4, 5e-4)
+    instants: Annotated[
+        tuple[float, ...],
+        Setting(
+            "times at which the worn depth is reported; rows that differ only in the wear "
+            "coefficient or the contact area then no longer share a simulation",
+            "s",
+            bounds=(1e-6, 1e12),
+            optional=True,
+        ),
+    ] = ()
     horizon: Annotated[
         float, Setting("lifetimes beyond it are censored", "s", bounds=(0.0, float("inf")))
     ] = float("inf")
@@ -131,11 +141,16 @@ class Settings:
         depths = self.depths
         if not depths or any(b <= a for a, b in zip(depths, depths[1:], strict=False)):
             raise ValueError("depths must be a list of increasing numbers")
+        instants = self.instants
+        if any(b <= a for a, b in zip(instants, instants[1:], strict=False)):
+            raise ValueError("instants must be a list of increasing numbers")
+        if instants and instants[-1] > self.horizon:
+            raise ValueError("instants must not lie beyond the horizon")
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     """Return the coordinates of the outputs' dimensions."""
-    return {"site": SITES, "depth": settings.depths}
+    return {"site": SITES, "depth": settings.depths, "instant": settings.instants}
 
 
 _LIFE_SCALES = {"wear_coefficient": -1.0, "contact_area": 1.0}  # eq 12: gaps grow with their ratio
@@ -198,6 +213,14 @@ OUTPUTS: Mapping[str, Output] = {
         "gap of the less worn site over that of the more worn one at the first time to depth",
         dims=("depth",),
         may_be_undefined=True,
+    ),
+    "worn_depth": Output(
+        "m",
+        "growth of the site's gap by the instant; the last of the depths once that is reached",
+        dims=("site", "instant"),
+    ),
+    "largest_worn_depth": Output(
+        "m", "the larger of the two sites' worn depths at the instant", dims=("instant",)
     ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
     "period": Output(

@@ -50,6 +50,7 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
+    dimensions={"instant": ("s", "time since the motors were switched on")},
     cheap={"theory_disphasing_angle": _theory_batch},
     block=256,
     references=(

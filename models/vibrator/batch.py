@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from models.vibrator.lanes.machines import follows
 from models.vibrator.parameters import Params, Rows, Settings
 from models.vibrator.start import exact, fast
-from models.vibrator.start.regimes import Outcome
+from models.vibrator.start.regimes import Outcome, wrapped
 from models.vibrator.theory import averaged
 from uq.contract import Status
 
@@ -35,12 +35,15 @@ def batch(
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     quick = follows(p, settings) & (settings.propagator == "fast")
-    outcome, status = Outcome.nothing(len(x)), np.full(len(x), Status.OK, np.int8)
+    outcome, status = (
+        Outcome.nothing(len(x), len(settings.instants)),
+        np.full(len(x), Status.OK, np.int8),
+    )
     _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
     # The exact propagator also follows machines too stiff for fixed steps.
     slow = ~quick | (status == Status.NON_FINITE)
     _run(exact.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
-    return {
+    outputs = {
         "disphasing_angle": outcome.disphasing,
         "theory_disphasing_angle": _theory_angle(p),
         "angular_amplitude": outcome.angular_amplitude,
@@ -54,7 +57,12 @@ def batch(
         "synchronisation_time_censored": outcome.censored,
         "max_excursion": outcome.max_excursion,
         "regime": outcome.regime,
-    }, status
+    }
+    if settings.instants:
+        angle, speed_1, speed_2 = np.moveaxis(outcome.on_the_way, 2, 0)
+        outputs["run_up_angle"] = wrapped(angle)
+        outputs["run_up_speed_1"], outputs["run_up_speed_2"] = speed_1, speed_2
+    return outputs, status
 
 
 def theory_batch(

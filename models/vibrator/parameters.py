@@ -152,6 +152,15 @@ class Settings:
         ),
     ] = "fast"
     run_up: Annotated[float, Setting("longest start simulated", "s", bounds=(1.0, 3600.0))] = 60.0
+    instants: Annotated[
+        tuple[float, ...],
+        Setting(
+            "times at which the speeds and the disphasing angle are reported",
+            "s",
+            bounds=(1e-6, 3600.0),
+            optional=True,
+        ),
+    ] = ()
     tolerance: Annotated[
         float, Setting("relative tolerance of the exact propagator", bounds=(1e-13, 1e-3))
     ] = 1e-8
@@ -173,10 +182,17 @@ class Settings:
         ),
     ] = ()
 
+    def __post_init__(self):
+        instants = self.instants
+        if any(b <= a for a, b in zip(instants, instants[1:], strict=False)):
+            raise ValueError("instants must be a list of increasing numbers")
+        if instants and instants[-1] > self.run_up:
+            raise ValueError("instants must not lie beyond the run_up")
+
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
-    """Return the coordinates of the outputs' dimensions (none)."""
-    return {}
+    """Return the coordinates of the outputs' dimensions."""
+    return {"instant": settings.instants}
 
 
 OUTPUTS: Mapping[str, Output] = {
@@ -213,6 +229,11 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "max_excursion": Output(
         "m", "largest displacement of C during start-up, until its free vibration has died away"
+    ),
+    "run_up_speed_1": Output("rad s-1", "speed of vibrator 1 at the instant", dims=("instant",)),
+    "run_up_speed_2": Output("rad s-1", "speed of vibrator 2 at the instant", dims=("instant",)),
+    "run_up_angle": Output(
+        "rad", "disphasing angle psi_1 - psi_2 at the instant", "angle", dims=("instant",)
     ),
     "regime": Output(
         "1", "type of steady state reached from the start", "category", categories=REGIMES

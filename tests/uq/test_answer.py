@@ -28,6 +28,7 @@ from uq.conclusions.tightening import halved
 from uq.conclusions.words import Unit, called_together, rounded, rows_in_words
 from uq.contract import Status
 from uq.estimate import Estimate
+from uq.printed import printed
 from uq.study.reading import read_study_text
 
 DAY = 86400.0
@@ -94,7 +95,8 @@ def test_a_threshold_has_its_probability_and_what_decides_it(lifetime):
         event.decided_by,
     )
     rate, life = ds["rate"].values, ds["life"].values
-    low, high = event.curve.edges[1], event.curve.edges[-2]
+    low, high = event.curve.around(0)[1], event.curve.around(len(event.curve.shares) - 1)[0]
+    assert low >= event.curve.edges[1] and high < event.curve.edges[-2]  # parts alike are one
     assert (below, above) == pytest.approx((low * 1e12, high * 1e12), rel=5e-3)
     assert least == pytest.approx(100 * (life[rate < low] < 10 * DAY).mean(), abs=0.06)
     assert most == pytest.approx(100 * (life[rate >= high] < 10 * DAY).mean(), abs=0.06)
@@ -258,10 +260,11 @@ def test_a_rare_event_asks_for_more_rows():
 
 
 def with_valley(samples=400):
-    """Return a result in which y is high where x4 is far from its middle."""
+    """Return a result in which a wanted y is high where x4 is far from its middle."""
     ds = linear(samples=samples)
     far = (ds["x4"].values - 0.5) ** 2 + 1e-4 * ds["x1"].values
-    return asking(with_output(ds, "far", far), outputs=["far"], thresholds={"far": 0.01})
+    asked = {"outputs": ["far"], "thresholds": {"far": 0.01}, "wanted": {"far": "above"}}
+    return asking(with_output(ds, "far", far), **asked)
 
 
 def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_input():
@@ -279,15 +282,43 @@ def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_inpu
     assert most.low > event.share.high
 
 
+@pytest.mark.parametrize(("wanted", "side"), [("above", "stay above"), ("below", "stay below")])
+def test_the_side_that_is_wanted_is_promised_and_advised(wanted, side):
+    asked = {"outputs": ["y"], "thresholds": {"y": 5.0}, "wanted": {"y": wanted}}
+    found = answer(asking(linear(samples=400), **asked))
+    bound = rf"With 95 % confidence, at least 95 % {side} [\d.]+\."
+    assert re.fullmatch(bound, found.lead.promise.sentence)
+    (one,) = (each for each in found.advice if each.rule in ("tighten", "keep"))
+    if one.rule == "tighten":
+        before, after = one.tightened.before.value, one.tightened.after.value
+        assert after > before if wanted == "above" else after < before
+    else:
+        assert one.text.startswith(f"So that {'more' if wanted == 'above' else 'fewer'} exceed 5")
+
+
+def test_what_nobody_wants_is_not_called_better():
+    ds = with_valley()
+    found = answer(asking(ds, outputs=["far"], thresholds={"far": 0.01}, wanted={}))
+    assert found.lead.wants_more is None
+    assert not any(one.rule == "keep" for one in found.advice)
+
+
+def test_a_large_angle_may_be_wanted():
+    asked = {"outputs": ["angle"], "thresholds": {"angle": 1.0}}
+    assert answer(kinds(samples=100, analysis=asked)).lead.wants_more is False
+    lead = answer(kinds(samples=100, analysis=asked | {"wanted": {"angle": "above"}})).lead
+    assert lead.wants_more and "at least 95 % exceed" in lead.promise.sentence
+
+
 def test_more_successes_and_fewer_other_ends_are_better():
     lives = np.random.default_rng(0).uniform(1, 9, 64)
     ds = with_output(linear(samples=64), "life", lives, "lifetime")
     asked = {"outputs": ["life"], "thresholds": {"life": 8.0}}
     lead = answer(asking(ds, **asked)).lead
-    assert not lead.wants_more(lead.events[0])
+    assert not lead.wants_more
     ds["life"].attrs["success"] = "the lock has closed"
     lead = answer(asking(ds, **asked)).lead
-    assert lead.wants_more(lead.events[0])
+    assert lead.wants_more
     better = Tightened(("x",), "", Estimate(0.5), Estimate(0.6), wants_more=True)
     assert better.helps and not replace(better, wants_more=False).helps
     assert replace(better, wants_more=None).helps
@@ -345,7 +376,7 @@ def event_at(event):
 def test_a_notebook_shows_the_same_sentences():
     found = uq.answer(linear("saltelli", samples=64, replicates=4))
     html = found._repr_html_()
-    assert html.startswith("<style>") and found.lead.range.sentence in html
+    assert html.startswith("<style>") and printed(found.lead.range.sentence) in html
     assert found.lead.range.sentence in repr(found)
 
 

@@ -17,7 +17,7 @@ from nested_studies import nested_result
 from test_answer import numbers
 
 from uq.analysis.findings import Findings
-from uq.conclusions.advice import advise
+from uq.conclusions.advice import advise, verdict
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.remedies import Tightened
@@ -75,6 +75,40 @@ def test_a_success_succeeds():
     ds = ds.assign(locking=ds["locking"].copy(data=never))
     said = answer(asking(ds, outputs=["locking"])).lead.range.sentence
     assert "5 % succeed within" in said and "more than 5 % never succeed" in said
+
+
+def test_where_nothing_can_be_promised_a_probability_comes_first():
+    times = np.r_[np.linspace(1, 9, 150), np.full(50, np.inf)]
+    ds = linear(samples=200)
+    ds = with_output(ds, "locking", times[np.argsort(np.argsort(ds["x4"].values))], "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    found = answer(asking(ds, outputs=["locking"], thresholds={"locking": 20.0}))
+    (event,) = found.lead.events
+    assert found.lead.promise.sentence == "" and found.lead.first is event
+    assert found.lead.head[:2] == [event.sentence, event.decided_by] == found.lines[:2]
+    share, least, edge, most, same = numbers(
+        r"# % \(.*\) succeed within 20 s. Decided most by x4: from # % where it is above #"
+        r" to # % where it is below #\.",
+        " ".join(found.lines[:2]),
+    )
+    there = np.isfinite(times[np.argsort(np.argsort(ds["x4"].values))])
+    assert share == pytest.approx(100 * there.mean(), abs=0.05)
+    assert least == pytest.approx(100 * there[ds["x4"].values > edge].mean(), abs=3)
+    assert most == 100 and there[ds["x4"].values < same - 0.005].all() and same > 0.5
+
+
+def test_more_rows_are_not_advised_for_numerical_errors():
+    ds = linear(samples=100)
+    ds = with_output(ds, "z", ds["x1"].values)
+    ds = with_output(ds, "z_error", np.random.default_rng(0).lognormal(0, 1, 100))
+
+    def rows_advised(*outputs):
+        return [
+            one.text for one in answer(asking(ds, outputs=outputs)).advice if one.rule == "rows"
+        ]
+
+    assert rows_advised("z", "z_error") == rows_advised("z")
+    assert len(rows_advised("z_error")) == 1
 
 
 def test_failed_rows_widen_a_probability():
@@ -183,3 +217,26 @@ def test_the_rarer_regimes_say_what_decides_them():
     x = ds["x1"].values
     assert (never, always) == (0, 100)
     assert not fast[x < 0.99 * below].any() and fast[x > 1.01 * above].all()
+
+
+@pytest.mark.parametrize("method", ["saltelli", "shapley", "sobol"])
+def test_nothing_is_settled_without_intervals(method):
+    found = Findings(linear(method, samples=512))
+    (said,) = verdict(found)
+    assert said.startswith("Whether the rows are enough is not known: the rows of a")
+    assert said.endswith("set replicates = 8.")
+    own = answer(found.ds)
+    rules = {one.rule: one.text for one in own.advice}
+    assert "set replicates = 8" in rules["rows"] and "nothing" not in rules
+    ranking = own.lead.ranking
+    assert all(not one.effect for one in ranking.contributions)  # no direction is called unclear
+    if method == "saltelli":
+        assert ranking.sentence.startswith("Which inputs matter is not settled: ST of x4 is 0.5")
+        assert ranking.sentence.endswith(", without an interval.")
+
+
+def test_an_input_that_alone_has_an_effect_decides_without_an_interval():
+    ds = linear("saltelli", samples=64, replicates=8)
+    ds = asking(with_output(ds, "half", (ds["x4"].values > 0.5).astype(float)), outputs=["half"])
+    (line,) = answer(ds).quantities
+    assert line.ranking.sentence == "x4 contributes most: 100 %."

@@ -62,5 +62,8 @@ def test_the_probability_over_an_input_is_the_share_in_each_part():
         inside = (x >= low) & (x <= high) & np.isfinite(hits)
         assert one.value == pytest.approx(hits[inside].mean(), abs=0.02)
         assert one.low < (low + high) / 2 + 0.1 and one.high > (low + high) / 2 - 0.1
+    assert curve.around(3) == tuple(curve.edges[3:5])
+    whole = event_curve((x > 0.5).astype(float), x)
+    assert whole.around(whole.most)[0] == pytest.approx(0.5, abs=0.1) == whole.around(0)[1]
     assert event_curve(hits[:40], x[:40]) is None
     assert event_curve(hits, np.ones(1200)) is None

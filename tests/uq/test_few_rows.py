@@ -39,6 +39,7 @@ def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
 def test_an_event_with_fewer_than_twenty_hits_is_warned_of():
     found = of_event(0.05)
     assert "hits in 2048 rows, 1" in found["notes"][0] and "rough" in found["notes"][0]
+    assert "too narrow" not in found["notes"][0] and "are conservative" in found["notes"][1]
     assert found["S1"]["x1"]["value"] == pytest.approx(0.169, abs=0.15)
     assert not any("rough" in note for note in of_event(0.3)["notes"])
 

@@ -5,10 +5,15 @@ import pytest
 from computed import UNIFORM, as_text, computed, kinds, study_of, summarised
 from scipy import stats
 
+import uq
+from uq.analysis.findings import Findings
 from uq.analysis.joint_bounds import Needed, rows_needed
+from uq.conclusions.advice import advise, verdict
+from uq.conclusions.quantities import quantities
 from uq.errors import InputError
 from uq.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
 from uq.rows.elements import analysis_of
+from uq.rows.results import failed
 from uq.study.definition import study_from_text
 
 DEPENDENCE = {
@@ -31,18 +36,18 @@ def test_rows_needed_are_those_of_guba_makai_and_pal():
 
 def test_one_bound_is_the_tolerance_bound():
     values = np.random.default_rng(0).standard_normal(500)
-    for failed in (0, 3):
-        low, high = tolerance_bounds(values, failed, 0.95, 0.95)
-        assert joint_bounds([values], failed, 0.95, 0.95) == [high]
-        assert joint_bounds([-values], failed, 0.95, 0.95) == [-low]
+    for lost in (0, 3):
+        low, high = tolerance_bounds(values, lost, 0.95, 0.95)
+        assert joint_bounds([values], lost, 0.95, 0.95) == [high]
+        assert joint_bounds([-values], lost, 0.95, 0.95) == [-low]
 
 
-@pytest.mark.parametrize("failed", [0, 2])
-def test_too_few_rows_give_no_bound(failed):
-    needed = rows_for_bound(0.95, 0.95, failed, bounds=2)
-    values = np.random.default_rng(0).random((2, needed - failed))
-    assert np.isfinite(joint_bounds(values, failed, 0.95, 0.95)).all()
-    assert np.isnan(joint_bounds(values[:, 1:], failed, 0.95, 0.95)).all()
+@pytest.mark.parametrize("lost", [0, 2])
+def test_too_few_rows_give_no_bound(lost):
+    needed = rows_for_bound(0.95, 0.95, lost, bounds=2)
+    values = np.random.default_rng(0).random((2, needed - lost))
+    assert np.isfinite(joint_bounds(values, lost, 0.95, 0.95)).all()
+    assert np.isnan(joint_bounds(values[:, 1:], lost, 0.95, 0.95)).all()
 
 
 @pytest.mark.slow
@@ -99,6 +104,30 @@ def test_failed_rows_lie_outside():
     found = summarised(computed(study_of(failing)))["outputs"]["y"]["joint_bounds"]
     assert sound["rows_needed"] == 93 < found["rows_needed"]
     assert sound["upper"] is not None and found["upper"] is None
+
+
+def test_bounds_that_lack_rows_are_not_settled():
+    tables = {
+        "study": {"name": "joint", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 80},
+        "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
+        "analysis": {"joint_bounds": {"y": "both"}, "max_failed": 0.2},
+    }
+    few = Findings(computed(study_of(tables)))
+    said = "the joint bounds that the study asks for need 93 rows"
+    assert f"Not enough rows: {said}; about 93 rows would settle it." in verdict(few)
+    failing = computed(study_of(tables | {"settings": {"fail_above": 0.9}}))
+    assert failed(failing).mean() > 0.05  # as many rows as may lie outside
+    joint = summarised(failing)["outputs"]["y"]["joint_bounds"]
+    assert joint == {"lower": None, "upper": None, "rows_needed": None}
+    assert np.isnan(uq.summary(failing)["joint_rows_needed"].item())
+    found = Findings(failing)
+    said = "oo many rows failed for the joint bounds that the study asks for"
+    assert f"T{said}. More rows would not help." in verdict(found)
+    advice = {one.rule: one.text for one in advise(found, quantities(found))}
+    assert f"t{said}" in advice["failed"] and "joint" not in advice.get("rows", "")
+    why = quantities(found)[0].promise.why
+    assert "of the rows failed, and count as lying beyond it" in why
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from uq.analysis.statistics.between_regimes import between_share
 from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
 from uq.cli.tables import show_summary
+from uq.intervals import ONE_ROW
 from uq.moments import moments, sd_interval, standard_deviation
 from uq.report.outcomes import outcomes, result_tables
 from uq.store import write
@@ -163,9 +164,10 @@ def test_an_interval_of_sd_is_refused_where_it_would_not_hold(law, rows):
     assert missed <= 10
 
 
-def test_one_row_or_equal_rows_have_no_scatter_and_no_reason():
+def test_one_row_says_why_it_has_no_scatter_and_equal_rows_need_not():
     one, constant = moments(np.array([1.0])), moments(np.ones(80))
-    assert {found.reason for found in (one.mean, one.sd, constant.mean, constant.sd)} == {""}
+    assert one.mean.reason == one.sd.reason == ONE_ROW
+    assert constant.mean.reason == constant.sd.reason == ""
     assert constant.sd.value == 0
 
 

@@ -80,6 +80,8 @@ def test_the_template_of_every_model_is_valid(validator, name):
         ({"analysis": {"thresholds": {"z": 1.0}}}, "analysis/thresholds"),
         ({"analysis": {"thresholds": {"y": True}}}, "analysis/thresholds/y"),
         ({"analysis": {"thresholds": {"y": "soon"}}}, "analysis/thresholds/y"),
+        ({"analysis": {"wanted": {"z": "above"}}}, "analysis/wanted"),
+        ({"analysis": {"wanted": {"y": "high"}}}, "analysis/wanted/y"),
         ({"analysis": {"quantiles": [0.5, 2]}}, "analysis/quantiles/1"),
         (
             {
@@ -103,7 +105,7 @@ def test_the_fault_is_where_it_is(validator, changes, place):
         {"analysis": {"tolerance": {"coverage": 0.9, "confidence": 0.9}}},
         {"analysis": {"thresholds": {"y": [1, 2.5]}, "sensitivity": ["pawn"]}},
         {"analysis": {"thresholds": {"y": "5 %"}}},
-        {"analysis": {"thresholds": {"y": [1, "5 %"]}}},
+        {"analysis": {"thresholds": {"y": [1, "5 %"]}, "wanted": {"y": "below"}}},
         {"uncertain": {"x3": {"distribution": "lognormal", "median": 1, "sigma": 0.1}}},
         {"settings": {}, "fixed": {}},
         {"design": {"method": "imported", "file": "rows.csv", "samples": None}},

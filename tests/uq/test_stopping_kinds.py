@@ -147,7 +147,7 @@ def test_failed_rows_leave_with_their_groups(tmp_path):
             {"method": "saltelli", "replicates": 8},
             r"no such index .*'S1'\?.*allowed: S1, ST",
         ),
-        ({"index": "S1"}, {"method": "saltelli"}, "set replicates = 8"),
+        ({"index": "S1"}, {"method": "saltelli"}, r"\[design\] until: a .*set replicates = 8"),
         (
             {"index": "S1", "input": "x9"},
             {"method": "saltelli", "replicates": 8},
@@ -162,6 +162,11 @@ def test_failed_rows_leave_with_their_groups(tmp_path):
             {"index": "S1", "difference": ["x1", "x1"]},
             {"method": "saltelli", "replicates": 8},
             "twice",
+        ),
+        (
+            {"index": "S1", "difference": ["x1", "x2", "x3"]},
+            {"method": "saltelli", "replicates": 8},
+            "must have at most 2 entries",
         ),
         (
             {"index": "S1", "input": "x1", "difference": ["x1", "x2"]},

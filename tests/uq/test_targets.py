@@ -6,6 +6,8 @@ from asked_indices import indices, values
 from computed import asking, kinds, linear, with_output
 from scipy import stats
 
+from uq.errors import InputError
+
 
 def lives(values, censored=None, thresholds=()):
     ds = linear("saltelli", samples=64, replicates=4)
@@ -106,3 +108,16 @@ def test_lives_of_zero_have_no_logarithm_and_no_rate():
     assert "lifetime zero" in zero["refused"]
     zero = indices(ds, output="log(life)")["outputs"]["log(life)"]
     assert "are not positive" in zero["refused"]
+
+
+def test_events_are_named_with_spaces_and_units_and_others_are_refused():
+    ds = asking(kinds("saltelli", replicates=4), thresholds={"work": 0.5, "life": 1.0})
+    element = "work[side=left]"
+    (name,) = indices(ds, output=f"P( {element} > 0.5 )".replace("( ", "("))["outputs"]
+    assert name == f"P({element}>0.5)"
+    (name,) = indices(ds, output="P(life[side=left,depth=0.5] < 1 s)")["outputs"]
+    assert name == "P(life[side=left,depth=0.5]<1.0)"
+    with pytest.raises(InputError, match=r"no such event .*>0.7.*allowed: P\(work.*>0.5\).*thresh"):
+        indices(ds, output=f"P({element} > 0.7)")
+    with pytest.raises(InputError, match="the unit 'm' does not fit 'life'"):
+        indices(ds, output="P(life[side=left,depth=0.5] < 1 m)")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uq.units import typical, unit_of
+from uq.units import beside, typical, unit_of
 
 
 @pytest.mark.parametrize(
@@ -33,3 +33,9 @@ def test_a_block_has_the_unit_of_a_typical_value():
     assert typical([-0.018, 0.0002, 0.018]) == 0.018
     assert typical([0.0, 0.0, np.inf, np.nan, 3.0]) == 3.0
     assert typical([]) == 0.0
+
+
+@pytest.mark.parametrize("unit", ["", "1"])
+def test_a_number_that_ends_in_one_stays_whole(unit):
+    assert beside("-2 and 1", unit) == "-2 and 1"
+    assert beside("1", unit) == "1"

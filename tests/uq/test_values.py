@@ -42,7 +42,8 @@ class Numerics:
 
 
 def batch(x, seed, settings):
-    return {"y": x[:, 0].copy(), "regime": np.zeros(len(x), np.int8)}, np.zeros(len(x), np.int8)
+    outputs = {"y": x[:, 0].copy(), "life": x[:, 0].copy(), "regime": np.zeros(len(x), np.int8)}
+    return outputs, np.zeros(len(x), np.int8)
 
 
 TOY = Model(
@@ -53,6 +54,7 @@ TOY = Model(
     settings=Numerics,
     outputs={
         "y": Output("1", "the input"),
+        "life": Output("s", "life", "lifetime", may_be_censored=False),
         "regime": Output("1", "kind", "category", categories=("only",)),
     },
     batch=batch,
@@ -169,13 +171,20 @@ def test_a_study_reports_what_is_wrong_with_settings_and_categories():
             "contact_stiffness": {"distribution": "lognormal", "mean": 13750.0, "cv": 0.15},
         },
         "settings": {"depths": [2e-4, 1e-4]},
-        "analysis": {"thresholds": {"regime": 1.0}},
+        "analysis": {
+            "thresholds": {"regime": 1.0},
+            "wanted": {"regime": "above", "life": "above", "Y": "below"},
+        },
     }
     with pytest.raises(InputError) as caught:
         study_from_text(study_text(changes), "x.toml", model="test_values:TOY")
     assert caught.value.lines == (
         "x.toml: [settings]: depths must increase",
         "x.toml: [analysis] thresholds.regime = 1.0: is a category: it has shares, not thresholds",
+        'x.toml: [analysis] wanted.regime = "above": is a category: it has shares, not sides',
+        'x.toml: [analysis] wanted.life = "above": is a lifetime, whose model states if its end is'
+        " wanted; leave it out",
+        "x.toml: [analysis] wanted.Y = \"below\": no such output of model 'toy'; did you mean 'y'?",
     )
     changes["settings"] = {"elements": 0, "horizon": nan}
     with pytest.raises(InputError) as caught:

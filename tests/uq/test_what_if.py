@@ -15,7 +15,7 @@ from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
 from uq.population.functionals import Population
-from uq.population.means import weighted_moments
+from uq.population.means import weighted_moments, weighted_share
 from uq.population.smoothing import largest_shape, smoothed, tail_shape
 from uq.rows.element import Element
 
@@ -219,11 +219,50 @@ def test_the_interval_of_a_weighted_mean_holds_the_truth():
     assert len(held) > 200 and 0.9 < np.mean(held) < 0.98
 
 
-def test_a_probability_that_is_refused_says_why():
-    rows = computed(study({"z": NORMAL}, samples=300))
-    found = what_if_json(answer(rows, {"uncertain.z.truncate": [-0.45, 3.0]}))["outputs"]["life"]
-    one = found["thresholds"]["0.8"]
-    assert one["below"]["value"] is None and "fewer than 5 samples have weight" in one["reason"]
+@pytest.mark.parametrize(
+    ("mean", "rows", "p"), [(0.6, 100, 0.95), (1.0, 300, 0.95), (0.6, 30, 0.8)]
+)
+def test_a_tail_that_few_rows_reach_has_an_interval_that_holds_the_truth(mean, rows, p):
+    """Rows that are missing there would have been heavier than those that are not."""
+    rng, held = np.random.default_rng(8), []
+    for _ in range(400):
+        z = rng.standard_normal(rows)
+        by = smoothed(mean * z)
+        if not by.refusal:
+            below = weighted_share((z < mean + special.ndtri(p)).astype(float), by.weights)
+            held.append(below.low <= p <= below.high)
+    assert len(held) > 150 and np.mean(held) > 0.93
+
+
+def test_a_standard_deviation_depends_on_the_weights_alone():
+    """Without an outlier values scatter too little: if they decided, those given would be wrong."""
+    rng = np.random.default_rng(5)
+    z = rng.standard_normal((2, 2000))
+    refused = weighted_moments(np.exp(z[0]), smoothed(1.5 * z[0]).weights)[1]
+    assert re.search(r"a sample carries \d+\.\d% of all weight, .* 1%: add \d+", refused.reason)
+    held = []
+    for _ in range(400):
+        z, rest = rng.standard_normal((2, 400))
+        by = smoothed(0.4 * z)
+        sd = weighted_moments(np.exp(0.5 * z + 0.25 * rest), by.weights)[1]
+        variance = 0.5**2 + 0.25**2
+        truth = np.exp(0.2 + variance / 2) * np.sqrt(np.expm1(variance))
+        held += [sd.low < truth < sd.high] * (not sd.reason)
+    assert len(held) > 360 and 0.92 < np.mean(held) < 0.98
+
+
+def test_a_single_row_says_why_a_number_is_missing():
+    rows = computed(study(samples=1))
+    for found in (summarised(rows), what_if_json(answer(rows, {"uncertain.a.sigma": 0.4}))):
+        life = found["outputs"]["life"]
+        below = life["thresholds"]["0.8"]
+        assert 0 < below["below"]["value"] < 1 and below["below"]["low"] is None
+        said = (below["reason"], life["b_lives"]["B10"]["reason"], life["reasons"]["sd"])
+        assert all("a single row" in one or "1 independent part," in one for one in said)
+    with pytest.raises(RunError, match="1 independent part, and more than 10"):
+        what_if(rows, {"uncertain.z.sd": 0.9})
+    with pytest.raises(RunError, match="5 independent parts, and more than 10"):
+        what_if(computed(study(samples=5)), {"uncertain.z.sd": 0.9})
 
 
 def test_rows_that_all_failed_say_nothing():

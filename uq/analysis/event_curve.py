@@ -41,6 +41,16 @@ class EventCurve(NamedTuple):
         compatible = [i for i in self._ends if self.shares[i].high >= high]
         return max(compatible or range(len(self.shares)), key=lambda i: self.shares[i].value)
 
+    def around(self, i: int) -> tuple[float, float]:
+        """Return the ends of a part, with the neighbours that have the same share."""
+        first = last = i
+        value = self.shares[i].value
+        while first > 0 and self.shares[first - 1].value == value:
+            first -= 1
+        while last < len(self.shares) - 1 and self.shares[last + 1].value == value:
+            last += 1
+        return float(self.edges[first]), float(self.edges[last + 1])
+
     @property
     def _ends(self) -> tuple[int, int]:
         return 0, len(self.shares) - 1

@@ -27,15 +27,15 @@ class JointBound(NamedTuple):
         NaN with too few rows.
     beyond : bool
         Whether it is infinite only because rows are censored.
-    rows_needed : int
-        For all of them.
+    rows_needed : float
+        For all of them; infinite where too many rows fail.
     """
 
     element: str
     side: str
     value: float
     beyond: bool
-    rows_needed: int
+    rows_needed: float
 
 
 def joint_bounds(rows: xr.Dataset, analysis: AnalysisTable) -> list[JointBound]:
@@ -63,7 +63,8 @@ def joint_bounds(rows: xr.Dataset, analysis: AnalysisTable) -> list[JointBound]:
         )
         for censored in (False, True)
     )
-    needed = order_statistics.rows_for_bound(*tolerance, lost, len(wanted))
+    rows_seen = int(present.sum()) + lost
+    needed = order_statistics.rows_still_needed(rows_seen, lost, *tolerance, len(wanted))
     return [
         JointBound(
             element.name,

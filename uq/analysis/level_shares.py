@@ -1,6 +1,6 @@
 """Shares of the variance: shared by the units of a sample, own to a unit, due to chance."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -33,7 +33,7 @@ from uq.rows.nesting import (
     nesting_of,
     size_in_words,
 )
-from uq.rows.variables import error_name
+from uq.rows.variables import is_error
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 
@@ -106,7 +106,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     place, varying = nesting_of(rows), levels_that_vary(rows)
     replicate = None if has_independent_samples(rows) else place.replicate
     known = output_names(rows)
-    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not _is_error(one, known)]
+    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not is_error(one, known)]
     found = {}
     for name in shown if output is None else [output]:
         for target in targets_of(rows, name):
@@ -118,10 +118,6 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     return ByLevel(place.samples, place.units, place.repeats, levels_of(rows), found, mean, each)
 
 
-def _is_error(name: str, known: Collection[str]) -> bool:
-    return name in {error_name(one) for one in known}
-
-
 def _scales(rows: xr.Dataset, target: Target) -> Scales:
     """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
     element = target.element
@@ -131,7 +127,8 @@ def _scales(rows: xr.Dataset, target: Target) -> Scales:
     if split_name(target.name)[0] == "log" or not found.inputs:
         return found
     names = " and ".join(found.inputs)
-    return Scales({}, f"{names} not integrated: the lives are replaced by their ranks")
+    why = f"{names} not integrated: the lives are replaced by their ranks"
+    return Scales({}, why, found.idle)
 
 
 def _shares(
@@ -147,9 +144,9 @@ def _shares(
     errors, why_none = _errors(rows, target)
     table = place.table(np.where(np.isfinite(values), values, np.nan))
     own = None if errors is None else place.table(errors)
-    varying = levels_that_vary(rows, scales.inputs)
+    varying = levels_that_vary(rows, (*scales.inputs, *scales.idle))
     known = {level: place.table(variance) for level, variance in scales.variances.items()}
-    found = shares_of(table, varying, own, replicate, known)
+    found = shares_of(table, varying, own, replicate, known, rows.attrs["design"])
     if errors is None:
         found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
     notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))

@@ -61,7 +61,8 @@ def _line(output: Described) -> dict[str, Any]:
 def _cells(column: str, one: Statistic) -> dict[str, float]:
     """Return the numbers of a statistic under the names of their columns."""
     if one.kind.is_count:
-        return {column: int(one.estimate.value)}
+        count = one.estimate.value
+        return {column: int(count) if isfinite(count) else nan}
     cells = {column: _number(one.estimate, "value")}
     if one.kind.has_interval:
         cells |= {f"{column}_{end}": _number(one.estimate, end) for end in ("low", "high")}

@@ -80,10 +80,8 @@ def show_answer(found: Answer) -> None:
     if found.failed or lead is None:
         paragraph(found.rows_sentence, indent=0)
     if lead is not None:
-        for line in lead.head:
+        for line in filter(None, (*lead.head, *(one.with_cause for one in lead.others))):
             paragraph(line, indent=0)
-        for one in lead.events:
-            paragraph(one.with_cause, indent=0)
     if found.regimes:
         paragraph(found.regimes_sentence, indent=0)
     if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:

@@ -1,15 +1,17 @@
 """What to do, by rules: mend, add rows, measure, tighten, or nothing."""
 
 from collections.abc import Iterator, Sequence
+from math import isfinite, isinf
 
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.analysis.summary import why_no_intervals
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.quantities import quantities
 from uq.conclusions.remedies import Advice
-from uq.conclusions.settling import MOST, Unsettled, unsettled
+from uq.conclusions.settling import MOST, Unsettled, bounds_unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened
 from uq.conclusions.words import (
@@ -17,6 +19,7 @@ from uq.conclusions.words import (
     called_together,
     grouped,
     rows_in_words,
+    sentence,
     share_text,
     twin_of,
 )
@@ -24,6 +27,7 @@ from uq.keys import key_of
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested
 from uq.rows.results import failed
+from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
 
 
@@ -45,7 +49,7 @@ def advise(
         return
     tighten = _tighten if weighed else _ask
     found = [
-        *_mend(findings),
+        *_mend(findings, answered),
         *_measure(findings, answered),
         *([*tighten(findings, answered)] or _keep(answered)),
         *_add_rows(findings, answered),
@@ -57,14 +61,16 @@ def advise(
     yield from found
 
 
-def _mend(findings: Findings) -> Iterator[Advice]:
+def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     ds = findings.ds
     lost, rows = int(failed(ds).sum()), ds.sizes["sample"]
     most = analysis_of(ds).max_failed
-    if rows and lost > most * rows:
+    why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
+    why += [one.what for one in bounds_unsettled(findings, answered) if isinf(one.factor)]
+    if why:
         yield Advice(
             "failed",
-            f"Mend the {lost} failed rows first: the study allows {100 * most:g} % to fail;"
+            f"Mend the {lost} failed rows first: {why[0]};"
             " 'uq rerun --failed' computes them again, if necessary with other settings.",
         )
 
@@ -114,9 +120,8 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
 def _keep(answered: Sequence[Quantity]) -> Iterator[Advice]:
     """Yield where to keep the input that decides an event, where the event is settled to differ."""
     _, event = _leading(answered)
-    if event is None or event.curve is None:
+    if event is None or event.curve is None or (more := answered[0].wants_more) is None:
         return
-    more = answered[0].wants_more(event)
     place = event.curve.most if more else event.curve.least
     there, overall = event.curve.shares[place], event.share
     if there.low > overall.high if more else there.high < overall.low:
@@ -160,13 +165,33 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     """
     rows = findings.ds.sizes["sample"]
     asked = [one for one in quantities(findings) if output in (None, one.name, one.output)]
-    open_ones = [one for quantity in asked for one in unsettled(quantity)]
+    if rows and (why := _no_intervals(findings.ds)):
+        return [f"Whether the rows are enough is not known: {why}."]
+    open_ones = _open(findings, asked)
     if not open_ones:
         return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
         f"Not enough rows: {one.what}; {_needed(one, findings.ds)} would settle it."
-        for one in sorted(open_ones, key=lambda one: -one.factor)
+        if isfinite(one.factor)
+        else f"{sentence(one.what)} More rows would not help."
+        for one in open_ones
     ]
+
+
+def _no_intervals(ds: xr.Dataset) -> str:
+    return why_no_intervals(ds).removeprefix("no intervals: ")
+
+
+def _open(findings: Findings, answered: Sequence[Quantity]) -> list[Unsettled]:
+    """Return what the rows do not settle, the least settled first.
+
+    How well numerical errors are known is asked only where nothing else is.
+    """
+    known = outputs_of(findings.ds)
+    own = [one for one in answered if not is_error(one.output, known)] or answered
+    found = [one for quantity in own for one in unsettled(quantity)]
+    found += bounds_unsettled(findings, own)
+    return sorted(found, key=lambda one: -one.factor)
 
 
 def _needed(one: Unsettled, ds: xr.Dataset) -> str:
@@ -180,10 +205,12 @@ def _needed(one: Unsettled, ds: xr.Dataset) -> str:
 
 def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     rows = findings.ds.sizes["sample"]
-    open_ones = [one for quantity in answered for one in unsettled(quantity)]
+    if answered and (why := _no_intervals(findings.ds)):
+        yield Advice("rows", f"Let the estimates have intervals: {why}.")
+    open_ones = [one for one in _open(findings, answered) if isfinite(one.factor)]
     if not open_ones or not rows:
         return
-    worst = max(open_ones, key=lambda one: one.factor)
+    worst = open_ones[0]
     others = len(open_ones) - 1
     more = f"; {others} more {'is' if others == 1 else 'are'} not settled" if others else ""
     yield Advice(

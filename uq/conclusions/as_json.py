@@ -77,10 +77,11 @@ def _event(one: Event) -> dict[str, Any]:
     if one.curve is not None:
         parts = [*_parts(one.curve)]
         for name, place in (("least", one.curve.least), ("most", one.curve.most)):
+            low, high = one.curve.around(place)
             found["decided_by"] |= {
                 name: parts[place]["value"],
-                f"{name}_above": parts[place]["above"],
-                f"{name}_below": parts[place]["below"],
+                f"{name}_above": low,
+                f"{name}_below": high,
             }
         found |= {"over": one.over, "parts": parts}
     return found | _of_ranking(one.ranking)

@@ -8,6 +8,7 @@ from uq.conclusions.remedies import Advice
 from uq.conclusions.words import sentence
 from uq.keys import key_of
 from uq.literals import plain
+from uq.printed import printed
 
 Path = tuple[str, ...]
 
@@ -18,7 +19,7 @@ def keyed(text: str, *keys: str) -> Markup:
         return Markup()
     found = "\n".join(keys)
     return Markup('<span data-trace="{0}" title="uq trace: {0}">{1}</span>').format(
-        plain(found), plain(text)
+        plain(found), plain(printed(text))
     )
 
 
@@ -39,8 +40,20 @@ def likely(one: Quantity) -> Markup:
 
 def events(one: Quantity) -> list[Markup]:
     """Return the probabilities that are known, and what decides them."""
-    of = ("quantities", one.name, "events")
-    return [_event(each, (*of, each.name)) for each in one.events if each.sentence]
+    return [_event(each, _path(one, each)) for each in one.events if each.sentence]
+
+
+def others(one: Quantity) -> list[Markup]:
+    """Return the same of the events that do not stand first."""
+    return [_event(each, _path(one, each)) for each in one.others if each.sentence]
+
+
+def first(one: Quantity) -> tuple[Markup, Markup]:
+    """Return the probability that stands first, and what decides it; "" where there is none."""
+    if one.first is None:
+        return Markup(), Markup()
+    path = _path(one, one.first)
+    return _share(one.first, path), _cause(one.first, path)
 
 
 def regime(one: Event, with_cause: bool = True) -> Markup:
@@ -49,12 +62,22 @@ def regime(one: Event, with_cause: bool = True) -> Markup:
 
 
 def _event(one: Event, path: Path, with_cause: bool = True) -> Markup:
-    known = [keyed(one.sentence, _answer(*path, "share"))]
-    if with_cause:
-        settled = one.curve is not None
-        key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
-        known.append(keyed(one.decided_by, _answer(*key)))
+    known = [_share(one, path), _cause(one, path) if with_cause else ""]
     return Markup(" ").join(filter(None, known))
+
+
+def _share(one: Event, path: Path) -> Markup:
+    return keyed(one.sentence, _answer(*path, "share"))
+
+
+def _cause(one: Event, path: Path) -> Markup:
+    settled = one.curve is not None
+    key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
+    return keyed(one.decided_by, _answer(*key))
+
+
+def _path(one: Quantity, of: Event) -> Path:
+    return ("quantities", one.name, "events", of.name)
 
 
 def leader(one: Quantity) -> Markup:
@@ -73,7 +96,7 @@ def leader(one: Quantity) -> Markup:
 
 def size(one: Quantity, number: int, of: Contribution) -> Markup:
     """Return the indices of a contribution, which has this number."""
-    return keyed(of.size.replace(" %", "\N{NO-BREAK SPACE}%"), *_keys(one, number, "inputs", of))
+    return keyed(of.size, *_keys(one, number, "inputs", of))
 
 
 def effect(one: Quantity, number: int, of: Contribution) -> Markup:
@@ -87,7 +110,7 @@ def advice(one: Advice) -> Markup:
         return keyed(one.text, one.key)
     if one.rows is not None:
         return keyed(one.text, _answer("advice", one.rule, "rows"))
-    return escape(plain(one.text))
+    return escape(plain(printed(one.text)))
 
 
 def _key(one: Quantity, *path: str) -> str:

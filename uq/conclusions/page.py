@@ -7,8 +7,10 @@ from markupsafe import Markup
 from uq.conclusions import bars, keyed
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Answer, Quantity
-from uq.conclusions.words import sentence
+from uq.conclusions.words import called, sentence
+from uq.errors import choices
 from uq.literals import plain
+from uq.printed import printed
 from uq.wording import capitalized
 
 _STYLE = """
@@ -34,11 +36,15 @@ _STYLE = """
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
 }
+@media print { .answer { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: .3rem 8mm; } }
 @media print { .answer > * { break-inside: avoid; } }
 """
 STYLE = Markup(_STYLE) + bars.STYLE
 
 _MOST_BARS = 4
+_SEEN = 0.05  # of the largest bar; a shorter one cannot be seen
+_MOST_ELEMENTS = 2  # besides the first; of more, only the last
+_MOST_NAMED = 3  # of inputs whose indices do not distinguish them
 
 
 def fragment(answer: Answer, picture: str = "") -> Markup:
@@ -63,12 +69,12 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     """Return what is known of some quantities, in sentences."""
     found = []
     for one in quantities:
-        why = "" if one.promise is None else plain(one.promise.why)
+        why = "" if one.promise is None else plain(printed(one.promise.why))
         lines = [keyed.promise(one), why, keyed.likely(one)]
         lines += [*keyed.events(one), keyed.leader(one)]
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
         title = capitalized(one.words)
-        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(title), items))
+        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
     return Markup("").join(found)
 
 
@@ -89,17 +95,23 @@ def _verdict(answer: Answer) -> Markup:
 
 def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     promise = lead.promise
-    if promise is not None and promise.sentence:
-        yield Markup('<p class="answer-promise">{}</p>').format(keyed.promise(lead))
-    yield Markup('<p class="answer-why">{}</p>').format(plain(f"{capitalized(lead.words)}."))
+    share, cause = keyed.first(lead)
+    if verdict := keyed.promise(lead) or share:
+        yield Markup('<p class="answer-promise">{}</p>').format(verdict)
+    if cause:
+        yield _line(cause)
+    yield Markup('<p class="answer-why">{}</p>').format(
+        plain(printed(f"{capitalized(lead.words)}."))
+    )
     if promise is not None and promise.why:
         yield _small(promise.why)
     if likely := keyed.likely(lead):
         yield _line(likely)
-    yield from map(_line, keyed.events(lead))
-    for other in answer.quantities[1:]:
-        if other.output == lead.output and other.promise and other.promise.sentence:
-            yield _small(Markup("{}: {}").format(plain(other.place), keyed.promise(other)))
+    yield from map(_line, keyed.others(lead))
+    elements = [one for one in answer.quantities[1:] if one.output == lead.output]
+    promised = [one for one in elements if one.promise is not None and one.promise.sentence]
+    for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:
+        yield _small(Markup("{}: {}").format(plain(printed(other.place)), keyed.promise(other)))
 
 
 def _ranking(answer: Answer) -> Markup:
@@ -111,7 +123,9 @@ def _ranking(answer: Answer) -> Markup:
     if ranking.leader is None:
         return _block("ranking", [title, _line(keyed.leader(lead))])
     note = _small(sentence(ranking.what))
-    shown = enumerate(ranking.contributions[:_MOST_BARS])
+    largest = ranking.contributions[0].value
+    seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
+    shown = enumerate(seen[:_MOST_BARS])
     return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note])
 
 
@@ -122,14 +136,17 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     most = max(1.0 if one.share_of_variance else 0.0, largest)
     first = one.indices[0]
     track = bars.bar(one.value, first.low, first.high, (0.0, most))
+    words, told = one.words, bool(one.effect)
+    if len(one.inputs) > _MOST_NAMED:
+        words, told = choices(map(called, one.inputs), _MOST_NAMED - 1), False
     effect = Markup('<span class="answer-why">{}</span>').format(keyed.effect(lead, number, one))
     return Markup(
         '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>{}</div>'
     ).format(
-        plain(capitalized(one.words)),
+        plain(capitalized(words)),
         track,
         keyed.size(lead, number, one),
-        effect if one.effect else "",
+        effect if told else "",
     )
 
 
@@ -154,4 +171,4 @@ def _small(text: str) -> Markup:
 
 
 def _shown(text: str) -> str:
-    return text if isinstance(text, Markup) else plain(text)
+    return text if isinstance(text, Markup) else plain(printed(text))

@@ -89,12 +89,12 @@ class Event:
         return sentence(text)
 
     def part(self, i: int) -> str:
-        """Return a part of the input that the curve is over, in words."""
+        """Return a part of the input that the curve is over, with neighbours alike, in words."""
         assert self.curve is not None
-        low, high = (float(end) for end in self.curve.edges[i : i + 2])
-        if i == 0:
+        low, high = self.curve.around(i)
+        if low == self.curve.edges[0]:
             return f"below {self.over_unit.text(high)}"
-        if i == len(self.curve.shares) - 1:
+        if high == self.curve.edges[-1]:
             return f"above {self.over_unit.text(low)}"
         return f"between {self.over_unit.between(low, high, ' and ')}"
 
@@ -111,6 +111,8 @@ class Quantity:
     range : Range or None
     events : tuple of Event
     ranking : Ranking or None
+    wanted : {"above", "below", ""}
+        The side of its values that is wanted; "" where that is not known, and for lives.
     """
 
     name: str
@@ -120,6 +122,7 @@ class Quantity:
     range: Range | None = None
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
+    wanted: str = ""
 
     @property
     def is_life(self) -> bool:
@@ -131,13 +134,15 @@ class Quantity:
         """Whether it is a life that ends with a success."""
         return self.promise is not None and self.promise.ends == "succeed"
 
-    def wants_more(self, event: Event) -> bool:
-        """Whether more of an event is better.
+    @property
+    def wants_more(self) -> bool | None:
+        """Whether more of its events is better; None where that is not known.
 
-        Of successes; of lives that end, fewer. A study does not state which side of the threshold
-        of a value is good: the rarer one is taken for what is to be avoided.
+        Of successes; of lives that end, fewer; of values above a threshold, as the study states.
         """
-        return self.is_success if self.is_life else event.share.value >= 0.5
+        if self.is_life:
+            return self.is_success
+        return self.wanted == "above" if self.wanted else None
 
     @property
     def ranking_sentence(self) -> str:
@@ -158,9 +163,22 @@ class Quantity:
         return self.words.removeprefix(self.meaning).removeprefix(", ")
 
     @property
+    def first(self) -> Event | None:
+        """The event that stands first, where nothing can be promised."""
+        if self.promise is not None and self.promise.sentence:
+            return None
+        return next((one for one in self.events if one.sentence), None)
+
+    @property
+    def others(self) -> list[Event]:
+        """The events that do not stand first."""
+        return [one for one in self.events if one is not self.first]
+
+    @property
     def head(self) -> list[str]:
         """What can be promised, of what, and its likely range, as far as they are known."""
         found = [] if self.promise is None else [self.promise.sentence]
+        found += [] if self.first is None else [self.first.sentence, self.first.decided_by]
         found.append(sentence(self.words))
         found += [] if self.promise is None else [self.promise.why]
         found += [] if self.range is None else [self.range.sentence]
@@ -230,7 +248,7 @@ class Answer:
         lead = self.lead
         found = [] if not self.failed and lead else [self.rows_sentence]
         found += [] if lead is None else lead.head
-        events = (() if lead is None else lead.events) + self.main_regimes
+        events = [*([] if lead is None else lead.others), *self.main_regimes]
         found += [one.with_cause for one in events]
         found += [] if lead is None else [lead.ranking_sentence]
         return [*filter(None, found), *(one.text for one in self.advice)]

@@ -79,7 +79,7 @@ class Promise:
 
     def _side(self, upper: int) -> str:
         if self.of_magnitude:
-            return "stay within"
+            return "stay within" if upper else "exceed"
         if self.is_life:
             return f"{self.ends} within" if upper else "last longer than"
         return "stay below" if upper else "stay above"

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import isfinite, isnan, nan
+from math import inf, isfinite, isnan, nan
 
 import numpy as np
 import xarray as xr
@@ -38,7 +38,7 @@ from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
-from uq.wording import threshold
+from uq.wording import percent, threshold
 
 COVERAGE = 0.95
 CONFIDENCE = 0.95
@@ -124,6 +124,7 @@ def _quantity(
             },
         )
     middle = _quantile(described, MIDDLE)
+    wanted = context.analysis.wanted.get(element.output, "below" if element.is_angle else "")
     others = (_quantile(described, p).value for p in (LOW, HIGH))
     typical = next(filter(isfinite, (middle.value, *others)), nan)
     unit = unit_for(element.units, abs(typical))
@@ -131,7 +132,7 @@ def _quantity(
         element.name,
         element_called(findings.ds, element),
         readable(element.meaning),
-        _promise(findings.ds, described, element, context.analysis, unit),
+        _promise(findings.ds, described, element, context.analysis, wanted, unit),
         Range(
             _quantile(described, LOW),
             middle,
@@ -142,6 +143,7 @@ def _quantity(
         ),
         tuple(_events(findings, described, element, unit)),
         _as_computed(_ranking(findings, element, unit), described),
+        wanted,
     )
 
 
@@ -151,19 +153,25 @@ def _quantile(described: Described, p: float) -> Estimate:
 
 
 def _promise(
-    ds: xr.Dataset, described: Described, element: Element, analysis: AnalysisTable, unit: Unit
+    ds: xr.Dataset,
+    described: Described,
+    element: Element,
+    analysis: AnalysisTable,
+    wanted: str,
+    unit: Unit,
 ) -> Promise:
     asked = analysis.tolerance
     coverage, confidence = asked or (COVERAGE, CONFIDENCE)
-    lower, upper = _sides(element, described, analysis.thresholds.get(element.output, ()))
+    asked_at = analysis.thresholds.get(element.output, ())
+    lower, upper = _sides(element, described, asked_at, wanted)
     both = [described.find("tolerance", name) for name in ("lower", "upper")]
     bounds = [
-        one.estimate.value if wanted and one else nan
-        for one, wanted in zip(both, (lower, upper), strict=True)
+        one.estimate.value if matters and one else nan
+        for one, matters in zip(both, (lower, upper), strict=True)
     ]
     ends = [
-        _quantile(described, p) if wanted else NOTHING
-        for p, wanted in ((round(1 - coverage, 12), lower), (coverage, upper))
+        _quantile(described, p) if matters else NOTHING
+        for p, matters in ((round(1 - coverage, 12), lower), (coverage, upper))
     ]
     reason = ""
     if not any(map(isfinite, bounds)):
@@ -202,14 +210,14 @@ def _end_of(element: Element) -> str:
 
 
 def _sides(
-    element: Element, described: Described, thresholds: tuple[float, ...]
+    element: Element, described: Described, thresholds: tuple[float, ...], wanted: str
 ) -> tuple[bool, bool]:
     """Return whether a lower and an upper bound are what matters."""
     if element.is_lifetime:
         early = bool(element.declared.success)  # the latest time of a success is what matters
         return not early, early
-    if element.is_angle:
-        return False, True
+    if wanted:
+        return wanted == "above", wanted == "below"
     middle = _quantile(described, MIDDLE).value
     if thresholds and isfinite(middle):
         return any(t < middle for t in thresholds), any(t >= middle for t in thresholds)
@@ -220,8 +228,10 @@ def _why_no_bound(
     ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
 ) -> str:
     needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    if needed == inf:
+        return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
     if needed:
-        return f"it needs {needed} rows"
+        return f"it needs {needed:.0f} rows"
     if any(not isnan(one) for one in bounds):
         return f"too few {_end_of(element)}"
     if has_weights(ds):

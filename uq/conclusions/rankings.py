@@ -144,7 +144,9 @@ def _unsettled(measured: Sequence[Measured], kind: IndexKind) -> tuple[str, floa
     if first.counts:
         return "", nan
     text = f"{kind.key} of {called(first.name)} is {first.index.value:.2f}"
-    if isfinite(first.half) and first.half > GOAL:
+    if not isfinite(first.half):
+        return f"which inputs matter is not settled: {text}, without an interval", nan
+    if first.half > GOAL:
         ends = f"{first.index.low:.2f} to {first.index.high:.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
         return f"which inputs matter is not settled: {text}{interval}", (first.half / GOAL) ** 2
@@ -162,6 +164,8 @@ def _measured(
     parts = {} if any(one.has_interval for one in values.values()) else _parts(ds, method, name)
     scatter = parts.get(kind.key, {})
     known = sorted(values, key=lambda label: -_size(values[label]))
+    # Where no other input has an effect in any row, it is certain without an interval.
+    alone = kind.unit == "variance" and all(values[label].value == 0 for label in known[1:])
     for label in known:
         one = values[label]
         if not isfinite(one.value):
@@ -173,6 +177,7 @@ def _measured(
             # Estimates from fewer rows may be biased, which only shares of the variance are not.
             one = Estimate(one.value, low, high) if kind.unit == "variance" else one
         counts = one.value > limit if isfinite(limit) else one.low > 0
+        counts |= alone and one.value > 0 and not one.has_interval
         yield Measured(label, one, half, bool(counts and not one.low <= 0))
 
 
@@ -237,11 +242,13 @@ def _are_tied(first: Measured, other: Measured) -> bool:
 
 
 def _effects(findings: Findings, method: str, name: str) -> dict[str, Effect]:
+    """Return the effects that have an interval; without one, no direction is clear."""
     rows = findings.rows
     targets: list[Target] = list(chosen(rows, method, [name]))
     if len(targets) != 1:
         return {}
-    return effects(targets[0].values, independent_inputs(rows), replicates_of(rows))
+    found = effects(targets[0].values, independent_inputs(rows), replicates_of(rows))
+    return {name: one for name, one in found.items() if one.slope.has_interval}
 
 
 def _contribution(

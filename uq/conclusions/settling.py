@@ -1,9 +1,10 @@
 """What is not settled, and how many rows would settle it: intervals narrow as one over root n."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 
+from uq.analysis.findings import Findings
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise
 from uq.wording import percent
@@ -22,6 +23,9 @@ MOST = 100.0
 """Beyond so many times the rows, the root of n is no forecast."""
 
 
+_BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
+
+
 @dataclass(frozen=True)
 class Unsettled:
     """Something that the rows do not settle.
@@ -31,7 +35,7 @@ class Unsettled:
     what : str
         A clause.
     factor : float
-        How many times the rows would settle it.
+        How many times the rows would settle it; infinite where no number would.
     """
 
     what: str
@@ -56,6 +60,19 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
             yield Unsettled(ranking.reason, ranking.rows_factor)
 
 
+def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
+    """Yield the bounds that the study asks for and the rows do not give."""
+    rows = findings.rows.sizes["sample"]
+    for key, words in _BOUNDS.items():
+        described = (findings.summary.outputs[one.name] for one in answered)
+        found = (one.find(key, side) for one in described for side in ("lower", "upper"))
+        needed = max((one.rows_needed or 0.0 for one in found if one), default=0.0)
+        if needed:
+            asked = f"the {words} that the study asks for"
+            what = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
+            yield Unsettled(what or f"too many rows failed for {asked}", needed / max(rows, 1))
+
+
 def _of_share(event: Event) -> Iterator[Unsettled]:
     one = event.share
     if not one.has_interval:
@@ -71,9 +88,9 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
     likely = quantity.range
     if likely is None:
         return
-    for bound, estimate, end in (
-        (promise.lower, likely.low, promise.quantiles[0].low),
-        (promise.upper, likely.high, promise.quantiles[1].high),
+    for bound, estimate, end, outwards in (
+        (promise.lower, likely.low, promise.quantiles[0].low, -inf),
+        (promise.upper, likely.high, promise.quantiles[1].high, inf),
     ):
         reached = bound if isfinite(bound) else end
         if not (isfinite(reached) and isfinite(estimate.value)):
@@ -84,7 +101,8 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
         away = abs(estimate.value - reached)
         # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
-            text, best = promise.unit.text(reached), promise.unit.text(estimate.value)
+            text = promise.unit.text(reached, outwards)
+            best = promise.unit.text(estimate.value)
             bound_is = f"the cautious bound, {text}, is far from the estimate, {best}"
             what = f"{bound_is} ({quantity.words})"
             yield Unsettled(what, (away / (BOUND * scale)) ** 2)

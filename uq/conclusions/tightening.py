@@ -104,15 +104,17 @@ def _promised(
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
         words = f"the share of rows that {event.said}"
-        yield key, words, event.share, Unit(), quantity.wants_more(event)
+        yield key, words, event.share, Unit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
         return
-    if quantity.events and not quantity.is_life:  # which quantile matters is not known
+    known = quantity.wants_more
+    if quantity.events and known is None:  # which quantile matters is not known
         return
+    if quantity.is_life and known is not None:
+        known = not known  # more ends are shorter lives
     ends = (round(1 - promise.coverage, 12), promise.coverage)
     for p, before in zip(ends, promise.quantiles, strict=True):
         if isfinite(before.value):
-            words, more = f"the {100 * p:g} % quantile", not quantity.is_success
-            known = more if quantity.is_life else None
+            words = f"the {100 * p:g} % quantile"
             yield ("quantiles", repr(p)), words, before, promise.unit, known

@@ -1,6 +1,5 @@
 """Figures of the distribution of an output: histograms, a lifetime's, a table of quantiles."""
 
-import re
 from typing import Any
 
 import numpy as np
@@ -27,6 +26,7 @@ from uq.drawing.style import INK, MARK, ROWS, WIDTH, styled, thinned
 from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
+from uq.printed import minus
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.units import Unit
 from uq.wording import brief
@@ -102,7 +102,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
-    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen))
+    each = 1.1 if len(chosen) < 3 else 0.75
+    panels = column(axes, 0.7 + each * len(chosen), len(chosen))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():
@@ -258,7 +259,7 @@ def quantile_table(
             y += 1
         for texts in quantiles:
             for x, text in zip(_COLUMNS, texts, strict=True):
-                axes.text(x, y, re.sub(r"-(?=\d)", "\N{MINUS SIGN}", text), ha="right")
+                axes.text(x, y, minus(text), ha="right")
             y += 1
     return figure_of(axes)
 

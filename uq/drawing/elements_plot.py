@@ -13,6 +13,7 @@ from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES
 from uq.drawing.symbols import literal
 from uq.drawing.words import labelled, rows_in_words
+from uq.printed import minus
 from uq.rows.elements import Element, Floats, Mask, analysis_of, flags
 from uq.units import Unit, typical, unit_of
 from uq.wording import threshold
@@ -70,7 +71,7 @@ def mark_thresholds(
     for asked in analysis_of(ds).thresholds.get(element.output, ()):
         at = asked / unit.size
         sign = "±" if element.is_angle else ""
-        words = f"threshold {sign}{threshold(asked, element.units)}"
+        words = minus(f"threshold {sign}{threshold(asked, element.units)}")
         low, high = ends()
         for place in (-at, at) if element.is_angle else (at,):
             style: Any = {"color": LIMIT, "label": words}

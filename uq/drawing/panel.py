@@ -2,6 +2,7 @@
 
 import re
 from itertools import pairwise
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from uq.drawing.figure import Drawing
 from uq.drawing.style import WIDTH
 from uq.errors import InputError
+from uq.printed import minus
 from uq.rows.elements import Floats
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
@@ -26,9 +28,14 @@ _CHARACTERS = 6
 
 
 def grid(
-    axes: Axes | None, height: float, rows: int = 1, columns: int = 1, **shared: Any
+    axes: Axes | None,
+    height: float,
+    rows: int = 1,
+    columns: int = 1,
+    width: float = WIDTH,
+    **shared: Any,
 ) -> NDArray[Any]:
-    """Return panels, of a new figure one column wide or in place of given axes.
+    """Return panels, of a new figure or in place of given axes.
 
     Parameters
     ----------
@@ -37,6 +44,8 @@ def grid(
     height : float
         Of a new figure, without the legend that `finish` draws [inch].
     rows, columns : int
+    width : float
+        Of a new figure [inch].
     **shared
         The axes that panels share, as in `matplotlib.figure.Figure.subplots`.
 
@@ -50,7 +59,7 @@ def grid(
         When several panels are asked for and the axes are not part of a grid.
     """
     if axes is None:
-        figure = Drawing(figsize=(WIDTH, height), layout="constrained")
+        figure = Drawing(figsize=(width, height), layout="constrained")
         return figure.subplots(rows, columns, squeeze=False, **shared)
     if rows == columns == 1:
         return np.array([[axes]])
@@ -87,8 +96,7 @@ def whole_numbers(axis: Axis) -> None:
     """Write each number in full: a common factor at the end of the axis would cover its label."""
 
     def short(value: float, _: float) -> str:
-        text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}")
-        return text.replace("-", "\N{MINUS SIGN}")
+        return minus(re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}"))
 
     axis.set_major_formatter(short)
 
@@ -97,7 +105,7 @@ class _PlainLog(LogFormatter):
     """Plain numbers instead of TeX, at the ticks that matplotlib would label."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        return f"{x:g}".replace("-", "\N{MINUS SIGN}") if super().__call__(x, pos) else ""
+        return minus(f"{x:g}") if super().__call__(x, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:
@@ -166,10 +174,13 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
     handles, labels = axes.get_legend_handles_labels()
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
-        lines = len(labels) if entries is None else entries
+        across = 2 if figure.get_figwidth() > WIDTH else 1
+        lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
-        shown = figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
+        shown = figure.legend(
+            handles, labels, loc="outside lower left", markerscale=1.5, ncols=across
+        )
         for handle in shown.legend_handles:
             if isinstance(handle, Line2D) and handle.get_linestyle() == "None":
                 handle.set(markersize=6, alpha=1)  # small, transparent points hide their colour

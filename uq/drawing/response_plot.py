@@ -1,6 +1,5 @@
 """Figures of a machine's response: curves, bifurcation diagrams and basins of attraction."""
 
-import re
 from collections.abc import Sequence
 from itertools import cycle
 
@@ -16,6 +15,7 @@ from uq.drawing.style import COLOURS, LINES, are_many, point_size, styled
 from uq.drawing.symbols import literal
 from uq.drawing.words import as_label, powers
 from uq.errors import InputError
+from uq.printed import minus
 from uq.units import Unit
 from uq.wording import in_unit, percent
 
@@ -192,5 +192,5 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
         scale = scale_of([value])
         rounded = float(f"{value.item():.3g}")
         text = powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor)))
-        known.append(re.sub(r"^-", "\N{MINUS SIGN}", text))
+        known.append(minus(text))
     return as_label(", ".join([*known, percent(float(one["share"]))]), width=60)

@@ -3,6 +3,7 @@ r"""Symbols as formulas that matplotlib typesets: ``omega_s1`` is written $\omeg
 import re
 
 from uq.greek import IN_TEXT, WORD
+from uq.printed import minus
 
 _WHOLE = re.compile(r"(?:[A-Za-z]+(?:_[A-Za-z0-9]+)?|[\d ()+*/'.-])+")
 
@@ -38,5 +39,5 @@ def _subscript(found: re.Match[str]) -> str:
 
 def typeset(text: str) -> str:
     """Return text with its symbols as formulas, its roots and minus signs as such."""
-    text = IN_TEXT.sub(lambda found: formula(found[0]), literal(text))
+    text = IN_TEXT.sub(lambda found: formula(found[0]), literal(minus(text)))
     return text.replace("sqrt(", "√(").replace(" - ", " \N{MINUS SIGN} ")

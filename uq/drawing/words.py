@@ -10,6 +10,7 @@ import xarray as xr
 from uq.drawing.symbols import formula, literal, typeset
 from uq.greek import symbol as as_text
 from uq.literals import plain
+from uq.printed import minus
 from uq.rows.elements import Element
 from uq.units import powers as powers
 from uq.wording import capitalized, percent, quantity
@@ -61,7 +62,7 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
 def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
     """Return the label of a curve: its place, and the share of rows that never end."""
     share = f"never: {percent(never)}" if never > 0 else ""
-    return literal(", ".join(filter(None, (place_in_words(ds, element), share))))
+    return literal(minus(", ".join(filter(None, (place_in_words(ds, element), share)))))
 
 
 def rows_in_words(chosen: Sequence[Element]) -> str:

@@ -1,7 +1,7 @@
 """Grids: a model on evenly spaced values of some of its parameters."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import prod
 from operator import index
 from typing import Any
@@ -55,7 +55,13 @@ class Grid:
     def choices(self) -> list[Any]:
         """Everything that determines the rows, for JSON."""
         axes, model = list(self.axes.items()), self.model
-        return [model.name, model.version, axes, self.constants, asdict(self.settings)]
+        return [
+            model.name,
+            model.version,
+            axes,
+            self.constants,
+            self.model.choices_of(self.settings),
+        ]
 
     def values(self, name: str) -> Floats:
         """Return the values along an axis."""
@@ -117,7 +123,7 @@ def grid_of(
     if faults := faults + fault_lines("settings: ", settings, wrong):
         raise InputError(*faults)
     return Grid(
-        found,
+        found.given(frozen),
         reference,
         {name: (float(a), float(b), index(n)) for name, (a, b, n) in axes.items()},
         {name: float(x) for name, x in (found.nominal | dict(fixed)).items() if name not in axes},

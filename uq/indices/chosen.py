@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import xarray as xr
 
-from uq.errors import InputError, nearest
+from uq.errors import InputError, choices, nearest
 from uq.indices import targets
 from uq.indices.targets import (
     Target,
@@ -13,6 +13,7 @@ from uq.indices.targets import (
     category_targets,
     lightened,
     split_name,
+    threshold_text,
     with_tail_note,
 )
 from uq.indices.whole import wholes
@@ -21,6 +22,7 @@ from uq.methods.registry import METHODS
 from uq.rows.element import Element, is_whole, whole_name
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.variables import is_category
+from uq.written import read_threshold
 
 
 def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> Iterator[Target]:
@@ -57,7 +59,8 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         if not found and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a time of a lifetime in"
-                " [analysis] thresholds; name that of a value: --output 'P(y > t)'"
+                " [analysis] thresholds; name that of a value with such a threshold t:"
+                " --output 'P(y > t)'"
             )
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
@@ -68,7 +71,8 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         for target in _named(ds, name, asked.aggregates)
     ]
     if not named and isinstance(output, str):
-        _, inside, _ = split_name(output)
+        output = canonical(output)
+        form, inside, threshold = split_name(output)
         if is_whole(inside) and not asked.aggregates:
             able = ", ".join(name for name, one in METHODS.items() if one.aggregates)
             raise InputError(
@@ -77,6 +81,11 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
         names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
+        if form == "P" and threshold:
+            events = choices(name for name in names if split_name(name)[0] == "P")
+            raise InputError(
+                f"no such event '{output}' (allowed: {events}); [analysis] thresholds make others"
+            )
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
     yield from named if asked.scale_free else map(with_tail_note, named)
 
@@ -89,8 +98,12 @@ def _suits(method: Method, target: Target) -> bool:
 
 def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
     """Return the targets that a user means by a name; none for an unknown name."""
-    name = canonical(name)
+    written, name = name, canonical(name)
     form, inside, _ = split_name(name)
+    if (output := inside.partition("[")[0]) in ds and (text := threshold_text(written)):
+        read_threshold(
+            "threshold", text, output, ds[output].attrs["units"]
+        )  # refuses what does not fit
     if is_whole(inside):
         every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]

@@ -252,7 +252,9 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
         if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
             remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"
         raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
-    return (f"{seen}: the indices are rough, and intervals may be too narrow; {remedy}",)
+    # Those of a crossed design are widened.
+    narrow = "" if DESIGNS[ds.attrs["design"]].crossed else ", and intervals may be too narrow"
+    return (f"{seen}: the indices are rough{narrow}; {remedy}",)
 
 
 def _counts(*whole: Mask, rows: int) -> tuple[int, int]:

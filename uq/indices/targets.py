@@ -111,6 +111,9 @@ FORMS = {"log": "logarithm", "rank": "rank", "rate": "inverse"}
 """The same in words."""
 
 
+_EVENT = re.compile(r"P\(\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)")
+
+
 def split_name(name: str) -> tuple[str, str, str]:
     """Split the name of a target into the form, the element, and the threshold.
 
@@ -135,13 +138,19 @@ def split_name(name: str) -> tuple[str, str, str]:
 
 def canonical(name: str) -> str:
     """Return the name of a target, of ``P(life < 24 hours)`` that is ``P(life<86400.0)``."""
-    found = re.fullmatch(r"P\(\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)", name)
+    found = _EVENT.fullmatch(name)
     if found is None:
         return name
     for read in (float, read_quantity):
         with suppress(ValueError):
             return f"P({found[1]}{found[2]}{float(read(found[3]))!r})"
     return f"P({found[1]}{found[2]}{found[3]})"
+
+
+def threshold_text(name: str) -> str:
+    """Return the threshold in the name of an event as written: ``24 hours``; "" without one."""
+    found = _EVENT.fullmatch(name)
+    return found[3] if found else ""
 
 
 def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:

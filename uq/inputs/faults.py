@@ -20,6 +20,8 @@ _REASONS = {
     "string_too_long": "must have at most {max_length} characters",
     "string_pattern_mismatch": "must consist of letters, digits, '-' and '_'",
     "tuple_type": "must be a list",
+    "too_short": "must have at least {min_length} entries",
+    "too_long": "must have at most {max_length} entries",
     "greater_than": "must be greater than {gt:g}",
     "greater_than_equal": "must be at least {ge}",
     "less_than": "must be less than {lt:g}",

@@ -57,6 +57,7 @@ class OutputTable(Table):
     life: bool = False
     shape: list[Annotated[int, Field(ge=1)]] = []
     may_be_undefined: bool = False
+    scales: Annotated[dict[str, float], Field(description="exponents of what scales a life")] = {}
     file: Annotated[str, Field(description="file that the program writes")] = STDOUT
     json_path: Annotated[str, Field(alias="json", description="keys and numbers: a.b.0")] = ""
     csv: Annotated[str, Field(description="column; its last row counts")] = ""

@@ -55,7 +55,9 @@ def program_of(path: Path) -> Model:
     """
     read = read_machine(path)
     returned = {
-        name: Returned(one.unit, one.meaning, one.life, tuple(one.shape), one.may_be_undefined)
+        name: Returned(
+            one.unit, one.meaning, one.life, tuple(one.shape), one.may_be_undefined, one.scales
+        )
         for name, one in read.outputs.items()
     }
     folder = path.absolute().parent

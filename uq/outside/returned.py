@@ -1,7 +1,7 @@
 """What a function returns: numbers, arrays and lives, declared or found from rows."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,8 @@ class Returned:
         Of an array; () for a number.
     may_be_undefined : bool
         Whether NaN is legitimate.
+    scales : dict of str to float
+        Of a life, parameter -> exponent: see `uq.contract.Output`.
     """
 
     unit: str = "1"
@@ -57,6 +59,7 @@ class Returned:
     life: bool = False
     shape: tuple[int, ...] = ()
     may_be_undefined: bool = False
+    scales: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def output(self, name: str) -> Output:
         """Return its declaration under a name."""
@@ -66,6 +69,7 @@ class Returned:
             "lifetime" if self.life else "value",
             tuple(dimensions(name, self.shape)),
             may_be_undefined=self.may_be_undefined,
+            scales=self.scales,
         )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
 from uq.errors import InputError, described
+from uq.inputs.faults import unknown
 from uq.outside.returned import (
     NonFiniteError,
     Returned,
@@ -50,7 +51,7 @@ def model_from(
         When a nominal value, a name or a unit cannot be used.
     """
     faults = [*_nominal_faults(fields), *_name_faults(fields, returned)]
-    if faults := [*faults, *_unit_faults(fields, returned)]:
+    if faults := [*faults, *_unit_faults(fields, returned), *_scale_faults(fields, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
     hints = [(one, Annotated[float, parameter]) for one, (parameter, _) in fields.items()]
     made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
@@ -89,6 +90,19 @@ def _unit_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[s
     for owner, unit in units.items():
         if fault := fault_of_unit(unit):
             yield f"unit '{unit}' of {owner}: {fault}"
+
+
+def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
+    for output, one in returned.items():
+        if one.scales and not one.life:
+            yield f"output '{output}': only a life has scales: life = true"
+        for name, exponent in one.scales.items():
+            if name not in fields:
+                yield f"output '{output}': scales: {unknown('parameter', name, fields)}"
+            elif not (isinstance(exponent, int | float) and isfinite(exponent) and exponent):
+                yield f"output '{output}': scales: {name} = {exponent!r} must be a number but 0"
+            elif not fields[name][1] > 0:
+                yield f"output '{output}': scales: nominal value of '{name}' must be positive"
 
 
 def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:

@@ -50,7 +50,8 @@ class _Offered:
     """What is asked of a model."""
 
     def __init__(self, model: Model):
-        self.model, self._settings = model, model.settings()
+        self._settings = model.settings()
+        self.model = model.given(self._settings)
         self._one_at_a_time = Lock()
         row = self._row([list(model.nominal.values())], {})
         self._sizes = {name: values.size for name, values in row.items()}
@@ -109,6 +110,7 @@ class _Offered:
                     "life": one.is_lifetime,
                     "shape": [int(np.prod([len(axes[dim]) for dim in one.dims]))] * bool(one.dims),
                     "may_be_undefined": one.may_be_undefined,
+                    "scales": dict(one.scales),
                 }
                 for name, one in model.outputs.items()
             },

@@ -10,7 +10,7 @@ import numpy as np
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
 from uq.intervals import CONFIDENCE, ROUNDING, Replicates, is_constant, replicates_of_some
-from uq.population.means import pulls, rests_on_few, trusted, weighted_share
+from uq.population.means import pulls, rows_of_few, trusted, weighted_share
 from uq.roots import root
 from uq.rows.element import Element
 
@@ -69,7 +69,7 @@ class Population:
         found = search(probability)
         if not isfinite(found.value):
             return found
-        return self._trusted(found, self._below(found.value), self.element.present)
+        return self._trusted(found, self.element.present)
 
     def times_the_rows(self, threshold: float) -> float:
         """Return the variance of P(Y < threshold) from lives as computed over that of this one.
@@ -92,21 +92,24 @@ class Population:
     def _share(self, numbers: Floats, kept: Mask) -> Estimate:
         """Estimate a probability, or say why the weights do not allow it."""
         found = weighted_share(numbers[kept], *self._of(kept), confidence=self.confidence)
-        return self._trusted(found, numbers, kept)
+        return self._trusted(found, kept)
 
     def _of(self, kept: Mask) -> tuple[Floats | None, Replicates]:
         """Return weight and part of some rows."""
         weights = self.element.weights
         return None if weights is None else weights[kept], replicates_of_some(self.part, kept)
 
-    def _trusted(self, found: Estimate, numbers: Floats, kept: Mask) -> Estimate:
-        """Return an estimate, or why the weights of the rows behind it do not allow one."""
+    def _trusted(self, found: Estimate, kept: Mask) -> Estimate:
+        """Return an estimate, or why the weights of the rows behind it do not allow one.
+
+        Numbers up to 1 have no tail of their own: where few rows carry them, their interval says
+        so.
+        """
         weights = self.element.weights
         if weights is None or not kept.any():
             return found
-        rarer = numbers if np.average(numbers[kept], weights=weights[kept]) <= 0.5 else 1 - numbers
         part = replicates_of_some(self.part, kept)
-        return trusted(found, rarer[kept], weights[kept], part, self.element.most)
+        return trusted(found, weights[kept], part, self.element.most)
 
     def _near(self, value: float) -> Callable[[float], Estimate]:
         """Return a function that estimates P(Y < y) among the rows that have a value.
@@ -116,11 +119,11 @@ class Population:
         """
         kept = self.element.present
         weights, part = self._of(kept)
-        few = rests_on_few(self._below(value)[kept], weights, part)
+        rows = rows_of_few(self._below(value)[kept], weights, part)
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
-            return weighted_share(self._below(y)[kept], weights, part, few, self.confidence)
+            return weighted_share(self._below(y)[kept], weights, part, rows, self.confidence)
 
         return share
 

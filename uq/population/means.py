@@ -13,6 +13,7 @@ from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import (
     CONFIDENCE,
+    ONE_ROW,
     ROUNDING,
     Replicates,
     binomial_interval,
@@ -21,7 +22,15 @@ from uq.intervals import (
     upper_probability,
     wilson_interval,
 )
-from uq.population.smoothing import carries_little, effective_rows, per_sample, refusal, tail_shape
+from uq.population.smoothing import (
+    carries_little,
+    effective_rows,
+    largest_share,
+    per_sample,
+    refusal,
+    tail_shape,
+    too_large,
+)
 from uq.quantile_functions import student
 
 FEW = 20
@@ -48,7 +57,7 @@ def weighted_share(
     numbers: Floats,
     weights: Floats | None = None,
     part: Replicates = None,
-    cautious: bool | None = None,
+    hits_of: float | None = None,
     confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Estimate the mean of numbers between 0 and 1.
@@ -60,8 +69,8 @@ def weighted_share(
     weights : ndarray, shape (n,), optional
     part : ndarray of int, shape (n,), optional
         The independent part of each row.
-    cautious : bool, optional
-        Whether few rows carry the mean; by default `rests_on_few`.
+    hits_of : float, optional
+        Number of rows, of which the interval of hits is that; by default `rows_of_few`.
     confidence : float, optional
 
     Returns
@@ -80,7 +89,7 @@ def weighted_share(
     found = pulls(numbers, worth, part)
     parts = len(found)
     if parts < 2:
-        return Estimate(mean)
+        return Estimate(mean, reason=ONE_ROW if part is None else "")
     if numbers.min() >= 1 - ROUNDING:  # the complement has no digits
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
@@ -89,20 +98,19 @@ def weighted_share(
     if 0 < mean < 1:
         outlier = _outlier(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
-    if cautious or (cautious is None and rests_on_few(numbers, weights, part)):
-        of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)), confidence)
+    rows = rows_of_few(numbers, weights, part) if hits_of is None else hits_of
+    if rows < inf:
+        of_hits = binomial_interval(mean, rows, confidence)
         low, high = min(low, of_hits[0]), max(high, of_hits[1])
     return Estimate(mean, float(low), float(high))
 
 
-def share_to_compare(
-    numbers: Floats, weights: Floats | None = None, part: Replicates = None
-) -> Estimate:
+def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     """Estimate the mean of numbers between 0 and 1, with the interval that a difference needs.
 
     Parameters
     ----------
-    numbers, weights, part
+    numbers, part
         As for `weighted_share`.
 
     Returns
@@ -112,16 +120,15 @@ def share_to_compare(
         the mean, and nothing for outliers. Two estimates are skewed to the same side, so that
         most of this cancels in their difference, which would be too wide with it.
     """
-    worth = np.ones(len(numbers)) if weights is None else weights
-    if not worth.sum() > 0:
+    if not len(numbers):
         return Estimate()
-    mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
-    found = pulls(numbers, worth, part)
+    mean = float(np.clip(numbers.mean(), 0.0, 1.0))
+    found = pulls(numbers, np.ones(len(numbers)), part)
     if len(found) < 2:
         return Estimate(mean)
     low, high = _of_logit(mean, found)
-    if rests_on_few(numbers, weights, part):
-        of_hits = wilson_interval(mean, effective_rows(per_sample(worth, part)))
+    if (rows := rows_of_few(numbers, None, part)) < inf:
+        of_hits = wilson_interval(mean, rows)
         low, high = min(low, of_hits[0]), max(high, of_hits[1])
     return Estimate(mean, low, high)
 
@@ -149,11 +156,24 @@ def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tup
     return low, high
 
 
-def rests_on_few(numbers: Floats, weights: Floats | None, part: Replicates) -> bool:
-    """Whether fewer than 20 effective rows carry a mean, or its complement."""
+def rows_of_few(numbers: Floats, weights: Floats | None, part: Replicates) -> float:
+    """Return of how many rows the interval of a share of hits is no wider than that of a mean.
+
+    Returns
+    -------
+    float
+        Infinite where 20 effective rows or more carry the mean, and its complement. Else the
+        effective number of all rows, or fewer where the row that carries most is heavier than
+        they: a row that is missing may be as heavy. Where no row carries anything, as heavy as the
+        heaviest.
+    """
     worth = np.ones(len(numbers)) if weights is None else weights
     rarer = numbers if np.average(numbers, weights=worth) <= 0.5 else 1 - numbers
-    return effective_rows(per_sample(worth * rarer, part)) < FEW
+    carried, of_samples = (per_sample(one, part) for one in (worth * rarer, worth))
+    if effective_rows(carried) >= FEW:
+        return inf
+    heaviest = of_samples[carried.argmax()] if carried.any() else of_samples.max()
+    return min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
 
 
 def moments_of_rows(
@@ -170,9 +190,11 @@ def moments_of_rows(
     -------
     mean, sd : Estimate
         With Student's intervals from the parts' influences, that of the standard deviation by its
-        logarithm.
+        logarithm; of a single row a mean alone.
     """
     mean = float(np.average(values, weights=weights))
+    if len(values) == 1:
+        return Estimate(mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
     squares = (values - mean) ** 2
     variance = float(np.average(squares, weights=weights))
     found = Estimate(mean, *_beyond_outliers(mean, pulls(values, weights, part)))
@@ -189,30 +211,32 @@ def weighted_moments(
     Returns
     -------
     mean, sd : Estimate
-        Without interval, and with the reason, where the Pareto k of weight times value, or times
-        its square, is too large.
+        The mean is missing, with the reason, where the Pareto k of weight times value is too
+        large; the standard deviation where a sample carries more than a hundredth of all weight.
+        Whether it is given must not depend on the values: without an outlier they scatter too
+        little.
     """
     mean, sd = moments_of_rows(values, weights, part)
-    squares = (values - mean.value) ** 2
-    return trusted(mean, values, weights, part), trusted(sd, squares, weights, part)
+    of_samples = per_sample(weights, part)
+    differ = tail_shape(of_samples) > -inf
+    why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
+    return trusted(mean, weights * values, part), Estimate(reason=why) if why else sd
 
 
-def trusted(
-    found: Estimate, numbers: Floats, weights: Floats, part: Replicates, most: float = inf
-) -> Estimate:
-    """Return an estimate, or why weights times numbers do not allow one.
+def trusted(found: Estimate, pulls: Floats, part: Replicates, most: float = inf) -> Estimate:
+    """Return an estimate, or why its weights do not allow one.
 
     Parameters
     ----------
     found : Estimate
-    numbers, weights : ndarray, shape (n,)
+    pulls : ndarray, shape (n,)
+        Weights; for a mean of numbers without bounds, times these numbers.
     part : ndarray of int, shape (n,), or None
     most : float, optional
-        The largest weight that a row can have, where numbers are at most 1. If no row can carry
-        much of all, 20 effective rows that carry the estimate suffice.
+        The largest weight that a row can have.
     """
-    of_samples = per_sample(np.abs(weights * numbers), part)
-    if carries_little(most, len(of_samples)) and effective_rows(of_samples) >= FEW:
+    of_samples = per_sample(np.abs(pulls), part)
+    if carries_little(most, len(of_samples)):
         return found
     why = refusal(tail_shape(of_samples), len(of_samples))
     return Estimate(reason=why) if why else found

@@ -93,7 +93,8 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
     """
     raw = np.exp(log_weights - log_weights.max())
     of_samples = per_sample(raw, part)
-    k = tail_shape(of_samples)
+    alone = len(of_samples) == 1 and log_weights.any()
+    k = inf if alone else tail_shape(of_samples)
     weights = raw
     if carries_little(most, len(of_samples)):
         k = min(k, 0.0)
@@ -160,7 +161,7 @@ def tail_shape(numbers: Floats) -> float:
     if len(counted) > count and counted[-count] > counted[-count - 1]:
         excess = counted[-count:] - counted[-count - 1]
     if np.ptp(excess) == 0:
-        return -inf
+        return -inf if len(excess) > 1 else inf
     return shrunk(generalised_pareto(excess)[0], len(excess))
 
 
@@ -181,13 +182,27 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     if k <= most or k == -inf:
         return ""
     if most == -inf:
-        return f"weights rest on {rows} independent parts, and more than 10 are needed"
+        parts = "part" if rows == 1 else "parts"
+        return f"weights rest on {rows} independent {parts}, and more than 10 are needed"
     if k < DOUBTFUL:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
     return f"Pareto k = {k:.2f}: {hopeless}"
+
+
+def largest_share(weights: Floats) -> float:
+    """Return the share of all weight that the heaviest has."""
+    return float(weights.max() / weights.sum())
+
+
+def too_large(share: float, rows: int) -> str:
+    """Return why a row may not carry this share of all weight, or ""."""
+    if share <= _LITTLE:
+        return ""
+    more = ceil(rows * (share / _LITTLE - 1))
+    return f"a sample carries {share:.1%} of all weight, and may carry {_LITTLE:.0%}: add {more}"
 
 
 def per_sample(numbers: Floats, part: Replicates) -> Floats:

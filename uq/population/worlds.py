@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import isfinite, isnan
+from math import inf, isfinite, isnan
 
 import numpy as np
 from scipy import special
@@ -29,7 +29,7 @@ FEW = f"needs {FEWEST_WORLDS} samples for points over what is shared"
 FEW_ENDED = f"fewer than {FEWEST_WORLDS} units have ended, or not ended, by then"
 REPEATED = "samples share one of a few values, with no points between: study each of them alone"
 NO_SPREAD = "samples do not differ by more than the noise of their units"
-ONE_UNIT = "a single unit cannot show what is shared and what is own; set units = 2"
+ONE_UNIT = "a single unit cannot show what is shared and what is own"
 
 Exceeding = Callable[[float], Estimate]
 """Probability -> the share of worlds in which that of a unit is larger."""
@@ -163,7 +163,7 @@ class Noisy:
         each = self._posterior @ above
         slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
         pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
-        found = weighted_share(pulls, part=self._part, cautious=False)
+        found = weighted_share(pulls, part=self._part, hits_of=inf)
         found = replace(found, assumes=ASSUMES)
         return found if isfinite(found.low) else replace(found, low=found.value, high=found.value)
 

@@ -11,6 +11,7 @@ from markupsafe import Markup, escape
 
 from uq.conclusions.page import STYLE
 from uq.literals import plain
+from uq.printed import printed
 from uq.rows.elements import study_file_of
 
 _SHOWN_TEXT = 50_000
@@ -61,13 +62,18 @@ def templates() -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"breakable": _breakable, "inside": _inside, "quoted": shlex.quote}
+    environment.filters |= {
+        "breakable": _breakable,
+        "inside": _inside,
+        "printed": printed,
+        "quoted": shlex.quote,
+    }
     return environment
 
 
 def _breakable(text: str) -> Markup:
-    """Return text with places where long names may be broken."""
-    return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(text)))))
+    """Return text as printed, with places where long names may be broken."""
+    return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(printed(text))))))
 
 
 def _inside(content: Any) -> Markup:

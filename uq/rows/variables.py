@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -187,3 +187,8 @@ def model_attributes(model: Model) -> dict[str, Any]:
 def error_name(output: str) -> str:
     """Return the name of the output that states the error of another."""
     return f"{output}_error"
+
+
+def is_error(name: str, known: Collection[str]) -> bool:
+    """Return whether an output states the error of another of those known."""
+    return name in {error_name(one) for one in known}

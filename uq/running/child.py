@@ -6,7 +6,9 @@ A kernel may crash it or never return; then the parent ends it and starts anothe
 import os
 import sys
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
@@ -62,13 +64,69 @@ class ModelSpec(NamedTuple):
                 f"the process that computes rows has other code of model '{model.name}' than this "
                 "process: start again if it was edited meanwhile, or install the same on both"
             )
-        wanted = model.alone(self.output) if self.output else model
-        return wanted, model.settings(**dict(self.settings))
+        wanted, settings = model, model.settings(**dict(self.settings))
+        if self.output:
+            wanted = model.alone(self.output)
+        return wanted.given(settings), settings
 
 
 READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
 """Messages of a child; the last two come with a chunk or an exception, the first says whether it
 stops rows itself when their time is over."""
+
+Action = Callable[[], object]
+
+FIRST_SECONDS = 5.0
+"""Beyond its limit for a first call, which loads compiled code: 1 s, more on a busy computer."""
+
+_POLL_SECONDS = 0.2  # so that an interrupt is seen
+
+
+def answer_of(
+    connection: Connection,
+    limit: float | None = None,
+    compiling: Action = lambda: None,
+    waiting: Action = lambda: None,
+) -> tuple[str, Any] | None:
+    """Return the answer of a process, or None when its time is over.
+
+    Parameters
+    ----------
+    connection : Connection
+    limit : float, optional
+        Time for the answer [s]; compilation does not count.
+    compiling : callable
+        Called when the process starts to compile.
+    waiting : callable
+        Called several times a second.
+
+    Raises
+    ------
+    EOFError, OSError
+        When the process has died.
+    """
+    began: float | None = time.monotonic()
+    while True:
+        while not connection.poll(min(limit or _POLL_SECONDS, _POLL_SECONDS)):
+            waiting()
+            if limit and began and time.monotonic() > began + limit:
+                return None
+        kind, value = connection.recv()
+        if kind == COMPILING:
+            began = None
+            compiling()
+        elif kind == COMPILED:
+            began = time.monotonic()
+        else:
+            return kind, value
+
+
+@contextmanager
+def telling_of_compilation(connection: Connection) -> Iterator[None]:
+    """Send a message whenever this process starts and ends compiling."""
+    compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
+    with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
+        yield
 
 
 def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.Thread:
@@ -117,14 +175,14 @@ def main(handle: str) -> None:
         stops_rows = True
         model = replace(model, batch=batch.limited(limit))
     connection.send((READY, stops_rows))
-    compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
-    with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
+    with telling_of_compilation(connection):
         while True:
             rows = connection.recv()
             try:
                 answer: Any = DONE, evaluate(model, settings, *rows)
             except Exception as error:
                 answer = REFUSED, error
+            sys.stdout.flush()  # this process is killed in the end
             connection.send(answer)
 
 

@@ -1,6 +1,7 @@
 """What a study file asks of its model and of its design, beyond its shape."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from uq.contract import Model
@@ -39,28 +40,37 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         if name in model.parameter_names and (problem := parameter_problem(model, name, value)):
             yield Fault(("fixed", name), problem, value)
     given, analysis = tables["settings"], tables["analysis"]
-    for name, text in read_settings(model, given)[1].items():
+    settings, problems = read_settings(model, given)
+    for name, text in problems.items():
         yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
+    output_faults = partial(_output_faults, model, settings)
     for name in analysis.get("outputs", ()):
-        yield from _output_faults(model, name, ("analysis", "outputs"), name)
+        yield from output_faults(name, ("analysis", "outputs"), name)
     for name, value in analysis.get("thresholds", {}).items():
         path, no_number = ("analysis", "thresholds", name), "it has shares, not thresholds"
-        faults = list(_output_faults(model, name, path, value, no_number))
+        faults = list(output_faults(name, path, value, no_number))
         yield from faults
         for one in (value if isinstance(value, list) else [value]) * (not faults):
             yield from _unit_faults(model, name, path, one)
     for name, side in analysis.get("joint_bounds", {}).items():
         path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
-        yield from _output_faults(model, name, path, side, no_number)
+        yield from output_faults(name, path, side, no_number)
+    for name, side in analysis.get("wanted", {}).items():
+        path = ("analysis", "wanted", name)
+        faults = list(output_faults(name, path, side, "it has shares, not sides"))
+        yield from faults
+        if not faults and model.outputs and model.outputs[name].is_lifetime:
+            problem = "is a lifetime, whose model states if its end is wanted; leave it out"
+            yield Fault(path, problem, side)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
         path = ("design", "until", "output")
-        faults = list(_output_faults(model, name, path, until["output"], "it has no numbers"))
+        faults = list(output_faults(name, path, until["output"], "it has no numbers"))
         yield from faults
         if not faults and model.outputs:
             yield from _until_faults(model, name, until)
-            yield from _element_faults(model, name, until["output"], given)
+            yield from _element_faults(model, name, until["output"], settings)
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[Fault]:
@@ -80,11 +90,8 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
         yield Fault((*path, "half_width"), problem, half_width)
 
 
-def _element_faults(
-    model: Model, name: str, element: str, given: Mapping[str, Any]
-) -> Iterator[Fault]:
+def _element_faults(model: Model, name: str, element: str, settings: Any) -> Iterator[Fault]:
     """Yield whether an output has no such element with these settings."""
-    settings, _ = read_settings(model, given)
     if element == name or settings is None:
         return
     coordinates = model.coordinates(settings)
@@ -112,13 +119,21 @@ def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _output_faults(
-    model: Model, name: str, path: tuple[str, ...], value: Any, no_number: str = ""
+    model: Model,
+    settings: Any,
+    name: str,
+    path: tuple[str, ...],
+    value: Any,
+    no_number: str = "",
 ) -> Iterator[Fault]:
     """Yield whether a model lacks an output, or has it as a category where numbers are needed."""
     if not model.outputs:  # not known before rows have run
         return
     if name not in model.outputs:
         yield Fault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
+    elif settings is not None and name not in model.given(settings).outputs:
+        optional = [one for one in model.setting_names if model.setting(one).optional]
+        yield Fault(path, f"it needs {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:
         yield Fault(path, f"is a category: {no_number}", value)
 
@@ -174,7 +189,7 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
                 f"a '{method}' design without replicates gives no interval; set replicates = 8"
             )
     for key, problem in problems.items():
-        yield Fault(("design", key), problem, True if key == "until" else table[key])
+        yield Fault(("design", key), problem, None if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
     for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
         why = ""

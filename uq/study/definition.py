@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
@@ -114,7 +114,7 @@ class Study:
             for name, law in self.uncertain.items()
         ]
         parts = [self.model.name, self.model.version, design, constants, laws]
-        parts.append(asdict(self.settings))
+        parts.append(self.model.choices_of(self.settings))
         # Added only where present: studies without them keep their identity.
         if self.tied:
             parts.append({name: tied.equals for name, tied in self.tied.items()})
@@ -214,6 +214,7 @@ def study_from_text(
 
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(found, file.settings)
+    found = found.given(settings)
     outputs = file.analysis.outputs or tuple(found.outputs)
     uncertain = {name: law for name, law in entries.items() if not isinstance(law, Tied)}
     table = columns[file.design.file] if file.design.file and file.design.method in IMPORTED else {}

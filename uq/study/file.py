@@ -342,6 +342,11 @@ class AnalysisTable(_Table):
         description="output = t: probability of lying above and below t, a number in the unit of"
         ' the output, or text with its own: "24 hours"',
     )
+    wanted: dict[str, Literal["above", "below"]] = Field(
+        {},
+        description='output = "above" or "below": which values are good; decides which bound the'
+        " answer promises, and what it advises",
+    )
     twin: Annotated[str | dict[str, Any], BeforeValidator(_name_or_settings)] = Field(
         "",
         description="a cheap output, or settings that make rows cheap: many such rows sharpen the"

@@ -83,6 +83,9 @@ def _when(table: str, key: str, value: str, then: dict[str, Schema]) -> Schema:
 
 def _model_schema(model: Model) -> dict[str, Schema]:
     known_outputs = {"enum": list(model.outputs)}
+    plain_outputs = {
+        "enum": [n for n, one in model.outputs.items() if one.kind not in ("category", "lifetime")]
+    }
     settings = _table({name: _setting(model, name, k) for name, k in setting_types(model).items()})
     return {
         "fixed": _table({name: _fixed(model, name) for name in model.parameter_names}),
@@ -98,6 +101,7 @@ def _model_schema(model: Model) -> dict[str, Schema]:
                 "outputs": {"items": known_outputs},
                 "joint_bounds": {"propertyNames": known_outputs},
                 "thresholds": {"propertyNames": known_outputs},
+                "wanted": {"propertyNames": plain_outputs},
                 "twin": {"anyOf": [{"enum": ["", *model.cheap]}, {"type": "object", **settings}]},
             }
         },

@@ -3,6 +3,7 @@
 Reading order; a module imports only those above it:
 
     regimes         the regime of a response that drifts with wear, and its changes
+    depths_in_time  how deep each site has worn at given instants
     progress        how far each beam has worn: times, errors and looks noted on the way
     endings         the end of wear
     flows           the gaps grow all the time, where there is no stable orbit

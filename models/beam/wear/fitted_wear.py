@@ -17,6 +17,7 @@ _CUBIC = 3
 _STEEPEST = 300.0  # largest logarithm by which a fit may fall short of a rate
 _GRID = 129  # points of a quadrature
 _ITERATIONS = 30
+_HALVINGS = 40
 
 
 class FittedWear:
@@ -51,6 +52,14 @@ class FittedWear:
             slope = -np.trapezoid(basis * inverse[:, None], grid, axis=0)
             life = np.trapezoid(inverse, grid)
             return float(life), float(np.sqrt((slope[:, None] * self.covariance * slope).sum()))
+
+    def grown(self, time: float) -> float:
+        """Return the end up to which the integral of dx/rate is a time: the inverse of `life`."""
+        low, high = 0.0, float(self.x[-1])
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self.life(middle)[0] < time else (low, middle)
+        return (low + high) / 2
 
 
 def fit(t: Array, rate: Array) -> tuple[Array, Array]:

@@ -28,6 +28,8 @@ class Lives(NamedTuple):
         As in `progress.Worn`.
     changes : ndarray, shape (n,)
         Changes of regime, up to the end.
+    depth : ndarray, shape (n, 2, T)
+        As in `progress.Worn`.
     """
 
     time: Array
@@ -35,14 +37,16 @@ class Lives(NamedTuple):
     reached: NDArray[np.bool_]
     ratio: Array
     changes: Array
+    depth: Array
 
     @staticmethod
-    def nothing(n: int, depths: int) -> "Lives":
+    def nothing(n: int, depths: int, instants: int) -> "Lives":
         """Return the lives of n beams before they are run: unknown."""
         unknown = np.full((2, n, 3, depths), np.nan)
         ratio = np.full((n, depths), np.nan)
         reached = np.zeros((n, 3, depths), bool)
-        return Lives._make([*unknown, reached, ratio, np.full(n, np.nan)])
+        depth = np.full((n, 2, instants), np.nan)
+        return Lives._make([*unknown, reached, ratio, np.full(n, np.nan), depth])
 
 
 def find_lives(
@@ -54,13 +58,14 @@ def find_lives(
     regime: NDArray[np.int8],
     share: Array,
     growths: Array,
+    instants: Array,
     accuracy: float,
 ) -> Lives:
     """Find the lives of n beams.
 
     Parameters
     ----------
-    propagator, system, state, gaps, work, regime, share, growths
+    propagator, system, state, gaps, work, regime, share, growths, instants
         As in `worn_beams.wear_down`.
     accuracy : float
         Relative error asked for. It sets the errors of the steps, and the time spent where the
@@ -71,12 +76,11 @@ def find_lives(
     Lives
     """
     periods = round(PERIODS / accuracy)
-    worn = wear_down(
-        propagator, system, state, gaps, work, regime, share, growths, periods, accuracy
-    )
-    out = Lives.nothing(*growths.shape)
+    start = (propagator, system, state, gaps, work, regime, share, growths)
+    worn = wear_down(*start, periods, accuracy, instants=instants)
+    out = Lives.nothing(len(growths), growths.shape[1], instants.shape[1])
     out.time[:, :2], out.error[:, :2], out.reached[:, :2] = worn.time, worn.error, worn.reached
-    out.ratio[:] = worn.ratio
+    out.ratio[:], out.depth[:] = worn.ratio, worn.depth
     out.changes[:] = changes_of(confirmed_regimes(worn.history.regime)).sum(axis=1)
     _take_the_earlier(out)
     return out

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.structure.modal import Array
+from models.beam.wear.depths_in_time import note_depths, passed
 from models.beam.wear.regimes import LONGEST_PERIOD, History
 from models.numerics.jit import inlined
 
@@ -21,8 +22,9 @@ class Progress(NamedTuple):
 
     Attributes
     ----------
-    initial, share, growths : ndarray
-        Gaps, shares of wear and growths to reach, as in `models.beam.wear.worn_beams.wear_down`.
+    initial, share, growths, instants : ndarray
+        Gaps, shares of wear, growths to reach and times of depths, as in
+        `models.beam.wear.worn_beams.wear_down`.
     free_reach, silent : ndarray, shape (n,)
         Amplitude of the tip without contact [X0]; periods without contact after which it has ended.
     first : ndarray, shape (n,)
@@ -34,6 +36,8 @@ class Progress(NamedTuple):
         Time in real wear, see `models.beam.wear.worn_beams.Worn.time`.
     grown : ndarray, shape (n, 2)
         Growth of each gap at that time [X0].
+    excess : ndarray, shape (n, 2)
+        Part of this in which there was no contact any more.
     rate : ndarray, shape (n, 2)
         Wear per period of each site: at that time, or its running mean in a flow.
     grown_before, rate_before : ndarray, shape (n, 2)
@@ -66,12 +70,14 @@ class Progress(NamedTuple):
     initial: Array
     share: Array
     growths: Array
+    instants: Array
     free_reach: Array
     silent: Array
     first: Array
     mode: NDArray[np.int8]
     clock: Array
     grown: Array
+    excess: Array
     rate: Array
     grown_before: Array
     rate_before: Array
@@ -97,6 +103,7 @@ class Progress(NamedTuple):
         initial: Array,
         share: Array,
         growths: Array,
+        instants: Array,
         free_reach: Array,
         silent: Array,
         rate: Array,
@@ -110,12 +117,13 @@ class Progress(NamedTuple):
             initial,
             share,
             growths,
+            instants,
             free_reach,
             silent,
             rate.max(axis=1),
             mode,
             np.zeros(n),
-            np.zeros((n, 2)),
+            *np.zeros((2, n, 2)),
             rate,
             *np.zeros((2, n, 2)),
             np.full(n, step),
@@ -148,6 +156,9 @@ class Worn(NamedTuple):
     ratio : ndarray, shape (n, D)
         Gap of the other site over that of the first to reach the growth, at that time; NaN if
         never.
+    depth : ndarray, shape (n, 2, T)
+        Growth of each gap at the instants [X0]; at least the last growth once it is reached, NaN
+        where unknown.
     history : History
         NaN after the end of a life.
     """
@@ -157,10 +168,11 @@ class Worn(NamedTuple):
     reached: NDArray[np.bool_]
     ended: NDArray[np.bool_]
     ratio: Array
+    depth: Array
     history: History
 
     @staticmethod
-    def nothing(n: int, depths: int, looks: int) -> "Worn":
+    def nothing(n: int, depths: int, instants: int, looks: int) -> "Worn":
         """Return the lives of n beams before they are followed."""
         return Worn(
             np.zeros((n, 2, depths)),
@@ -168,6 +180,7 @@ class Worn(NamedTuple):
             np.zeros((n, 2, depths), bool),
             np.zeros(n, bool),
             np.full((n, depths), np.nan),
+            np.full((n, 2, instants), np.nan),
             History.nothing(n, looks),
         )
 
@@ -177,6 +190,7 @@ def wear_on(i, life, out, time, growth, rate, spacing):
     """Let a time pass in which the gaps of beam i grow to a given rate of wear."""
     for depth in range(life.growths.shape[1]):
         _note_crossings(i, life, out, depth, time, growth, rate)
+    note_depths(i, life, out, time, growth, rate)
     extent = np.log1p(max(growth[0], growth[1], 0.0) / scale(i, life))
     first = int(life.distance[i] / spacing)
     for look in range(first, out.history.regime.shape[1]):
@@ -217,16 +231,14 @@ def _note_crossings(i, life, out, depth, time, growth, rate):
             continue
         part = max(0.0, missing / growth[site])
         before, after = life.rate[i, site], rate[site]
-        passed = part
-        if before > 0 and after > 0:
-            passed = part * (2 * after + (before - after) * part) / (before + after)
-        out.time[i, site, depth] = life.clock[i] + time * passed
+        needed = passed(part, before, after)
+        out.time[i, site, depth] = life.clock[i] + time * needed
         error = STEP_FACTOR**2 * life.step_error[i, site]
         error += FLOW_FACTOR**2 * life.flow_error[i, site]
         out.error[i, site, depth] = min(np.sqrt(error), out.time[i, site, depth])
         out.reached[i, site, depth] = True
-        if first_of_all and passed < earliest:
-            earliest = passed
+        if first_of_all and needed < earliest:
+            earliest = needed
             other = 1 - site
             slower = life.initial[i, other] + life.grown[i, other] + part * growth[other]
             out.ratio[i, depth] = slower / (life.initial[i, site] + goal)

@@ -32,13 +32,14 @@ def find_random_lives(
     error: Array,
     share: Array,
     growths: Array,
+    instants: Array,
     accuracy: float,
 ) -> Lives:
     """Integrate the lives of n beams.
 
     Parameters
     ----------
-    propagator, system, state, gaps, work, share, growths
+    propagator, system, state, gaps, work, share, growths, instants
         As in `models.beam.wear.worn_beams.wear_down`.
     error : ndarray, shape (n, 2)
         Standard error of `work`.
@@ -70,12 +71,13 @@ def find_random_lives(
         state[left], last[left] = now, node
         rate[node, left], doubt[node, left] = mean.work * share[left], mean.error * share[left]
         running[left] += _MEMORY * (rate[node, left] - running[left])
-    out = Lives.nothing(n, growths.shape[1])
+    out = Lives.nothing(n, growths.shape[1], instants.shape[1])
     for i in range(n):
         some = slice(0, last[i] + 1)
         narrow = (gaps[i] + grown[last[i], i]).min()
         silent = not rate[last[i], i].any() and system.free_reach[i] < narrow
-        _note(i, out, gaps[i], grown[some, i], rate[some, i], doubt[some, i], growths[i], silent)
+        nodes_of = (grown[some, i], rate[some, i], doubt[some, i])
+        _note(i, out, gaps[i], *nodes_of, growths[i], instants[i], silent)
         # Under a random load there is one regime until contact ends.
         out.changes[i] = float(silent and bool(rate[0, i].any()))
     out.error[:] *= NINE_IN_TEN
@@ -112,19 +114,24 @@ def _note(
     rate: Array,
     doubt: Array,
     growths: Array,
+    instants: Array,
     silent: bool,
 ) -> None:
-    """Record the lives of beam i from the growth and wear rates of its sites at the nodes."""
+    """Record the lives and depths of beam i from growth and wear rates of its sites at nodes."""
     if np.isnan(rate).any():
         return
     at = np.full((2, len(growths)), np.nan)
     simulated = 0.0
     for site in range(2):
         x = grown[:, site]
+        later = x[-1] if silent or x[-1] >= growths[-1] * (1 - 1e-9) else np.nan
+        out.depth[i, site] = np.where(instants > 0, later, 0.0)
         if x[-1] == 0:
             continue
         wear = FittedWear(x, rate[:, site], doubt[:, site])
         whole, _ = wear.life(x[-1])
+        for k in np.flatnonzero((instants > 0) & (instants < whole)).tolist():
+            out.depth[i, site, k] = wear.grown(instants[k])
         simulated = max(simulated, whole if np.isfinite(whole) else 0.0)
         for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
             life, uncertainty = wear.life(growths[depth])

@@ -7,6 +7,7 @@ from models.beam.response.response import APERIODIC, NO_IMPACT
 from models.beam.response.settling import TURNS
 from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Propagator, System
+from models.beam.wear.depths_in_time import note_later_depths
 from models.beam.wear.progress import (
     FIRST_STEP,
     FLOWING,
@@ -39,6 +40,7 @@ def wear_down(
     periods: int,
     accuracy: float,
     looks: int = LOOKS,
+    instants: Array | None = None,
 ) -> Worn:
     """Let the gaps of n beams grow.
 
@@ -66,13 +68,16 @@ def wear_down(
     looks : int
         While the faster site reaches the last growth. No step is longer than from one to the next
         if there are more than `LOOKS`.
+    instants : ndarray, shape (n, T), optional
+        Times at which the growth of the gaps is recorded, in the unit of `Worn.time`.
 
     Returns
     -------
     Worn
     """
     n, depths = growths.shape
-    out = Worn.nothing(n, depths, looks * OVERTIME)
+    instants = np.empty((n, 0)) if instants is None else instants
+    out = Worn.nothing(n, depths, instants.shape[1], looks * OVERTIME)
     whole = float(log1p(2 * growths[:1, -1] / growths[:1, 0])[0]) if n else 1.0
     pace, spacing = whole * ROUND / periods, whole / looks
     largest = LONGEST_STEP if looks <= LOOKS else spacing
@@ -81,6 +86,7 @@ def wear_down(
         gaps,
         share,
         growths,
+        instants,
         system.free_reach,
         np.maximum(_SILENCE, TURNS * system.beams.turn),
         work * share,
@@ -110,4 +116,5 @@ def wear_down(
     missing = ~out.reached
     until = np.where(out.ended, np.inf, life.clock)[:, None, None]
     out.time[missing] = (until + 0 * out.time)[missing]
+    note_later_depths(life, out)
     return out

@@ -20,6 +20,7 @@ from models.vibrator.exact.budgeted import Machine, prepare
 from models.vibrator.exact.measures import Measures, measure
 from models.vibrator.exact.orbit import Orbit, anchored, find_orbit, proposal
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.start.instants import note_exactly, run_exactly
 from models.vibrator.start.regimes import (
     ASYNCHRONOUS,
     BAND,
@@ -62,7 +63,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
         motion is not finite; its outcome is unknown.
     """
     n = len(p.body_mass)
-    out, status = Outcome.nothing(n), np.zeros(n, np.int8)
+    out, status = Outcome.nothing(n, len(settings.instants)), np.zeros(n, np.int8)
     with np.errstate(all="ignore"):
         for i in range(n):
             params = Params._make(float(field[i]) for field in p)
@@ -86,17 +87,18 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
     slowest = slowest_period(rigid)
     while track.count < wanted:
         times = track.interval * np.arange(1, min(LOOK, wanted - track.count) + 1)
-        ended, samples = machine.run(state, times[-1], settings.tolerance, times=times)
-        if ended.status == STUCK or not np.isfinite(samples[: ended.sampled]).all():
+        ended, samples = run_exactly(machine, state, track.time, times, settings, out)
+        if ended == STUCK or not np.isfinite(samples).all():
             return Status.NON_FINITE
         machine.budget -= _LOOKING
-        track.add(samples[: ended.sampled])
-        if ended.status == OUT_OF_BUDGET:
+        track.add(samples)
+        if ended == OUT_OF_BUDGET:
             return _describe_unfinished(machine.system, track, out)
         stays = orbit is not None and _stays_at(orbit, track)
         if orbit is not None and stays and track.time - track.neared >= slowest:
             _describe_orbit(orbit, track, out)
-            return Status.OK
+            enough = note_exactly(machine, state, track.time, settings, out)
+            return Status.OK if enough else Status.OUT_OF_BUDGET
         arriving = stays or (orbit is not None and _approaches(orbit, track))
         if track.count >= next_search and not arriving and _is_steady(machine.system, track):
             orbit = _search(machine, guess, state, settings.tolerance) or orbit

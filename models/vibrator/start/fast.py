@@ -6,6 +6,7 @@ stays near that of a stable orbit, and otherwise continues to the end. Free vibr
 dies away more slowly: the run also waits until it can no longer exceed the largest displacement.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from models.vibrator.lanes.notes import ANGLE_HIGH, ANGLE_LOW, EXCURSION, LAST_E
 from models.vibrator.lanes.packed import Array
 from models.vibrator.lanes.steps import STABLE
 from models.vibrator.parameters import Rows, Settings
+from models.vibrator.start.instants import note_fast
 from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
 from models.vibrator.start.regimes import (
     BAND,
@@ -83,7 +85,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     known = propose(machines, settings.steps_per_turn)
     plan = _Plan.made(machines, settings)
     n = len(known.found)
-    out, status = Outcome.nothing(n), np.full(n, Status.OK, np.int8)
+    out, status = Outcome.nothing(n, len(settings.instants)), np.full(n, Status.OK, np.int8)
     rows = np.arange(n)
     for run in range(_RUNS):
         final = run == _RUNS - 1
@@ -96,6 +98,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     out.censored[:] |= unfinished
     reached = plan.step * plan.looks * LOOK + LAST
     out.synchronisation_time[unfinished] = reached[unfinished]
+    status[np.isnan(out.on_the_way).any(axis=(1, 2)) & ~lost] = Status.OUT_OF_BUDGET
     return out, status
 
 
@@ -116,11 +119,13 @@ def _run(
     some, n = machines.take(rows), len(rows)
     live = Live(rows, some, start(some), *np.zeros((3, n)))
     ending = plan.looks[rows] == 0
+    note = partial(note_fast, plan.step, settings, out)
     look = 0
     while len(live.rows):
         if ending.any():
             last = live.take(ending)
             time = look * LOOK * plan.step[last.rows]
+            note(last, time, time + LAST * (1 + 1e-9))
             found = run_last_second(last, time, known, out, settings, final)
             again.append(last.rows[found])
             live = live.take(~ending)
@@ -128,6 +133,7 @@ def _run(
                 break
         before = live.state[:, 3:5].copy()
         step, target = plan.step[live.rows], known.disphasing[live.rows]
+        note(live, look * LOOK * step, (look + 1) * LOOK * step)
         accurate = settings.steps_per_turn > 0
         notes = advance(live.machines, live.state, step, target, LOOK, BAND, accurate)
         came = notes[:, LAST_ENTRY]
@@ -146,6 +152,7 @@ def _run(
         calm = look * LOOK * step - live.neared >= slowest_period(live.machines.rigid)
         done = arrived & (calm | (plan.looks[live.rows] <= look))
         _note_locked(known, live.take(done), out)
+        note(live.take(done), (look * LOOK * step)[done], (BUDGET * LOOK * step)[done])
         going = finite & ~done
         if not final and look & (look - 1) == 0:
             fast = (speed >= CAPTURED_BELOW * live.machines.synchronous_speed).all(axis=1)

@@ -34,6 +34,8 @@ class Outcome(NamedTuple):
         [m]
     regime : ndarray of int8, shape (n,)
         Index into `REGIMES`, -1 if unknown.
+    on_the_way : ndarray, shape (n, T, 3)
+        psi_1 - psi_2 [rad] and the speeds of both vibrators [rad s-1] at the instants.
     """
 
     disphasing: NDArray[np.float64]
@@ -48,11 +50,16 @@ class Outcome(NamedTuple):
     censored: NDArray[np.bool_]
     max_excursion: NDArray[np.float64]
     regime: NDArray[np.int8]
+    on_the_way: NDArray[np.float64]
 
     @staticmethod
-    def nothing(n: int) -> "Outcome":
+    def nothing(n: int, instants: int = 0) -> "Outcome":
         """Return the outcome of n machines before they are run: unknown."""
-        known = {"censored": np.zeros(n, bool), "regime": np.full(n, -1, np.int8)}
+        known = {
+            "censored": np.zeros(n, bool),
+            "regime": np.full(n, -1, np.int8),
+            "on_the_way": np.full((n, instants, 3), np.nan),
+        }
         return Outcome(**{name: known.get(name, np.full(n, np.nan)) for name in Outcome._fields})
 
 

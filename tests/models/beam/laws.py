@@ -46,7 +46,7 @@ def system(n):
     return SimpleNamespace(free_reach=np.full(n, 1.5), beams=beams, take=lambda rows: system(n))
 
 
-def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1):
+def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1, instants=None):
     """Return the lives of n beams that have settled to the law's work at their initial gaps."""
     gaps = np.ones((n, 2))
     return wear_down(
@@ -60,4 +60,5 @@ def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1):
         np.tile(growths, (n, 1)),
         round(PERIODS / accuracy),
         accuracy,
+        instants=instants,
     )

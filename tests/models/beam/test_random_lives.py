@@ -6,7 +6,7 @@ from random_load import LEVEL, PURE, nominal, prepared, started
 
 from models.beam import MODEL, lanes
 from models.beam.lanes import propagator
-from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
+from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.settling import settle
 from models.beam.wear.fitted_wear import FittedWear, fit
 from models.beam.wear.random_lives import _step
@@ -66,7 +66,7 @@ def test_a_seed_is_a_row_s_own_and_does_not_matter_without_random_load():
     assert outputs["regime_changes"][:2].tolist() == [0, 0]
     assert (work[0] != work[1]).any() and (work[2] == work[3]).all()
     again, _ = MODEL.batch(x[1:2], seed[1:2], settings)
-    for name in OUTPUTS:
+    for name in MODEL.given(settings).outputs:
         assert np.array_equal(again[name][0], outputs[name][1], equal_nan=True), name
 
 
@@ -79,7 +79,7 @@ def test_a_band_without_width_is_said_and_harms_no_other_row(propagator):
     settings = Settings(depths=(1e-5,), accuracy=0.3, propagator=propagator)
     outputs, status = MODEL.batch(x, np.zeros(3, np.uint64), settings)
     assert status.tolist() == [Status.NON_FINITE, Status.OK, Status.NON_FINITE]
-    for name, output in OUTPUTS.items():
+    for name, output in MODEL.given(settings).outputs.items():
         if not output.is_category:
             assert np.isnan(outputs[name][[0, 2]]).all(), name
     assert np.isfinite(outputs["work_rate"][1]).all()

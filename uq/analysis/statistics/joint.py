@@ -52,7 +52,7 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     yield Statistic(
         ("joint_bounds", "rows_needed"),
         "rows needed",
-        Estimate(float(own[0].rows_needed)),
+        Estimate(own[0].rows_needed).finite,
         "rows",
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="joint_rows_needed",

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Flag, auto
 from functools import cached_property
-from math import isfinite, isnan
+from math import isfinite, isinf, isnan
 from typing import Any
 
 import xarray as xr
@@ -101,9 +101,10 @@ def entries(group: Sequence["Statistic"]) -> dict[str, Any]:
     return {one.key[-1]: one.kind.entry(one) for one in group}
 
 
-def counts(group: Sequence["Statistic"]) -> dict[str, int]:
-    """Return numbers of rows."""
-    return {one.key[-1]: int(one.estimate.value) for one in group}
+def counts(group: Sequence["Statistic"]) -> dict[str, int | None]:
+    """Return numbers of rows; None where no number will do."""
+    numbers = {one.key[-1]: one.estimate.value for one in group}
+    return {name: int(count) if isfinite(count) else None for name, count in numbers.items()}
 
 
 def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
@@ -180,8 +181,8 @@ class Statistic:
         The ends of its interval with the failed rows at best and at worst, where rows failed.
     otherwise : Statistic, optional
         The same under an assumption, where the rows alone do not decide it.
-    rows_needed : int, optional
-        The least number that gives a value.
+    rows_needed : float, optional
+        The least number that gives a value; infinite where too many rows fail.
     falls : bool
         Whether it decreases as the values increase.
     at : float, optional
@@ -211,7 +212,7 @@ class Statistic:
     heading: str | None = None
     failed: Estimate | None = None
     otherwise: "Statistic | None" = None
-    rows_needed: int | None = None
+    rows_needed: float | None = None
     falls: bool = False
     at: float | None = None
     of: str = ""
@@ -238,7 +239,8 @@ class Statistic:
         if isfinite(value):
             return self.kind.shown(value / per)
         if self.rows_needed is not None:
-            return f"needs {self.rows_needed} rows"
+            never = isinf(self.rows_needed)
+            return "too many failed" if never else f"needs {self.rows_needed:.0f} rows"
         return "-" if self.otherwise else known(self.estimate)  # it may be within the horizon
 
 

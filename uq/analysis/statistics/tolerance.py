@@ -9,7 +9,7 @@ from uq import json_form
 from uq.analysis.life_quantiles import whenever_censored_rows_end
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
 from uq.estimate import Estimate
-from uq.order_statistics import rows_for_bound, tolerance_bounds
+from uq.order_statistics import rows_for_bound, rows_still_needed, tolerance_bounds
 from uq.rows.elements import Element
 
 
@@ -30,7 +30,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     late = tolerance_bounds(element.at_most, failed, *asked)
     lower = whenever_censored_rows_end((early[0], early[0]))
     upper = whenever_censored_rows_end((early[1], late[1]))
-    needed = rows_for_bound(*asked, failed)
+    needed = rows_still_needed(int((element.present | element.failed).sum()), failed, *asked)
     coverage, confidence = (f"{100 * share:g}" for share in asked)
     listing = Listing(
         f"Tolerance bounds: with {confidence} % confidence each, {coverage} % of all lie above the"
@@ -53,7 +53,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     yield Statistic(
         ("tolerance", "rows_needed"),
         "rows needed",
-        Estimate(float(needed)),
+        Estimate(needed).finite,
         "rows",
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="tolerance_rows_needed",

@@ -75,7 +75,7 @@ function tailShape(numbers) {
   if (m === 0 || (m === n && most - numbers.reduce((a, b) => Math.min(a, b)) <= ROUNDING * most)) return -Infinity;
   if (m < FEWEST) return Infinity;
   const excess = m > count && top[1] > top[0] ? top.slice(1).map(one => one - top[0]) : counted.sort();
-  if (excess.at(-1) === excess[0]) return -Infinity;
+  if (excess.at(-1) === excess[0]) return excess.length > 1 ? -Infinity : Infinity;
   return shrunk(generalisedPareto(excess)[0], excess.length);
 }
 
@@ -110,7 +110,7 @@ function smoothed(logWeights, sample) {
 function refusal(k, rows) {
   const most = rows > 10 ? Math.min(HOPELESS, 1 - 1 / Math.log10(rows)) : -Infinity;
   if (k <= most || k === -Infinity) return "";
-  if (most === -Infinity) return `weights rest on ${rows} independent parts, and more than 10 are needed`;
+  if (most === -Infinity) return `weights rest on ${rows} independent part${rows > 1 ? "s" : ""}, and more than 10 are needed`;
   if (k === Infinity) return `fewer than ${FEWEST} samples have weight there`;
   if (k < HOPELESS) {
     const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);

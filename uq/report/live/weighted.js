@@ -11,22 +11,21 @@ class Weighed {
     this.sum = total(this.worth);
     this.sample = of(rows.sample);
     this.part = of(rows.replicate) ?? this.sample;
+    this.ofSamples = perSample(this.worth, this.sample);
+    this.refusal = this.weights ? refusal(tailShape(this.ofSamples), this.ofSamples.length) : "";
   }
 
   // The mean of the numbers of all rows.
   share(all) {
     const {places, worth, sum} = this, numbers = Float64Array.from(places, row => all[row]);
     if (!(sum > 0)) return {share: NaN, low: NaN, high: NaN};
+    if (this.refusal) return {share: NaN, low: NaN, high: NaN, more: this.refusal};
     let mean = 0;
     for (let i = 0; i < worth.length; i++) mean += numbers[i] * worth[i];
     mean = Math.min(1, Math.max(0, mean / sum));
     if (numbers.every(one => one >= 1 - ROUNDING)) mean = 1; // the complement has no digits
     const side = mean <= 0.5 ? numbers : numbers.map(one => 1 - one);
     const rarer = perSample(this.weights ? side.map((one, i) => worth[i] * one) : side, this.sample);
-    if (this.weights) {
-      const why = refusal(tailShape(rarer), rarer.length);
-      if (why) return {share: NaN, low: NaN, high: NaN, more: why};
-    }
     return {share: mean, low: NaN, high: NaN, ...this.ends(numbers, mean, side, rarer)};
   }
 
@@ -55,11 +54,22 @@ class Weighed {
       high = Math.min(1 / (1 + Math.exp(-half - logit)) + Math.max(outlier, 0), 1);
     }
     if (effectiveRows(rarer) < FEW_HITS) {
-      const [a, b] = binomial(mean, effectiveRows(perSample(this.worth, this.sample)));
+      const [a, b] = binomial(mean, this.rowsOfFew(rarer));
       low = Math.min(low, a);
       high = Math.max(high, b);
     }
     return {low, high};
+  }
+
+  // The effective number of rows, or fewer where the one that carries most is heavier: one that is missing may be
+  // as heavy.
+  rowsOfFew(rarer) {
+    let most = 0, heaviest = 0;
+    this.ofSamples.forEach((weight, i) => {
+      if (rarer[i] > most) [most, heaviest] = [rarer[i], weight];
+      else if (most === 0 && weight > heaviest) heaviest = weight;
+    });
+    return Math.min(effectiveRows(this.ofSamples), this.sum / heaviest);
   }
 
   // What each independent part says of the mean: the mean, plus the influence of the part.

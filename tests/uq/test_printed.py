@@ -1,0 +1,54 @@
+"""Numbers on pages and in figures: minus signs in numbers, hyphens everywhere else."""
+
+import re
+
+import numpy as np
+import pytest
+from computed import asking, linear, with_output
+
+from uq.printed import minus, printed
+from uq.report import page
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("-1.5", "−1.5"),
+        ("-2.09 to -1", "−2.09 to −1"),
+        ("1e-05 to -2e-07", "1e−05 to −2e−07"),
+        ("P(y > -1), [-3, 4]", "P(y > −1), [−3, 4]"),
+        ("normal(mean = -1.0, sd = 0.1)", "normal(mean = −1.0, sd = 0.1)"),
+        ("uq what-if OUT --set x=-1 --set y=1e-05", "uq what-if OUT --set x=-1 --set y=1e-05"),
+        ("beam-lifetime-561, 2026-11-23, period-1-symmetric, x-1", None),
+    ],
+)
+def test_numbers_have_minus_signs_and_names_have_hyphens(text, shown):
+    assert minus(text) == (shown or text)
+
+
+def test_a_unit_stays_with_its_number():
+    assert printed("0 % end within 12 days").split(" ") == [
+        "0\u00a0%",
+        "end",
+        "within",
+        "12\u00a0days",
+    ]
+    assert printed("504 pm s⁻¹ of 30 rows").split(" ") == [
+        "504\u00a0pm\u00a0s⁻¹",
+        "of",
+        "30",
+        "rows",
+    ]
+    assert printed("-") == "–"
+
+
+def test_a_report_shows_no_hyphen_for_a_minus_sign():
+    ds = linear(samples=200)
+    low = with_output(ds, "low", ds["y"].values - 8.0)
+    asked = asking(low, outputs=["low"], thresholds={"low": -4.5}, quantiles=[0.05, 0.5])
+    text = page(asked, "low.nc")
+    shown = re.sub(r"<(script|style|pre)\b.*?</\1>|<[^>]*>", " ", text, flags=re.S)
+    assert not re.findall(r"(?<![\w.=-])-\d[\d.]*", shown)
+    values = f"−{abs(np.quantile(low['low'], 0.5)):.2f}"
+    assert "−4.5" in shown and values in shown
+    assert 'data-key="-' in text  # sorting is by plain numbers

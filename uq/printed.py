@@ -1,0 +1,25 @@
+"""Numbers as they are printed, in figures and on pages; a terminal keeps the hyphen for copying."""
+
+import re
+
+from uq.units import PREFIXED
+
+_NUMBER = re.compile(r"(?<![^\s(\[])-?(?:\d[\d.]*(?:e[-+]?\d+)?|∞|inf)(?![\w-])")
+_TIMES = "minutes?|hours?|days?|years?"
+_UNIT = rf"(?:[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω)|{_TIMES}|%)(?!\w)"
+_BEFORE_UNIT = re.compile(rf"(?<=\d) (?={_UNIT})|(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])")
+
+
+def minus(text: str) -> str:
+    """Return text with minus signs instead of hyphens in its numbers: ``−1.5e−05``.
+
+    Names, dates, laws of a study file in code and options of commands keep their hyphens.
+    """
+    return _NUMBER.sub(lambda found: found[0].replace("-", "\N{MINUS SIGN}"), text)
+
+
+def printed(text: str) -> str:
+    """Return text for a page: with minus signs, a dash for no number, and units never alone."""
+    if text == "-":
+        return "\N{EN DASH}"
+    return _BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", minus(text))
