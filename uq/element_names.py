@@ -1,14 +1,22 @@
 """The names of the elements of an output with dimensions."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from itertools import product
+from math import inf, prod
 from typing import Any
 
 import numpy as np
 
+MOST_PLACES = 500
+"""Elements of an output that are described one by one, unless a study names the output."""
 
-def places(
-    output: str, coordinates: Mapping[str, Any]
-) -> Iterator[tuple[str, tuple[int, ...], dict[str, Any]]]:
+
+Place = tuple[str, tuple[int, ...], dict[str, Any]]
+"""Name, index and coordinates of an element."""
+
+
+def places(output: str, coordinates: Mapping[str, Any], most: float = inf) -> Iterator[Place]:
     """Yield name, index and coordinates of each element of an output, in order.
 
     Parameters
@@ -16,14 +24,48 @@ def places(
     output : str
     coordinates : dict of str to array
         Of each dimension, in order.
+    most : float
+        How many at most, evenly spread along each dimension.
 
     Yields
     ------
-    tuple
+    Place
         Coordinates in names are written like Python's repr, without quotes.
     """
     axes = {dim: np.asarray(axis) for dim, axis in coordinates.items()}
-    for index in np.ndindex(*map(len, axes.values())):
+    for index in product(*spread([len(axis) for axis in axes.values()], most)):
         place = {dim: axes[dim][i].item() for dim, i in zip(axes, index, strict=True)}
         label = ",".join(f"{dim}={value}" for dim, value in place.items())
         yield f"{output}[{label}]" if label else output, index, place
+
+
+def place_of(name: str, coordinates: Mapping[str, Any]) -> list[Place]:
+    """Return the place of an element in a list, which is empty if there is none of this name."""
+    axes = tuple((dim, tuple(np.asarray(axis).tolist())) for dim, axis in coordinates.items())
+    found = _by_name(name.partition("[")[0], axes).get(name)
+    return [found] if found else []
+
+
+@lru_cache(maxsize=4)
+def _by_name(output: str, axes: tuple[tuple[str, tuple[Any, ...]], ...]) -> dict[str, Place]:
+    return {place[0]: place for place in places(output, dict(axes))}
+
+
+def spread(lengths: Sequence[int], most: float) -> list[list[int]]:
+    """Return places along each dimension, evenly spread, that make at most so many elements.
+
+    The longest dimensions are thinned first.
+
+    Examples
+    --------
+    >>> spread([2, 9], most=10)
+    [[0, 1], [0, 2, 4, 6, 8]]
+    """
+    counts = list(lengths)
+    while prod(counts) > most:
+        longest = counts.index(max(counts))
+        counts[longest] = counts[longest] * 15 // 16
+    return [
+        np.linspace(0, length - 1, count).round().astype(int).tolist()
+        for length, count in zip(lengths, counts, strict=True)
+    ]

@@ -10,8 +10,8 @@ from uq.contract import Output
 from uq.inputs.registry import law_of
 from uq.population.functionals import Population
 from uq.population.means import share_to_compare
+from uq.population.row_inputs import EVERYWHERE
 from uq.population.scale_laws import IndependentScale
-from uq.population.scaling import EVERYWHERE
 from uq.population.smoothing import smoothed
 from uq.population.sums import LogTerm
 from uq.rows.element import Element

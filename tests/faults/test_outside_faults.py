@@ -5,17 +5,20 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from itertools import cycle, islice
 from pathlib import Path
 
 import cooling_fmu
+import numpy as np
 import psutil
 import pytest
 from their_server import TheirServer
 
 import uq
 
-KILLS = 10
+KILLS = 30
 PATIENCE = 300.0
+SPREAD = 0.1, 1.2  # seconds from kill to kill: a run takes three to start and compute its rows
 
 STUDY = """
 [study]
@@ -23,9 +26,9 @@ name = "own"
 model = "slow"
 [design]
 method = "monte-carlo"
-samples = 300
+samples = 200
 seed = 1
-[uncertain.x{one}]
+[uncertain.x1]
 distribution = "uniform"
 lower = 0.0
 upper = 1.0
@@ -57,7 +60,6 @@ pattern = '(.+)'
 PROGRAM = "sleep 0.02\necho {x1} > part.txt\nsleep 0.02\nmv part.txt y.txt\n"
 
 SERVER = "time.sleep(0.02)\nreturn [[parameters[0][0] ** 3]]"
-MODELS = {"function": "slow.py", "program": "slow.toml", "server": "", "fmu": "body.toml"}
 
 FMU = """
 [machine]
@@ -69,6 +71,14 @@ variable = "body.rate"
 [outputs.y]
 variable = "T"
 """
+
+KINDS = {
+    "function": ("slow.py", ("driver", "worker"), lambda x: x**3),
+    "program": ("slow.toml", ("driver", "worker", "program"), lambda x: x),
+    "server": ("", ("driver", "worker", "server"), lambda x: x**3),
+    "fmu": ("body.toml", ("driver", "worker"), lambda x: 300 + 100 * np.exp(-4 * x)),
+}
+"""Kind -> the model, who is killed, and what a row returns."""
 
 
 def start(*arguments):
@@ -83,61 +93,80 @@ def running(process):
         return False
 
 
-def descendants(process):
-    try:
-        return process.children(recursive=True)
-    except psutil.NoSuchProcess:
-        return []
+def started_by(driver):
+    """Return the processes of a run: its workers, and the programs that these run."""
+    with suppress(psutil.NoSuchProcess):
+        workers = driver.children()
+        return {
+            "driver": [driver],
+            "worker": workers,
+            "program": [one for worker in workers for one in worker.children(recursive=True)],
+        }
+    return {}
 
 
 @pytest.fixture
 def files(folder):
     """Write a study, a function and a program into an empty folder; return it."""
     texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM, "body.toml": FMU}
-    for name, text in {**texts, "own.toml": STUDY.format(one=1)}.items():
+    for name, text in {**texts, "own.toml": STUDY}.items():
         (folder / name).write_text(text)
     return folder
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", MODELS)
-def test_kills_leave_no_trace(files, kind):
-    chance = random.Random(kind)
+@pytest.mark.parametrize("kind", KINDS)
+def test_kills_leave_no_trace(files, kind, injected):
+    model, roles, expected = KINDS[kind]
     if kind == "fmu":
-        slow = cooling_fmu.SOURCE.replace("int fault", "usleep(4000); int fault")
+        slow = cooling_fmu.SOURCE.replace("int fault", "usleep(2000); int fault")
         cooling_fmu.write("body.fmu", cooling_fmu.compiled(files, slow))
     server = TheirServer(".", SERVER, "slow") if kind == "server" else None
     if server:
         server.start()
-    model = server.address if server else MODELS[kind]
+        model = server.address
     command = ("-m", "uq", "run", "own.toml", "--model", model, "--quiet", "--workers", "2")
+    chance, seen = random.Random(kind), set()
+    victims = list(islice(cycle(roles), KILLS))
+    chance.shuffle(victims)
     try:
-        whole = start(*command, "-o", "whole.nc")
-        assert whole.wait(PATIENCE) == 0
-        killed, began = [], time.monotonic()
-        driver = start(*command, "-o", "own.nc")
-        while not Path("own.nc").exists() or running(driver):
-            assert time.monotonic() < began + PATIENCE, "waited in vain"
-            if not running(driver):
-                driver.wait()
-                driver = start(*command, "-o", "own.nc")
-            time.sleep(chance.uniform(0.5, 1.5))
-            below = descendants(driver)
-            other = [psutil.Process(server.process.pid)] if server else []
-            targets = [one for one in (driver, *below, *other) if running(one)]
-            if len(killed) < KILLS and targets:
-                one = chance.choice(targets)
-                killed.append(one)
-                with suppress(psutil.NoSuchProcess):
-                    one.kill()
-                if one in other:
-                    server.kill()
-                    server.start()
-        assert driver.wait() == 0 and len(killed) >= KILLS // 2
-        time.sleep(1.0)
-        assert not [one for one in below if running(one)]
+        assert start(*command, "-o", "whole.nc").wait(PATIENCE) == 0
+        whole = uq.open_result("whole.nc")
+        assert np.allclose(whole["y"], expected(whole["x1"]), rtol=1e-12, atol=0)
+        while victims:
+            Path("own.nc").unlink(missing_ok=True)
+            complete(command, victims, chance, server, seen)
+            assert uq.open_result("own.nc").identical(whole)
     finally:
         if server:
             server.kill()
-    assert uq.open_result("own.nc").identical(uq.open_result("whole.nc"))
-    assert sorted(one.name for one in Path().glob("slow.rows/*")) == []
+    injected(f"{kind}: driver, worker or what computes a row killed", KILLS)
+    assert not [one for one in seen if running(one)]
+    assert not list(Path().glob("slow.rows/*"))
+
+
+def complete(command, victims, chance, server, seen):
+    """Complete a run, begun again whenever it is killed; `victims` are taken one by one."""
+    driver = start(*command, "-o", "own.nc")
+    began = time.monotonic()
+    strike = began + chance.uniform(*SPREAD)
+    while running(driver) or not Path("own.nc").exists():
+        assert time.monotonic() < began + PATIENCE, "waited in vain"
+        if not running(driver):
+            driver.wait()
+            driver = start(*command, "-o", "own.nc")
+        found = started_by(driver)
+        seen.update(one for some in found.values() for one in some)
+        if victims and time.monotonic() > strike:
+            targets = [one for one in found.get(victims[-1], ()) if running(one)]
+            if victims[-1] == "server":
+                server.kill()
+                server.start()
+            elif targets:
+                with suppress(psutil.NoSuchProcess):
+                    chance.choice(targets).kill()
+            if victims[-1] == "server" or targets:  # else it has not started
+                victims.pop()
+                strike = time.monotonic() + chance.uniform(*SPREAD)
+        time.sleep(0.01)
+    assert driver.wait() == 0

@@ -11,7 +11,7 @@ from wordings import sentence
 from uq.contract import Status
 from uq.errors import InputError
 from uq.rows.evaluate import KernelError
-from uq.running import isolation
+from uq.running import child, isolation
 
 FAULTS = {
     "raise": ("linear", {"fail_how": "raise"}, Status.RAISED, "x1 is above"),
@@ -40,7 +40,7 @@ QUICK = ("raise", "nan", "shape", "segfault", "hang")
 def test_guilty_rows_get_their_status_and_the_others_their_values(
     study_of, monkeypatch, injected, fault, workers
 ):
-    monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
+    monkeypatch.setattr(child, "FIRST_SECONDS", 0.5)
     model, settings, status, words = FAULTS[fault]
     key = "fail_above" if model == "linear" else "above"
     study = study_of(model, samples=100, **settings, **{key: 0.98})
@@ -68,7 +68,7 @@ def test_a_wrong_dtype_refuses_the_model(study_of, injected):
 
 @pytest.mark.slow
 def test_compiling_is_no_part_of_the_time_of_a_row(study_of, monkeypatch):
-    monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(child, "FIRST_SECONDS", 0.0)
     seconds = []
     real = isolation.Isolated._answer
 

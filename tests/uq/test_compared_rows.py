@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from computed import asking, compared, kinds, linear, with_output, with_status
+from nested_studies import nested_result
 
 from uq.analysis.pairing import Kinship, kinship
 from uq.contract import Status
@@ -104,6 +105,18 @@ def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(metho
     assert moved["mean"]["difference"]["value"] == pytest.approx(0.5)
     assert moved["mean"]["difference"]["low"] is moved["mean"]["difference"]["high"] is None
     assert "identical" not in moved["mean"]["difference"]
+
+
+def test_a_nested_result_is_identical_to_itself_alone():
+    ds = nested_result(samples=30)
+    found = compared(ds, ds)
+    assert found["pairing"] == "rows" and "Both results have the same rows." in found["notes"]
+    same = {"value": 0.0, "low": None, "high": None, "identical": True}
+    assert found["outputs"]["y"]["mean"]["difference"] == same
+    moved = with_output(ds, "y", ds["y"].values + np.arange(ds.sizes["sample"]) % 2)
+    found = compared(ds, moved)
+    assert found["pairing"] == "unknown"
+    assert found["outputs"]["y"]["mean"]["difference"]["low"] < 0.5
 
 
 def censored_lives(times, censored=True):

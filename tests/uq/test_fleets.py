@@ -114,7 +114,7 @@ def test_lives_as_computed_where_nothing_is_to_be_integrated():
     element = next(elements_of(ds, ["life"]))
     ended = (element.values < 5e5).astype(float).reshape(200, 20, 1)
     assert found.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
-    with pytest.raises(InputError, match="set units = 21 in .* depth is not"):
+    with pytest.raises(InputError, match="set units = 21; .* depth is not"):
         fleet_of(ds, 21, plain=True)
 
 
@@ -291,7 +291,7 @@ def test_a_fleet_of_one_is_a_unit():
 
 def test_more_units_than_there_are_is_refused():
     ds = fleet_result(units=3, samples=30, depth=LISTED)
-    with pytest.raises(InputError, match="set units = 4 in .* depth is not") as refused:
+    with pytest.raises(InputError, match="set units = 4; .* depth is not") as refused:
         fleet_of(ds, 4)
     assert str(refused.value).count("\n") == 0
     assert fleet_of(ds, 3).samples == 30

@@ -158,6 +158,12 @@ def test_a_fault_costs_its_row_and_keeps_its_folder(uq, body, folder, fault):
     assert all(one.name.startswith("failed-") for one in kept.parent.iterdir())
 
 
+@pytest.mark.slow
+def test_an_fmu_that_crashes_is_one_sentence_of_simulate(uq, body):
+    ended = uq("simulate", "body.toml", "--set", "fault=4")
+    assert ended.code == 1 and ended.out.startswith("body: crashed  killed its process (Aborted)")
+
+
 def test_another_fmu_is_noticed(uq, body, library):
     run(uq, "body.toml")
     other = DESCRIPTION.replace("temperature", "heat")

@@ -1,5 +1,7 @@
 """Shares of the variance by level: values, what cannot be told apart, and every reader."""
 
+import json
+
 import numpy as np
 import pytest
 from command_line import strict_json
@@ -10,6 +12,7 @@ from scipy import stats
 
 import uq as api
 from uq.analysis.apportioned import shares_of
+from uq.analysis.fleet import fleet_of
 from uq.analysis.level_shares import by_level
 from uq.errors import InputError
 from uq.nested_variance import nested_shares
@@ -287,6 +290,38 @@ def test_what_is_not_integrated_on_one_level_needs_one_row_a_sample(level, units
     for name, variance in variances.items():
         one = found.shares[name]
         assert one.low < variance / 0.75 < one.high < one.low + 0.06
+
+
+def test_powers_that_cancel_do_not_vary():
+    """A fleet of any size then follows from samples of one unit."""
+    uncertain = {"a": lognormal(0.4), "c": {"equals": "a"}, "z": NORMAL | {"level": SHARED}}
+    ds = computed(scaled(uncertain, units=1, repeats=1)).copy(deep=True)
+    ds["life"].values[:] = np.exp(ds["z"].values / 2)
+    ds["life"].attrs["scales"] = json.dumps({"a": 1.0, "c": -1.0})
+    found = by_level(ds).outputs["log(life)"]
+    assert found.shares[SHARED].numbers == (1.0, 1.0, 1.0)
+    first = fleet_of(ds, 1000).first[0.5]
+    assert first.estimate.value == pytest.approx(np.median(ds["life"]), rel=0.1)
+    ds["life"].attrs["scales"] = json.dumps({"a": 1.0})
+    with pytest.raises(InputError, match="a fleet of 1000 needs samples of as many units, now 1"):
+        fleet_of(ds, 1000)
+
+
+@pytest.mark.parametrize(("method", "said"), [("sobol", ""), ("saltelli", " and method = 'monte")])
+def test_what_to_set_is_possible_in_the_design(method, said):
+    uncertain = {"a": lognormal(0.4) | {"level": OWN}, "z": NORMAL | {"level": SHARED}}
+    design = {"method": method, "units": 1, "repeats": 1, "samples": 64, "replicates": 8}
+    ds = computed(scaled(uncertain, **design))
+    (reason,) = {
+        by_level(ds, plain=True).outputs["log(life)"].shares[one].reason for one in (OWN, SHARED)
+    }
+    assert reason.startswith(
+        f"a single unit cannot show what is shared and what is own; set units = 2{said}"
+    )
+    with pytest.raises(InputError, match=rf"in \[design\] set units = 9{said}"):
+        fleet_of(ds, 9, plain=True)
+    band = fleet_of(ds, 1, [1.0], plain=True).by[1.0][0].low.reason
+    assert band == reason
 
 
 def test_what_the_rows_cannot_tell_apart_stays_so():

@@ -1,6 +1,7 @@
 """A plain function as a machine: what a study makes of it, and what goes wrong."""
 
 import itertools
+import json
 import subprocess
 import sys
 
@@ -10,6 +11,11 @@ from computed import summarised
 
 import uq as package
 from uq.contract import Status
+from uq.outside.compiled import Compiled
+from uq.outside.row_by_row import RowByRow
+from uq.rows import elements
+from uq.running import child, loading
+from uq.study.registry import find_model
 
 STUDY = """
 [study]
@@ -89,6 +95,25 @@ def test_a_life_that_ends_in_all_rows_seen_is_named_when_one_does_not(uq, write)
     lost = ds["status"].values == Status.BAD_SHAPE
     assert lost.any() and not lost[:64].any()
     assert "returns={'life': uq.Returned(life=True)}" in ds["status"].attrs["example_bad_shape"]
+
+
+def test_a_long_array_is_described_at_some_places_unless_it_is_named(uq, write, monkeypatch):
+    monkeypatch.setattr(elements, "MOST_PLACES", 12)
+    text = (
+        "import uq\n@uq.machine\ndef wear(load=1.0): return {'y': [[load] * 3] * 90, 'z': load}\n"
+    )
+    file, study = write(text), STUDY.replace("100", "20")
+    for more, count in (("", 3 * 4), ("[analysis]\noutputs = ['y']\n", 3 * 90)):
+        file = write(text, study + more)
+        uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet", "--fresh")
+        ds = package.open_result("own.nc")
+        found = [one.name for one in elements.elements_of(ds, ["y"])]
+        assert len(found) == count and found[0] == "y[y_0=0,y_1=0]"
+        assert found[-1] == "y[y_0=89,y_1=2]" and len(elements.named_elements(ds, "y")) == 270
+        (one,) = elements.named_elements(ds, "y[y_0=17,y_1=1]")
+        assert one.place == {"y_0": 17, "y_1": 1}
+        said = "y: shown at evenly spread places, as it has 270 elements"
+        assert [one[: len(said)] for one in elements.notes_on_places(ds)] == [said] * (not more)
 
 
 def test_what_is_declared_is_not_looked_for(uq, write):
@@ -299,6 +324,73 @@ def test_an_own_model_that_is_not_named_is_asked_for(uq, write):
     assert "a model of your own is named by its file" in uq("check", "own.toml").err
 
 
+SLOW_TO_LEARN = """
+import time, uq
+@uq.machine
+def wear(load: float = {nominal}):
+    if load > 1.5:
+        time.sleep(300)
+    return {{"y": load}}
+"""
+
+
+@pytest.mark.slow
+def test_a_nominal_row_that_hangs_is_one_line(uq, write, monkeypatch):
+    monkeypatch.setattr(loading, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(loading, "_SLOW", 0.5)
+    file = write(SLOW_TO_LEARN.format(nominal=2.0))
+    ended = uq("run", "own.toml", "--model", file, "--row-limit", "1")
+    told, refused = ended.err.splitlines()
+    assert told.startswith("running 65 rows, once, to see what the model returns; 'returns' in")
+    assert ended.code == 2 and refused.endswith("its nominal row did not end within 1 s")
+
+
+@pytest.mark.slow
+def test_a_row_that_hangs_while_it_is_seen_what_is_returned_costs_that_row_only(
+    uq, write, monkeypatch
+):
+    monkeypatch.setattr(loading, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(child, "FIRST_SECONDS", 0.5)
+    file = write(SLOW_TO_LEARN.format(nominal=1.0))
+    ended = uq("run", "own.toml", "--model", file, "--row-limit", "0.5", "--samples", "6")
+    ds = package.open_result("results/own.nc")
+    slow = ds["load"].values > 1.5
+    assert (ds["status"].values == np.where(slow, Status.TIMED_OUT, Status.OK)).all() and slow.any()
+    assert "Traceback" not in ended.err
+
+
+def test_a_row_that_ends_its_process_is_one_sentence_of_simulate(uq, write):
+    file = write(
+        "import ctypes, uq\n@uq.machine(returns={'y': '1'})\ndef wear(load: float = 1.0):\n"
+        "    ctypes.string_at(0)\n    return {'y': load}\n"
+    )
+    ended = uq("simulate", file)
+    assert ended.code == 1 and ended.err == ""
+    assert ended.out.startswith("wear: crashed  killed its process (Segmentation fault)\n")
+
+
+@pytest.mark.slow
+def test_slow_rows_of_two_workers_begin_together(uq, write):
+    file = write(
+        "import time, uq\n@uq.machine(returns={'began': 's'})\ndef wear(load: float = 1.0):\n"
+        "    began = time.time()\n    time.sleep(3)\n    return {'began': began}\n"
+    )
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--workers", "2", "--samples", "2")
+    first, second = package.open_result("own.nc")["began"].values
+    assert abs(second - first) < 3
+
+
+@pytest.mark.slow
+def test_simulate_shows_what_a_function_prints(write):
+    file = write(
+        "import uq\n@uq.machine(returns={'y': '1'})\ndef wear(load: float = 1.0):\n"
+        "    print('here I am')\n    return {'y': load}\n"
+    )
+    command = [sys.executable, "-m", "uq", "simulate", file, "--json"]
+    ended = subprocess.run(command, capture_output=True, text=True)
+    assert ended.stderr == "here I am\n" and json.loads(ended.stdout)["outputs"] == {"y": 1.0}
+
+
 def test_a_compiled_function_returns_a_tuple(uq, write):
     file = write(
         "from math import inf\nimport numba\nimport uq\n"
@@ -311,6 +403,43 @@ def test_a_compiled_function_returns_a_tuple(uq, write):
     load = ds["load"].values
     assert (ds["energy"].values == load**2).all()
     assert (ds["life"].values == np.where(load > 0.1, 3.0 / load, np.inf)).all()
+
+
+HARD = """
+from math import inf, nan
+import numba
+import numpy as np
+import uq
+
+@uq.machine(returns={
+    "life": uq.Returned("s", life=True), "curve": uq.Returned(shape=(3,)), "noise": "1"
+})
+@numba.njit
+def wear(seed, load=1.0):
+    if load > 1.6:
+        raise ValueError("too heavy")
+    many = np.exp(load * np.arange(2 if 1.5 < load else 3))
+    life = nan if 1.4 < load < 1.5 else 3.0 / load if load > 0.1 else inf
+    return life, many, inf if 1.3 < load < 1.4 else load + seed % 7
+"""
+
+
+@pytest.mark.slow
+def test_a_compiled_loop_over_rows_returns_what_each_row_returns(write):
+    batch = find_model(write(HARD)).batch
+    assert isinstance(batch, Compiled)
+    chance = np.random.default_rng(1)
+    x, seed = 2 * chance.random((500, 1)), chance.integers(0, 2**64 - 1, 500, dtype=np.uint64)
+    found = batch(x, seed, None)
+    again = batch(x[123:], seed[123:], None)
+    one_by_one = RowByRow.__call__(batch, x, seed, None)
+    for name, values in found[0].items():
+        assert values.tobytes() == one_by_one[0][name].tobytes()
+        assert values[123:].tobytes() == again[0][name].tobytes()
+    assert (found[1] == one_by_one[1]).all() and found[2] == one_by_one[2]
+    kinds = {Status.OK, Status.RAISED, Status.NON_FINITE, Status.BAD_SHAPE}
+    assert set(found[1].tolist()) == kinds
+    assert "ValueError: too heavy" in found[2].values()
 
 
 def test_a_new_machine_passes_as_it_is_written(uq, folder):

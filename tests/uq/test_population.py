@@ -14,12 +14,8 @@ from uq.clusters import Clusters
 from uq.inputs.registry import law_of
 from uq.population.functionals import Population
 from uq.population.means import EXACT, FEW, effective_rows, share_to_compare, weighted_share
-from uq.population.scaling import (
-    inputs_of,
-    integrated,
-    population,
-    why_not_integrated,
-)
+from uq.population.row_inputs import inputs_of
+from uq.population.scaling import integrated, population, why_not_integrated
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.elements import independent_rows, replicates_of
 from uq.two_samples import difference

@@ -54,7 +54,8 @@ def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
     study = api.load_study(path, "sample_models:KINDS")
     options = {"workers": 0, "chunk_rows": 50, "progress": seen.append}
     ds = api.run(study, "out.nc", **options)
-    last = seen[-1]
+    first, last = seen[0], seen[-1]
+    assert (first.done, first.under_way) == (0, 50)  # a row may take minutes
     assert (last.done, sum(last.status.values())) == (200, 200)
     lives = np.where(ds["life_censored"], np.inf, ds["life"]).reshape(200, -1)[:, 0]
     label, median = last.median
@@ -155,3 +156,24 @@ def test_the_time_that_a_model_compiles_is_not_taken_for_that_of_its_rows():
     assert pace(Progress(10, 400, 0), 60.0) == 0.0
     assert progress.sentence(Progress(10, 400, 0), 0.0) == "10 of 400 rows, 0 failed"
     assert pace(Progress(110, 400, 0), 62.0) == pytest.approx(50.0)
+
+
+def test_the_pace_of_slow_rows_counts_from_the_start():
+    pace = progress.Pace()
+    assert pace(Progress(0, 8, 0, under_way=2), 2.0) == 0.0
+    assert pace(Progress(1, 8, 0, under_way=2), 32.0) == pytest.approx(1 / 30)
+    assert pace(Progress(2, 8, 0, under_way=2), 32.1) == pytest.approx(2 / 30.1)
+
+
+def test_the_pace_of_fast_rows_counts_from_the_first():
+    pace = progress.Pace()
+    assert pace(Progress(5, 400, 0, found=5), 2.0) == 0.0
+    assert pace(Progress(6, 400, 0, found=5), 4.0) == 0.0
+    assert pace(Progress(106, 400, 0, found=5), 6.0) == pytest.approx(50.0)
+
+
+def test_the_time_left_runs_down_between_rows():
+    slow = Progress(2, 8, 0, under_way=2)
+    assert "1:30 left" in progress.sentence(slow, 2 / 30)
+    assert "1:10 left" in progress.sentence(slow, 2 / 30, since=20.0)
+    assert "0:00 left" in progress.sentence(slow, 2 / 30, since=200.0)

@@ -61,7 +61,8 @@ def test_tables_sort_by_a_click_and_back(browser, report):
     column = (
         "(() => { const t = [...document.querySelectorAll('table')].find(t =>"
         " t.caption?.textContent.startsWith('Statistics'));"
-        " const i = [...t.tHead.rows[0].cells].findIndex(c => c.textContent === '50 % quantile');"
+        " const i = [...t.tHead.rows[0].cells].findIndex("
+        "c => c.textContent === '50\u00a0% quantile');"
         " {}; return [...t.tBodies[0].rows].map(r => Number(r.cells[i].dataset.key)) })()"
     )
     click = "t.tHead.rows[0].cells[i].querySelector('button').click()"
@@ -117,6 +118,21 @@ def test_no_printed_figure_leaves_half_a_page_empty(browser, report):
     )
     browser.do("Emulation.setEmulatedMedia", media="")
     assert 100 < min(heights) and max(heights) < 480  # of 1000 pixels, with its caption
+
+
+def test_letters_of_printed_figures_are_not_too_small(browser, report):
+    browser.open(report, width=690)
+    browser.do("Emulation.setEmulatedMedia", media="print")
+    points = browser.value(
+        "[...document.querySelectorAll('figure svg')].filter(one => one.checkVisibility())"
+        ".flatMap(svg => { const {width, height} = svg.viewBox.baseVal;"
+        " const box = svg.getBoundingClientRect();"
+        " const scale = 0.75 * Math.min(box.width / width, box.height / height);"
+        " return [...svg.querySelectorAll('text')].map(one => parseFloat("
+        "getComputedStyle(one).fontSize)).filter(size => size > 6).map(size => scale * size) })"
+    )  # indices of symbols are smaller
+    browser.do("Emulation.setEmulatedMedia", media="")
+    assert len(points) > 5 and min(points) >= 7
 
 
 def test_a_printed_report_has_figures_instead_of_controls(browser, report):

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from computed import kinds, linear, with_output
+from computed import asking, kinds, linear, with_output
 from explored import cells
 
 from uq.analysis.findings import Findings
@@ -118,6 +118,17 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     (low, high) = ranges(browser)[1]
     ended = known & ~censored & (life >= low) & (life <= high)
     assert ended.sum() == browser.value(count)
+
+
+def test_a_success_is_no_life_that_ends(shown):
+    ds = linear(samples=100)
+    ds = with_output(ds, "locking", ds["y"].values, "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    said = shown(asking(ds, outputs=["locking"])).value(
+        "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.innerText).join()"
+    )
+    assert said.count("Share that has not yet succeeded") == 2 and "10\u00a0% quantile of" in said
+    assert "outlives" not in said and "B10" not in said
 
 
 @pytest.mark.parametrize("design", [("monte-carlo", 400, 1), ("sobol", 64, 8)], ids=str)

@@ -15,7 +15,8 @@ from uq.errors import RunError
 from uq.intervals import share_interval
 from uq.population.functionals import Population
 from uq.population.reweighting import Weighting
-from uq.population.scaling import inputs_of, population
+from uq.population.row_inputs import inputs_of
+from uq.population.scaling import population
 from uq.report.embedded import rows_inside
 from uq.rows.elements import independent_rows, replicates_of
 

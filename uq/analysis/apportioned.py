@@ -9,6 +9,7 @@ import numpy as np
 
 from uq.contract import Floats
 from uq.designs.levels import CHANCE, LEVELS, OWN, SHARED
+from uq.designs.registry import several
 from uq.estimate import Estimate
 from uq.nested_variance import nested_shares
 from uq.rows.nesting import samples_have
@@ -20,15 +21,9 @@ SOURCES = (*LEVELS, SOLVER)
 
 NONE, ALL = Estimate(0.0, 0.0, 0.0), Estimate(1.0, 1.0, 1.0)
 
-_ONE_REPEAT = Estimate(
-    reason="a single repeat cannot separate chance from what is own to a unit; set repeats = 2"
-)
-_ONE_UNIT = Estimate(
-    reason="a single unit cannot show what is shared and what is own; set units = 2"
-)
-_ONE_ROW = Estimate(
-    reason="a single row a sample cannot separate what is shared from chance; set repeats = 2"
-)
+_ONE_REPEAT = "a single repeat cannot separate chance from what is own to a unit; {repeats}"
+_ONE_UNIT = "a single unit cannot show what is shared and what is own; {units}"
+_ONE_ROW = "a single row a sample cannot separate what is shared from chance; {repeats}"
 INCLUDES_CHANCE = "that chance counts as own"
 
 
@@ -76,6 +71,7 @@ def shares_of(
     errors: Floats | None = None,
     replicate: Any = None,
     known: Mapping[str, Floats] = MappingProxyType({}),
+    design: str = "monte-carlo",
 ) -> LevelShares:
     """Estimate the shares of the variance of one number per row.
 
@@ -91,6 +87,8 @@ def shares_of(
         Where only replicates are independent.
     known : dict of str to ndarray of shape (samples, units, repeats), optional
         Level -> variance that each row adds to it, of independent terms at their means in `table`.
+    design : str, optional
+        By which samples were drawn, for advice.
 
     Returns
     -------
@@ -113,7 +111,7 @@ def shares_of(
     if found.variance > 0:
         shares = dict.fromkeys(LEVELS, NONE)
         for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
-            shares |= _of_levels(levels, share)
+            shares |= _of_levels(levels, share, design)
     return LevelShares(shares | {SOLVER: found.error}, found.variance, found.left_out)
 
 
@@ -157,12 +155,16 @@ def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, 
     return tuple((name,) for name in names) if several.get(names, True) else (names,)
 
 
-def _of_levels(levels: tuple[str, ...], share: Estimate) -> dict[str, Estimate]:
+def _of_levels(levels: tuple[str, ...], share: Estimate, design: str) -> dict[str, Estimate]:
     """Return the shares of levels from the share of their place."""
     if len(levels) == 1:
         return {levels[0]: share}
+    advice = {key: several(key, design) for key in ("units", "repeats")}
+    one_repeat, one_unit, one_row = (
+        Estimate(reason=why.format(**advice)) for why in (_ONE_REPEAT, _ONE_UNIT, _ONE_ROW)
+    )
     if levels == (OWN, CHANCE):
-        return {OWN: replace(share, assumes=INCLUDES_CHANCE), CHANCE: _ONE_REPEAT}
+        return {OWN: replace(share, assumes=INCLUDES_CHANCE), CHANCE: one_repeat}
     if OWN not in levels:
-        return dict.fromkeys(levels, _ONE_ROW)
-    return dict.fromkeys(levels, _ONE_UNIT) | ({CHANCE: _ONE_REPEAT} if CHANCE in levels else {})
+        return dict.fromkeys(levels, one_row)
+    return dict.fromkeys(levels, one_unit) | ({CHANCE: one_repeat} if CHANCE in levels else {})

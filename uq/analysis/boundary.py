@@ -10,7 +10,7 @@ from uq.analysis.summary import REGIME
 from uq.estimate import Estimate
 from uq.indices.independent_inputs import independent_inputs
 from uq.inputs.conditioning import cdf_within
-from uq.population.scaling import EVERYWHERE
+from uq.population.row_inputs import EVERYWHERE
 from uq.rows.elements import has_independent_samples, independent_rows
 from uq.rows.nesting import one_of_each_sample
 from uq.rows.results import failed

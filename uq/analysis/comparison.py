@@ -112,7 +112,7 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
         second=Side(str(second.attrs["title"]), found[1]),
         changed=changed,
         only=only_change(first, second, changed),
-        pairing=pair.kinship.name.lower().removesuffix("_imported"),
+        pairing=pair.kinship.name.lower().partition("_")[0],
         shares=compared_shares(pair, found),
         outputs={
             name: compared_output(pair, [one[name] for one in elements], found)

@@ -10,8 +10,11 @@ import xarray as xr
 from uq.analysis.fleet_numbers import Banded, FleetNumbers
 from uq.analysis.summary import why_no_intervals
 from uq.designs.levels import SHARED
+from uq.designs.registry import several
 from uq.errors import InputError, choices
 from uq.population.fleets import Units, units_of
+from uq.population.row_inputs import inputs_of
+from uq.population.scaling import without_effect
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -190,7 +193,8 @@ def fleet_of(
                 " a longer horizon"
             )
     part = None if has_independent_samples(rows) else units.place.replicate
-    of = FleetNumbers(units, size, allow, part, SHARED in levels_that_vary(rows))
+    idle = without_effect(inputs_of(rows), element.declared)
+    of = FleetNumbers(units, size, allow, part, SHARED in levels_that_vary(rows, idle))
     first = {p: of.first(p) for p in analysis.quantiles}
     ended = {time: (of.failed(time), of.at_most_allowed(time)) for time in times}
     place = units.place
@@ -228,7 +232,7 @@ def _refuse(units: Units, size: int) -> None:
         names = ", ".join(units.varying)
         verb = "is" if len(units.varying) == 1 else "are"
         raise InputError(
-            f"uq fleet: a fleet of {size} needs samples of as many units: set units = {size} in"
-            f" [design], now {units.place.units}; more than that only where all that differs"
-            f" between units is integrated exactly, and {names} {verb} not"
+            f"uq fleet: a fleet of {size} needs samples of as many units, now {units.place.units}:"
+            f" in [design] {several('units', units.design, size)}; fewer are enough only where all"
+            f" that differs between units is integrated exactly, and {names} {verb} not"
         )

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import special
 
 from uq.analysis.failed_rows import bounds, with_failed_at
+from uq.designs.registry import several
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
 from uq.population import worlds
@@ -145,6 +146,9 @@ class FleetNumbers:
         units, world = self._units, self._alone[0].element
         if not units.are_alike and units.worlds_repeat:
             return lambda probability: Estimate(reason=worlds.REPEATED)
+        if not units.are_alike and units.place.units == 1:
+            why = f"{worlds.ONE_UNIT}; {several('units', units.design)}"
+            return lambda probability: Estimate(reason=why)
         if not units.are_alike:
             return worlds.Noisy(units.ended(time), units.weights, self._part)
         part = replicates_of_some(self._part, world.present)

@@ -127,7 +127,8 @@ def _scales(rows: xr.Dataset, target: Target) -> Scales:
     if split_name(target.name)[0] == "log" or not found.inputs:
         return found
     names = " and ".join(found.inputs)
-    return Scales({}, f"{names} not integrated: the lives are replaced by their ranks")
+    why = f"{names} not integrated: the lives are replaced by their ranks"
+    return Scales({}, why, found.idle)
 
 
 def _shares(
@@ -143,9 +144,9 @@ def _shares(
     errors, why_none = _errors(rows, target)
     table = place.table(np.where(np.isfinite(values), values, np.nan))
     own = None if errors is None else place.table(errors)
-    varying = levels_that_vary(rows, scales.inputs)
+    varying = levels_that_vary(rows, (*scales.inputs, *scales.idle))
     known = {level: place.table(variance) for level, variance in scales.variances.items()}
-    found = shares_of(table, varying, own, replicate, known)
+    found = shares_of(table, varying, own, replicate, known, rows.attrs["design"])
     if errors is None:
         found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
     notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))

@@ -40,6 +40,7 @@ class Kinship(Enum):
 
     STRANGERS = "The seeds differ: the two samples are independent."
     ROWS = "The studies share a seed: rows with the same number are paired."
+    ROWS_SAME = "Both results have the same rows."
     REPLICATES = "The studies share a seed: replicates with the same number are paired."
     ROWS_IMPORTED = "The imported rows are the same: rows with the same number are paired."
     WEIGHTED = "Inspections have weighted the rows, so these intervals are conservative."
@@ -73,13 +74,20 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
         return Kinship.STRANGERS
     independent = [has_independent_samples(ds) for ds in both]
     if any(independent) and any(is_nested(ds) for ds in both):
-        return Kinship.UNKNOWN
+        return Kinship.ROWS_SAME if _same_rows(first, second) else Kinship.UNKNOWN
     if all(independent):
         same = _columns(first) == _columns(second)
         return Kinship.ROWS if same else Kinship.UNKNOWN
     if not any(independent) and first.attrs["replicates"] == second.attrs["replicates"]:
         return Kinship.REPLICATES
     return Kinship.UNKNOWN
+
+
+def _same_rows(first: xr.Dataset, second: xr.Dataset) -> bool:
+    """Whether two results are of one study, with the same number in every place."""
+    if first.attrs["study_identity"] != second.attrs["study_identity"]:
+        return False
+    return first.drop_attrs().equals(second.drop_attrs())
 
 
 def _kinship_of_imported(first: xr.Dataset, second: xr.Dataset) -> Kinship:
@@ -149,7 +157,7 @@ class Pair:
         self._replicate = [replicates_of(rows) for rows in self.rows]
         rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
         self._shared = shared_rows(*self.rows) if rows else None
-        self._paired = rows or self.kinship is Kinship.REPLICATES
+        self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
 
     def difference(
         self, estimator: Estimator, samples: list[Sample], known: list[Estimate]

@@ -30,6 +30,7 @@ from uq.rows.elements import (
     flags,
     has_independent_samples,
     independent_rows,
+    notes_on_places,
     replicates_of,
     shown_outputs,
     study_file_of,
@@ -52,7 +53,6 @@ NOT_STATED = (
 )
 
 SEVERAL_ROWS = "the rows of one sample are not independent ({size}): intervals rest on samples"
-
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
 SOME_FAILED = (
@@ -289,7 +289,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
     notes += filter(None, [ds.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(ds)])
-    return notes
+    return notes + notes_on_places(ds)
 
 
 def why_no_intervals(ds: xr.Dataset) -> str:

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.designs.levels import CHANCE, OWN
+from uq.designs.registry import several
 from uq.estimate import Estimate
 from uq.intervals import by_replicate, scattered_share_interval
 from uq.rows.elements import replicates_of
 from uq.rows.nesting import Nesting
 
-ONE_REPEAT = "a single repeat does not show whether another ends in another regime; set repeats = 2"
+ONE_REPEAT = "a single repeat does not show whether another ends in another regime; {}"
 
 
 def switching(
@@ -46,7 +47,7 @@ def switching(
     each = _elsewhere(unit, codes)
     known = np.isfinite(each)
     if not known.any():
-        return Estimate(reason=ONE_REPEAT), each
+        return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.attrs["design"]))), each
     value, of = float(each[known].mean()), _clusters(rows, place)
     means = by_replicate(each[known], of[known])
     low, high = scattered_share_interval(value, means, rows=int(known.sum()), samples=of.samples)

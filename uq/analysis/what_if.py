@@ -20,7 +20,7 @@ from uq.json_form import number
 from uq.literals import key, read_toml, shown, toml
 from uq.population.densities import changed_laws, depends_otherwise
 from uq.population.reweighting import Weighting
-from uq.population.scaling import Inputs, inputs_of
+from uq.population.row_inputs import Inputs, inputs_of
 from uq.rows.elements import (
     analysis_of,
     independent_rows,

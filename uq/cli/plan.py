@@ -6,7 +6,7 @@ from typing import Any
 from uq.analysis.joint_bounds import Needed, rows_needed
 from uq.analysis.widths import Widths, expected_widths
 from uq.cli.printing import grid, heading, note, print_json
-from uq.cli.progress import say_compiling
+from uq.cli.progress import say, say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import Study
@@ -18,7 +18,7 @@ _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
 def plan(study: Study, workers: int | None, json: bool) -> None:
     """Run a few rows of a study; show what the whole will cost, and how wide intervals will be."""
-    cost, ds = pilot(study, workers, say_compiling)
+    cost, ds = pilot(study, workers, say_compiling, say)
     failures, widths = int(failed(ds).sum()), expected_widths(ds)
     needed = rows_needed(ds, study.analysis)
     if json:

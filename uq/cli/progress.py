@@ -13,6 +13,7 @@ from uq.wording import duration, number
 
 _PLAIN_SECONDS = 10.0
 _PLAIN_WIDTH = 120
+_START_SECONDS = 5.0  # in which the processes of a run start
 _COMPILING = "compiling the model (once; it may take a minute)"
 
 
@@ -33,16 +34,28 @@ def say_compiling() -> None:
 
 
 class Pace:
-    """Rows per second since the first arrived: compilation does not count."""
+    """Rows per second, without the time in which processes start and models compile.
+
+    That is since the first rows arrived, or since the start if they took longer than starting does:
+    slow rows of several workers arrive together.
+    """
 
     def __init__(self) -> None:
-        self._first: tuple[int, float] | None = None
+        self._began: tuple[int, float] | None = None
+        self._arrived = False
 
     def __call__(self, progress: Progress, now: float) -> float:
         """Return the pace at a time [s]; 0 while it is unknown."""
-        if self._first is None:
-            self._first = progress.done, now
-        done, began = self._first
+        if progress.compiling:
+            self._began = None
+            return 0.0
+        if self._began is None:
+            self._began = progress.done, now
+        if progress.done > progress.found and not self._arrived:
+            self._arrived = True
+            if now - self._began[1] < _START_SECONDS:
+                self._began = progress.done, now
+        done, began = self._began
         return (progress.done - done) / (now - began) if now > began else 0.0
 
 
@@ -52,11 +65,11 @@ def _plain() -> Iterator[Report]:
 
     def show(progress: Progress) -> None:
         nonlocal shown_at
+        now = time.monotonic()
+        speed = pace(progress, now)
         if progress.compiling:
             once(_COMPILING)
             return
-        now = time.monotonic()
-        speed = pace(progress, now)
         if progress.dashboard:
             once(f"dask dashboard: {progress.dashboard}")
         if now - shown_at >= _PLAIN_SECONDS:
@@ -87,30 +100,51 @@ def _moving() -> Iterator[Report]:
     columns = (BarColumn(bar_width=10), TextColumn("{task.description}", markup=False))
     bar = Bar(*columns, console=console)
     task = bar.add_task("starting", total=None)
-    with Live(bar, console=console, transient=True) as live, undone(live.stop):
+    said = Progress(0, 0, 0), 0.0, 0.0
+
+    def picture() -> Group:
+        progress, speed, then = said
+        if not progress.total:
+            return Group(bar)
+        text = sentence(progress, speed, time.monotonic() - then)
+        if progress.compiling:
+            text = _COMPILING
+        bar.update(task, completed=progress.done, total=progress.total or None, description=text)
+        lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
+        return Group(bar, *lines)
+
+    with (
+        Live(get_renderable=picture, console=console, transient=True) as live,
+        undone(live.stop),
+    ):
         once = cache(partial(live.console.print, markup=False))
 
         def show(progress: Progress) -> None:
-            if progress.compiling:
-                bar.update(task, description=_COMPILING)
-                return
-            text = sentence(progress, pace(progress, time.monotonic()))
-            bar.update(task, completed=progress.done, total=progress.total, description=text)
-            lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
-            live.update(Group(bar, *lines))
+            nonlocal said
+            now = time.monotonic()
+            said = progress, pace(progress, now), now
             if progress.dashboard:
                 once(f"dask dashboard: {progress.dashboard}")
 
         yield show
 
 
-def sentence(progress: Progress, pace: float) -> str:
-    """Return the progress of a run at a pace in rows per second; 0 if that is unknown."""
+def sentence(progress: Progress, pace: float, since: float = 0.0) -> str:
+    """Return the progress of a run.
+
+    Parameters
+    ----------
+    progress : Progress
+    pace : float
+        Rows per second; 0 if that is unknown.
+    since : float
+        How long ago that was [s].
+    """
     text = f"{progress.done} of {progress.total} rows, "
     if progress.under_way:
         text += f"{progress.under_way} under way, "
     if pace:
-        left = (progress.total - progress.done) / pace
+        left = max((progress.total - progress.done) / pace - since, 0.0)
         text += f"{pace:.3g} rows/s, {_clock(left)} left, "
     return f"{text}{progress.failed} failed"
 

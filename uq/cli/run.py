@@ -23,9 +23,11 @@ from uq.study.definition import Study
 from uq.upkeep.amending import study_of
 
 
-def loaded(path: str, model: str | None, samples: int | None) -> Study:
+def loaded(
+    path: str, model: str | None, samples: int | None, row_limit: float | None = None
+) -> Study:
     """Return a study, with another number of samples if one is given."""
-    study = load_study(path, model, progress.say)
+    study = load_study(path, model, progress.say, row_limit)
     return study if samples is None else study.with_samples(samples)
 
 

@@ -14,7 +14,8 @@ from uq.errors import InputError
 from uq.greek import readable
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
-from uq.rows.one_row import Row, run_row
+from uq.rows.one_row import Row
+from uq.running.alone import run_alone
 from uq.running.loading import load_model
 from uq.units import typical, unit_of
 from uq.wording import in_brackets
@@ -32,13 +33,12 @@ def simulate(
     plot: Path | None,
 ) -> int:
     """Run a model once and show the result; return the exit code."""
-    model = load_model(reference)
     given = dict(_number(text) for text in parameters)
     chosen = dict(literal(text) for text in settings)
     if output or plot:
-        check_files(model, output, plot)
+        check_files(load_model(reference), output, plot)
     with compilation(say_compiling):
-        row = run_row(model, given, chosen)
+        row = run_alone(reference, given, chosen, compiling=say_compiling)
         if output or plot:
             _keep(row, output, plot)
     print_json(as_json(row)) if json else _show(row)

@@ -36,6 +36,7 @@ _STYLE = """
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
 }
+@media print { .answer { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: .3rem 8mm; } }
 @media print { .answer > * { break-inside: avoid; } }
 """
 STYLE = Markup(_STYLE) + bars.STYLE

@@ -80,3 +80,11 @@ DESIGNS = {
 
 IMPORTED = tuple(name for name, design in DESIGNS.items() if design.imported)
 """Designs whose rows come from a file."""
+
+
+def several(key: str, method: str, count: int = 2) -> str:
+    """Return how samples get several ``units`` or ``repeats``: what to write into [design]."""
+    if DESIGNS[method].nests:
+        return f"set {key} = {count}"
+    able = " or ".join(f"'{name}'" for name, one in DESIGNS.items() if one.nests)
+    return f"set {key} = {count} and method = {able}, since samples of '{method}' have one row"

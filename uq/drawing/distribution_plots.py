@@ -102,7 +102,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
-    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen))
+    each = 1.1 if len(chosen) < 3 else 0.75
+    panels = column(axes, 0.7 + each * len(chosen), len(chosen))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():

@@ -2,6 +2,7 @@
 
 import re
 from itertools import pairwise
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -27,9 +28,14 @@ _CHARACTERS = 6
 
 
 def grid(
-    axes: Axes | None, height: float, rows: int = 1, columns: int = 1, **shared: Any
+    axes: Axes | None,
+    height: float,
+    rows: int = 1,
+    columns: int = 1,
+    width: float = WIDTH,
+    **shared: Any,
 ) -> NDArray[Any]:
-    """Return panels, of a new figure one column wide or in place of given axes.
+    """Return panels, of a new figure or in place of given axes.
 
     Parameters
     ----------
@@ -38,6 +44,8 @@ def grid(
     height : float
         Of a new figure, without the legend that `finish` draws [inch].
     rows, columns : int
+    width : float
+        Of a new figure [inch].
     **shared
         The axes that panels share, as in `matplotlib.figure.Figure.subplots`.
 
@@ -51,7 +59,7 @@ def grid(
         When several panels are asked for and the axes are not part of a grid.
     """
     if axes is None:
-        figure = Drawing(figsize=(WIDTH, height), layout="constrained")
+        figure = Drawing(figsize=(width, height), layout="constrained")
         return figure.subplots(rows, columns, squeeze=False, **shared)
     if rows == columns == 1:
         return np.array([[axes]])
@@ -166,10 +174,13 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
     handles, labels = axes.get_legend_handles_labels()
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
-        lines = len(labels) if entries is None else entries
+        across = 2 if figure.get_figwidth() > WIDTH else 1
+        lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
-        shown = figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
+        shown = figure.legend(
+            handles, labels, loc="outside lower left", markerscale=1.5, ncols=across
+        )
         for handle in shown.legend_handles:
             if isinstance(handle, Line2D) and handle.get_linestyle() == "None":
                 handle.set(markersize=6, alpha=1)  # small, transparent points hide their colour

@@ -18,7 +18,7 @@ from uq.drawing.elements_plot import (
     occurring_regimes,
 )
 from uq.drawing.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
-from uq.drawing.style import INK, ROWS, SHADES, point_size, styled, thinned
+from uq.drawing.style import INK, PAGE, ROWS, SHADES, WIDTH, point_size, styled, thinned
 from uq.drawing.words import as_label, label, labelled, rows_in_words
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
@@ -71,7 +71,9 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
     first = leading(inputs, element)[:_MOST_INPUTS]
-    panels = grid(axes, 0.6 + 1.4 * len(first), len(first), sharey=True)[:, 0]
+    alone = len(first) < 2
+    width = WIDTH if alone else PAGE
+    panels = grid(axes, 2.4, 1, len(first), width, sharey=True)[0]
     unit = display_unit(element.units, element.values)
     shown = replace(
         element,
@@ -81,20 +83,23 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     parts = _parts(rows, len(element.values))
     medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
     for panel, name in zip(panels, first, strict=True):
-        per = input_axis(panel, rows[name], inputs[name], width=46)
+        per = input_axis(panel, rows[name], inputs[name], width=46 if alone else 30)
         x = inputs[name] / per
         _points(panel, x, shown)
         for words, (own, colour) in parts.items():
             _conditional(panel, x, shown, own, colour, words, medians, replicates_of(rows) is None)
-        roomy(panel)
+        roomy(panel, 6 if alone else 4)
         whole_numbers(panel.yaxis)
         if wide:
             logarithmic(panel, vertical=True)
         mark_thresholds(panel, ds, element, unit, vertical=True)
-    above = as_label(element.meaning, unit.name, 46), label(ds, element)
+    above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(ds, element)]
     what = "median" if medians else "mean"
     of_each = f"lines: {what} in slices of a regime's rows" if len(parts) > 1 else ""
-    title(panels[0], *above, rows_in_words([element]), of_each)
+    said = [rows_in_words([element]), of_each]
+    if not alone:
+        above, said = [", ".join(filter(None, above))], ["; ".join(filter(None, said))]
+    title(panels[0], *above, *said)
     return finish(panels[0])
 
 
@@ -167,7 +172,8 @@ def _conditional(
     what = f"{'median' if medians else 'mean'} in slices of {len(x) // count} rows"
     if independent:
         what += ", 95 % band"
-    axes.plot(middle, line, color=colour, label=regime or what)
+    if np.isfinite(line).any():
+        axes.plot(middle, line, color=colour, label=regime or what)
     ended = values[np.isfinite(values)]
     if independent and len(ended):
         top = ended.max()  # an infinite end would hide all others

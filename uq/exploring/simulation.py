@@ -11,7 +11,7 @@ from uq.contract import Model
 from uq.interrupts import in_background
 from uq.rows import results
 from uq.rows.one_row import Row, run_row
-from uq.running.loading import load_model
+from uq.running.alone import run_alone
 
 MOST_SHOWN = 6
 """Quantities in a picture of a motion."""
@@ -55,8 +55,9 @@ def simulate(
     >>> uq.simulate("linear", {"x1": 0.25})["y"].item()  # x1 + 2 x2 + 3 x3 + 4 x4
     4.75
     """
-    model = load_model(model) if isinstance(model, str) else model
-    return dataset(run_row(model, dict(parameters or {}), dict(settings or {}), seed), trajectory)
+    given = dict(parameters or {}), dict(settings or {}), seed
+    row = run_alone(model, *given) if isinstance(model, str) else run_row(model, *given)
+    return dataset(row, trajectory)
 
 
 def dataset(row: Row, trajectory: bool = True) -> xr.Dataset:

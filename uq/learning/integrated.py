@@ -11,7 +11,8 @@ from uq.contract import Floats, Output
 from uq.designs.levels import OWN, SHARED
 from uq.inputs.conditioning import ppf_within
 from uq.learning.looks import Look
-from uq.population.scaling import Inputs, inputs_of, scalers
+from uq.population.row_inputs import Inputs, inputs_of
+from uq.population.scaling import scalers
 from uq.rows.nesting import levels_of
 
 

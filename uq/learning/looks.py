@@ -119,7 +119,7 @@ def look_at(ds: xr.Dataset, one: Inspection) -> Look:
     InputError
         When the result has no such quantity, or it cannot be inspected in this way.
     """
-    known = {element.name: element for element in elements_of(ds, _numbers(ds))}
+    known = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
     depths = dict(_depths(ds))
     if one.output in known:
         element = known[one.output]
@@ -168,7 +168,7 @@ def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
         axis = ds[depth]
         if "units" not in axis.attrs or not np.issubdtype(axis.dtype, np.number):
             continue
-        elements = list(elements_of(ds, [output]))
+        elements = list(elements_of(ds, [output], every=True))
         others = {dim: ds[dim].values for dim in declared.dims[:-1]}
         size = axis.size
         for number, (name, _, _) in enumerate(places(depth, others)):

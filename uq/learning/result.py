@@ -13,7 +13,7 @@ from uq.errors import InputError, choices, nearest
 from uq.learning.inspections import Inspection, read_tables
 from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
-from uq.population.scaling import inputs_of
+from uq.population.row_inputs import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of

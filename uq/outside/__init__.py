@@ -4,6 +4,7 @@ Reading order; a module imports only those above it:
 
     returned        what a function returns, declared or found from rows
     row_by_row      a batch that computes rows one after the other
+    compiled        one that numba has compiled: a loop over rows
     function        a plain function as a machine, and its model
     machine_tables  machine files in TOML, read and checked
     machine_file    a program, its input and its results, described in TOML

@@ -8,6 +8,7 @@ from typing import Any, TypeVar, get_args, get_type_hints, overload
 
 from uq.contract import Model, Parameter
 from uq.errors import InputError
+from uq.outside.compiled import Compiled, is_compiled
 from uq.outside.returned import Returned, read_returns
 from uq.outside.row_by_row import SEED, Fields, RowByRow, model_from
 
@@ -112,7 +113,8 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     fields, wants_seed = _parameters(plain, label)
     outputs = read_returns(label, declared.returns) or dict(returned or {})
     title = declared.title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
-    batch = RowByRow(function, tuple(fields), outputs, wants_seed)
+    kind = Compiled if is_compiled(function) else RowByRow
+    batch = kind(function, tuple(fields), outputs, wants_seed)
     return model_from(name, title, declared.version, fields, outputs, batch, wants_seed)
 
 

@@ -4,6 +4,7 @@ Reading order; a module imports only those above it:
 
     sums            the law of a sum of independent logarithms
     scale_laws      the law of what scales a life, given all that does not
+    row_inputs      the inputs of some rows, and their laws
     scaling         the inputs of a result that are integrated, and the laws of its lives
     by_level        what scales a life, level by level
     smoothing       smoothed importance weights, and whether they can be trusted

@@ -11,8 +11,9 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.designs.levels import LEVELS
+from uq.population.row_inputs import inputs_of
 from uq.population.scale_laws import Scale
-from uq.population.scaling import inputs_of, integrated, not_integrated
+from uq.population.scaling import integrated, not_integrated, without_effect
 from uq.rows.element import Element
 
 
@@ -26,10 +27,13 @@ class Scales:
         By level.
     why_not_more : str
         A sentence on the inputs that scale lives but are not integrated, or "".
+    idle : tuple of str
+        Inputs that scale lives to powers that cancel.
     """
 
     laws: Mapping[str, Scale]
     why_not_more: str = ""
+    idle: tuple[str, ...] = ()
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -62,4 +66,4 @@ def scales_by_level(rows: xr.Dataset, element: Element) -> Scales:
     found = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
     kept = {name: why for one in found.values() for name, why in one.kept.items()}
     laws = {level: one.law for level, one in found.items() if one.law is not None}
-    return Scales(laws, not_integrated(kept))
+    return Scales(laws, not_integrated(kept), without_effect(inputs, element.declared))

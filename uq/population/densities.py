@@ -8,7 +8,7 @@ from scipy import special
 from uq.contract import Floats
 from uq.inputs.conditioning import OUTSIDE_AT_MOST, factor_ends, log_density_between, ppf_within
 from uq.inputs.dependence import normal_correlations
-from uq.population.scaling import EVERYWHERE, Inputs
+from uq.population.row_inputs import EVERYWHERE, Inputs
 
 
 def log_ratio(old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:

@@ -18,8 +18,9 @@ from uq.designs.levels import CHANCE, OWN, SHARED
 from uq.intervals import Replicates
 from uq.population.counting import more_than, turns
 from uq.population.functionals import Population
+from uq.population.row_inputs import Inputs, inputs_of
 from uq.population.scale_laws import Scale
-from uq.population.scaling import Inputs, inputs_of, integrated, not_integrated, why_not_integrated
+from uq.population.scaling import integrated, not_integrated, why_not_integrated, without_effect
 from uq.rows.element import Element
 from uq.rows.nesting import Nesting, levels_of, nesting_of
 
@@ -53,6 +54,8 @@ class Units:
         A sentence on the inputs that scale lives but are not integrated, or "".
     worlds_repeat : bool
         Whether what worlds share, but for what is integrated, is the same in some of them.
+    design : str
+        By which they were drawn.
     """
 
     element: Element
@@ -61,6 +64,7 @@ class Units:
     varying: tuple[str, ...]
     why_not_more: str = ""
     worlds_repeat: bool = False
+    design: str = "monte-carlo"
 
     @property
     def integrated(self) -> tuple[str, ...]:
@@ -204,13 +208,15 @@ def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Unit
             kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(own.inputs)))
             shared = None
         why = not_integrated(kept)
-    known = () if own is None else own.inputs
+    idle = without_effect(inputs, element.declared)
+    known = idle if own is None else (*own.inputs, *idle)
     varying = _unknown(levels, inputs.tied, known)
     if rows.attrs.get("random"):
         varying = (*varying, "the model's own chance")
-    known = () if shared is None else shared.inputs
+    known = idle if shared is None else (*shared.inputs, *idle)
     repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
-    return Units(replace(element, law=own), place, shared, varying, why, repeats)
+    design = rows.attrs["design"]
+    return Units(replace(element, law=own), place, shared, varying, why, repeats, design)
 
 
 def _repeats(

@@ -9,7 +9,8 @@ import xarray as xr
 
 from uq.intervals import Replicates
 from uq.population.densities import changed_laws, log_ratio, share_without_rows
-from uq.population.scaling import Inputs, integrated
+from uq.population.row_inputs import Inputs
+from uq.population.scaling import integrated
 from uq.population.smoothing import Smoothed, no_weights, smoothed
 from uq.rows.element import Element
 from uq.rows.elements import elements_of

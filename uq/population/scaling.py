@@ -3,90 +3,24 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import inf
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
-from uq.contract import Floats, Output
+from uq.contract import Output
 from uq.designs.registry import DESIGNS
-from uq.inputs.conditioning import cdf_within, factor_of, support
+from uq.inputs.conditioning import support
 from uq.inputs.dependence import normal_correlations
 from uq.inputs.law import Law
+from uq.population.row_inputs import Inputs, inputs_of
 from uq.population.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.element import Element
-from uq.rows.elements import elements_of, study_file_of
+from uq.rows.elements import elements_of
 from uq.rows.weights import has_weights
-from uq.study.file import DependenceTable, StudyFile, Tied
-from uq.study.input_checks import laws_of
 
-EVERYWHERE = (-inf, inf)
 NOT_POSITIVE = "it is not always positive"
-
-
-@dataclass(frozen=True)
-class Inputs:
-    """The uncertain inputs of some rows, and their laws.
-
-    Attributes
-    ----------
-    laws : dict of str to Law
-        Of a parameter that is a multiple of another, that of the factor.
-    tied : dict of str to str
-        Parameter -> the one that it equals.
-    dependence : DependenceTable or None
-    bounds : dict of str to tuple of float
-        Which a parameter shares with those tied to it.
-    values : dict of str to ndarray, shape (n,)
-        Of the rows.
-    """
-
-    laws: Mapping[str, Law]
-    tied: Mapping[str, str]
-    dependence: DependenceTable | None
-    bounds: Mapping[str, tuple[float, float]]
-    values: Mapping[str, Floats]
-
-    @property
-    def correlated(self) -> Sequence[str]:
-        """Parameters with rank correlations."""
-        return () if self.dependence is None else self.dependence.parameters
-
-    def own(self, name: str) -> Floats:
-        """Return what the law of a parameter gives: its values, or those of its factor."""
-        law, values = self.laws[name], self.values[name]
-        return values if law.times is None else factor_of(law, values, self.values[law.times])
-
-    def normal(self, name: str) -> Floats:
-        """Return the standard normal variables behind the values of a parameter."""
-        share = cdf_within(self.laws[name], self.values[name], self.bounds[name])
-        return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
-
-
-def inputs_of(rows: xr.Dataset, study: StudyFile | None = None, text: str = "") -> Inputs:
-    """Return the inputs of some rows of a result.
-
-    Parameters
-    ----------
-    rows : xarray.Dataset
-    study : StudyFile, optional
-        Another study of the same inputs, with its `text`.
-    """
-    study, text = (study_file_of(rows), rows.attrs["study"]) if study is None else (study, text)
-    laws = laws_of(text)
-    tied = {name: one.equals for name, one in study.uncertain.items() if isinstance(one, Tied)}
-    admissible = {
-        name: tuple(map(float, rows[name].attrs.get("admissible", EVERYWHERE)))
-        for name in study.uncertain
-    }
-    bounds = {}
-    for name in laws:
-        ends = [admissible[one] for one in (name, *(a for a, b in tied.items() if b == name))]
-        bounds[name] = (max(low for low, _ in ends), min(high for _, high in ends))
-    values = {name: rows[name].values for name in study.uncertain}
-    return Inputs(laws, tied, study.dependence, bounds, values)
 
 
 @dataclass(frozen=True)
@@ -125,7 +59,7 @@ def integrated(
         All inputs that are independent of the others, or the one that depends on others if it
         alone scatters the lives more.
     """
-    exponents, kept = _exponents(inputs, output.scales)
+    exponents, kept, _ = _exponents(inputs, output.scales)
     if levels is not None:
         level = {name: law.level for name, law in inputs.laws.items()}
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
@@ -159,7 +93,7 @@ def integrated(
 
 def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
     """Return the exponents of the inputs that are integrated while their laws stay positive."""
-    exponents, kept = _exponents(inputs, output.scales)
+    exponents, kept, _ = _exponents(inputs, output.scales)
     return {
         name: exponent
         for name, exponent in exponents.items()
@@ -167,10 +101,25 @@ def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
     }
 
 
-def _exponents(
-    inputs: Inputs, scales: Mapping[str, float]
-) -> tuple[dict[str, float], dict[str, str]]:
-    """Return the exponent of each input, with those of the parameters that equal it."""
+class _Exponents(NamedTuple):
+    """What inputs do to a life that scales.
+
+    Attributes
+    ----------
+    scaling : dict of str to float
+        Input -> exponent, with those of the parameters that equal it.
+    kept : dict of str to str
+        Those that do more, or on which others depend -> why they are not integrated.
+    idle : tuple of str
+        Those whose exponents cancel.
+    """
+
+    scaling: dict[str, float]
+    kept: dict[str, str]
+    idle: tuple[str, ...]
+
+
+def _exponents(inputs: Inputs, scales: Mapping[str, float]) -> _Exponents:
     found: dict[str, float] = {}
     for name, exponent in scales.items():
         if name in inputs.laws or name in inputs.tied:
@@ -184,7 +133,13 @@ def _exponents(
             kept[leader] = f"{same} does more than scale lives"
         elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
             kept[leader] = f"{other} is a multiple of it"
-    return {name: exponent for name, exponent in found.items() if exponent}, kept
+    idle = tuple(name for name, one in found.items() if not one and name not in kept)
+    return _Exponents({name: one for name, one in found.items() if one}, kept, idle)
+
+
+def without_effect(inputs: Inputs, output: Output) -> tuple[str, ...]:
+    """Return the inputs that scale the lives of an output to powers that cancel."""
+    return _exponents(inputs, output.scales).idle
 
 
 def _problem(name: str, inputs: Inputs) -> str:
@@ -288,7 +243,7 @@ def population(
 def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
     """Return a sentence on what scales the lives of an element but is not integrated, or ""."""
     inputs = inputs_of(rows)
-    exponents, _ = _exponents(inputs, element.declared.scales)
+    exponents, _, _ = _exponents(inputs, element.declared.scales)
     if not exponents:
         return ""
     if element.censored.any():

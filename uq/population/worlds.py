@@ -29,7 +29,7 @@ FEW = f"needs {FEWEST_WORLDS} samples for points over what is shared"
 FEW_ENDED = f"fewer than {FEWEST_WORLDS} units have ended, or not ended, by then"
 REPEATED = "samples share one of a few values, with no points between: study each of them alone"
 NO_SPREAD = "samples do not differ by more than the noise of their units"
-ONE_UNIT = "a single unit cannot show what is shared and what is own; set units = 2"
+ONE_UNIT = "a single unit cannot show what is shared and what is own"
 
 Exceeding = Callable[[float], Estimate]
 """Probability -> the share of worlds in which that of a unit is larger."""

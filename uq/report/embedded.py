@@ -148,6 +148,7 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
     return column | {
         "role": "output",
         "life": element.is_lifetime,
+        "success": bool(element.declared.success),
         "angle": element.is_angle,
         "neverKnownAtOnce": element.declared.never_known_at_once,
         "censored": encoded(element.censored, "u1") if element.censored.any() else None,

@@ -188,8 +188,8 @@ def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
 
 
 _WORDS = {
-    "never": "Never: the life is known not to end.",
-    "censored": "Censored: the life exceeds the horizon.",
+    "never": "Never: the event is known never to occur.",
+    "censored": "Censored: the event had not occurred by the horizon.",
     "undefined": "Undefined: the output is not defined in the regime of the row.",
 }
 

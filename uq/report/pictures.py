@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from uq.analysis.findings import Findings
 from uq.drawing.catalogue import Subject, drawables
 from uq.drawing.figure import lay_out
-from uq.drawing.style import styled
+from uq.drawing.style import WIDTH, styled
 from uq.greek import readable
 from uq.literals import plain
 from uq.plots import FIGURES
@@ -42,11 +42,12 @@ _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
 
 
 class Picture(NamedTuple):
-    """A figure as HTML, what it shows, and its subject."""
+    """A figure as HTML, what it shows, whether it spans both columns, and its subject."""
 
     html: Markup
     caption: str
     is_image: bool
+    is_wide: bool = False
     of: Subject = Subject()
 
 
@@ -84,15 +85,16 @@ def picture(figure: Figure, caption: str) -> Picture:
     """
     drawn, png = StringIO(), BytesIO()
     lay_out(figure)
+    wide = figure.get_figwidth() > WIDTH
     # Identifiers must be unique within a page.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
     if len(svg := _embedded(drawn.getvalue(), caption)) <= HEAVIEST_SVG:
-        return Picture(svg, caption, False)
+        return Picture(svg, caption, False, wide)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     data = base64.b64encode(png.getvalue()).decode()
     image = Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)
-    return Picture(image, caption, True)
+    return Picture(image, caption, True, wide)
 
 
 def _embedded(svg: str, caption: str) -> Markup:

@@ -13,7 +13,8 @@ from uq.inputs.law import Law
 from uq.inputs.observed import IntegerRange
 from uq.literals import plain
 from uq.population.densities import correlations
-from uq.population.scaling import Inputs, given_others, inputs_of, scalers
+from uq.population.row_inputs import Inputs, inputs_of
+from uq.population.scaling import given_others, scalers
 from uq.rows.element import Element
 
 KNOWN = (

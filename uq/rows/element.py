@@ -1,6 +1,6 @@
 """One element of an output: one plain array, with the outcome of every row."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Protocol
@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from uq.contract import Floats, Mask, Output
+from uq.element_names import Place
 from uq.element_names import places as places
 
 
@@ -167,6 +168,7 @@ def elements_in(
     failed: Mask,
     weights: Floats | None = None,
     most: float = inf,
+    where: Iterable[Place] | None = None,
 ) -> Iterator[Element]:
     """Yield the elements of one output, in order.
 
@@ -187,12 +189,16 @@ def elements_in(
         Of the rows.
     most : float
         The largest weight that a row can have.
+    where : iterable of Place, optional
+        Which elements; by default all.
 
     Yields
     ------
     Element
     """
-    for label, index, place in places(name, {dim: coordinates[dim] for dim in declared.dims}):
+    if where is None:
+        where = places(name, {dim: coordinates[dim] for dim in declared.dims})
+    for label, index, place in where:
         column = np.asarray(values[(slice(None), *index)])
         absent = declared.is_absent(column)
         cut = np.zeros(len(column), dtype=bool)

@@ -1,7 +1,8 @@
 """The elements of a result's outputs, and what the result says of its rows."""
 
-from collections.abc import Collection, Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache, partial
+from math import inf, prod
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,11 @@ from uq.contract import Mask as Mask
 from uq.contract import censored_name
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
+from uq.element_names import MOST_PLACES, Place, place_of
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.element import Element as Element
-from uq.rows.element import elements_in, places, whole_name
+from uq.rows.element import elements_in, is_whole, places, whole_name
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of
@@ -175,7 +177,29 @@ def output_names(ds: xr.Dataset) -> tuple[str, ...]:
     return tuple(outputs_of(ds))
 
 
-def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
+def thinned_outputs(ds: xr.Dataset) -> dict[str, int]:
+    """Return the number of elements of outputs of which only some are described.
+
+    Those have more than `MOST_PLACES`, and the study does not name them.
+    """
+    sizes = {
+        name: prod(ds.sizes[dim] for dim in output.dims) for name, output in outputs_of(ds).items()
+    }
+    huge = {name: size for name, size in sizes.items() if size > MOST_PLACES}
+    named = analysis_of(ds).outputs if huge else ()
+    return {name: size for name, size in huge.items() if name not in named}
+
+
+def notes_on_places(ds: xr.Dataset) -> list[str]:
+    """Return a sentence on each of `thinned_outputs`."""
+    return [
+        f"{name}: shown at evenly spread places, as it has {size} elements; name it in [analysis]"
+        " outputs for all of them"
+        for name, size in thinned_outputs(ds).items()
+    ]
+
+
+def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
     """Yield the elements of some outputs in order, skipping categories.
 
     Parameters
@@ -184,6 +208,8 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
         A result, or some rows of one.
     outputs : sequence of str
         Names of outputs.
+    every : bool
+        Whether also those of `thinned_outputs`.
 
     Yields
     ------
@@ -194,20 +220,28 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
     InputError
         When the result has no such output.
     """
-    unsound, known, weights = failed(ds), outputs_of(ds), row_weights(ds)
+    thinned = () if every else thinned_outputs(ds)
     for output in outputs:
-        if output not in known:
-            raise InputError(
-                f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
-            )
-        declared, flag = known[output], censored_name(output)
-        if not declared.is_category:
-            censored = ds.variables[flag] if flag in ds else None
-            axes = {dim: ds[dim].values for dim in declared.dims}
-            values = ds.variables[output]
-            yield from elements_in(
-                output, declared, values, censored, axes, unsound, weights, largest_weight(ds)
-            )
+        most = MOST_PLACES if output in thinned else inf
+        yield from _elements_at(ds, output, partial(places, output, most=most))
+
+
+def _elements_at(
+    ds: xr.Dataset, output: str, where: Callable[[Mapping[str, Any]], Iterable[Place]]
+) -> Iterator[Element]:
+    """Yield elements of an output, unless it is a category; `where` picks their places on axes."""
+    known, flag = outputs_of(ds), censored_name(output)
+    if output not in known:
+        raise InputError(
+            f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
+        )
+    declared = known[output]
+    if not declared.is_category:
+        axes = {dim: ds[dim].values for dim in declared.dims}
+        censored = ds.variables[flag] if flag in ds else None
+        rows = failed(ds), row_weights(ds), largest_weight(ds)
+        values = ds.variables[output]
+        yield from elements_in(output, declared, values, censored, axes, *rows, where(axes))
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
@@ -230,7 +264,11 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
         When there is no such output or element, or it is a category.
     """
     output = name.partition("[")[0]
-    found = list(elements_of(ds, [output]))
+    whole = name == output or is_whole(name)
+    one = [] if whole else list(_elements_at(ds, output, partial(place_of, name)))
+    if one:
+        return one
+    found = list(elements_of(ds, [output], every=True))
     if not found:
         raise InputError(
             f"'{output}' is a category, not a number; 'uq summary' shows the shares of regimes, and"
@@ -238,10 +276,7 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
         )
     if name == output or (name == whole_name(output) and len(found) > 1):
         return found
-    chosen = [element for element in found if element.name == name]
-    if not chosen:
-        raise _no_such_element(name, [element.name for element in found])
-    return chosen
+    raise _no_such_element(name, [element.name for element in found])
 
 
 def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:

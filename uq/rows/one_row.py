@@ -71,16 +71,20 @@ class Row(NamedTuple):
 
 
 def run_row(
-    model: Model, parameters: Mapping[str, float], settings: Mapping[str, Any], seed: int = 0
+    model: Model,
+    parameters: Mapping[str, float],
+    settings: Mapping[str, Any],
+    seed: int = 0,
+    batch: Evaluate | None = None,
 ) -> Row:
-    """Run a model once; see `uq.simulate`."""
+    """Run a model once; see `uq.simulate`, and `computed` for `batch`."""
     problems = {name: parameter_problem(model, name, value) for name, value in parameters.items()}
     frozen, wrong = read_settings(model, settings)
     if faults := fault_lines("", parameters, problems) + fault_lines("setting ", settings, wrong):
         raise InputError(*faults)
 
     values = model.nominal | {name: float(value) for name, value in parameters.items()}
-    return computed(model.given(frozen), frozen, values, seed)
+    return computed(model.given(frozen), frozen, values, seed, batch)
 
 
 def computed(

@@ -13,7 +13,7 @@ from uq.inputs.values import fault_lines, read_settings
 from uq.rows.one_row import Row, computed
 from uq.rows.sampling import row_block
 from uq.rows.workload import workload_of
-from uq.running.isolation import isolated
+from uq.running.isolation import isolated, spec_of
 from uq.running.loading import study_of_text
 from uq.store.merge import by_settings
 from uq.study.changes import what_changed
@@ -116,7 +116,7 @@ def computed_again(study: Study, settings: Any, number: int, status: int = Statu
     seed = int(rows.seed[0])
     if status != Status.CRASHED:
         return computed(study.model, settings, values, seed)
-    with isolated(workload_of(study)._replace(settings=settings)) as batch:
+    with isolated(spec_of(workload_of(study)._replace(settings=settings))) as batch:
         return computed(study.model, settings, values, seed, lambda x, seeds: batch(x, seeds, 0))
 
 

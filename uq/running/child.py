@@ -6,7 +6,9 @@ A kernel may crash it or never return; then the parent ends it and starts anothe
 import os
 import sys
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
@@ -72,6 +74,60 @@ READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "d
 """Messages of a child; the last two come with a chunk or an exception, the first says whether it
 stops rows itself when their time is over."""
 
+Action = Callable[[], object]
+
+FIRST_SECONDS = 5.0
+"""Beyond its limit for a first call, which loads compiled code: 1 s, more on a busy computer."""
+
+_POLL_SECONDS = 0.2  # so that an interrupt is seen
+
+
+def answer_of(
+    connection: Connection,
+    limit: float | None = None,
+    compiling: Action = lambda: None,
+    waiting: Action = lambda: None,
+) -> tuple[str, Any] | None:
+    """Return the answer of a process, or None when its time is over.
+
+    Parameters
+    ----------
+    connection : Connection
+    limit : float, optional
+        Time for the answer [s]; compilation does not count.
+    compiling : callable
+        Called when the process starts to compile.
+    waiting : callable
+        Called several times a second.
+
+    Raises
+    ------
+    EOFError, OSError
+        When the process has died.
+    """
+    began: float | None = time.monotonic()
+    while True:
+        while not connection.poll(min(limit or _POLL_SECONDS, _POLL_SECONDS)):
+            waiting()
+            if limit and began and time.monotonic() > began + limit:
+                return None
+        kind, value = connection.recv()
+        if kind == COMPILING:
+            began = None
+            compiling()
+        elif kind == COMPILED:
+            began = time.monotonic()
+        else:
+            return kind, value
+
+
+@contextmanager
+def telling_of_compilation(connection: Connection) -> Iterator[None]:
+    """Send a message whenever this process starts and ends compiling."""
+    compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
+    with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
+        yield
+
 
 def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.Thread:
     """End this process, from a thread, when the pipe at its standard input closes.
@@ -119,14 +175,14 @@ def main(handle: str) -> None:
         stops_rows = True
         model = replace(model, batch=batch.limited(limit))
     connection.send((READY, stops_rows))
-    compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
-    with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
+    with telling_of_compilation(connection):
         while True:
             rows = connection.recv()
             try:
                 answer: Any = DONE, evaluate(model, settings, *rows)
             except Exception as error:
                 answer = REFUSED, error
+            sys.stdout.flush()  # this process is killed in the end
             connection.send(answer)
 
 

@@ -31,6 +31,7 @@ _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
 _SENT_CHUNKS = 4  # at least, also while workers start
 _SENT_PER_THREAD = 2  # one under way, the next at hand
+_LONG_SECONDS = 1.0  # of a chunk, which is reported before it has come back
 _SENT_BYTES = 2_000_000_000  # inputs of all chunks sent: the scheduler keeps them, too
 _LAST_SHARE = 1 / 8  # of a chunk: smaller chunks at the end would waste work
 _GROWTH = 4  # of the first chunks
@@ -178,9 +179,13 @@ class Dispatcher:
         if not self._untaken:
             return 0.0
         start, some = self._take(size)
+        self._under_way = len(some.x)
+        if not self.row_seconds or self.row_seconds * len(some.x) > _LONG_SECONDS:
+            self.report_progress()
         began = time.perf_counter()
         chunk = self._evaluate(some.x, some.seed, start)
         seconds = time.perf_counter() - began
+        self._under_way = 0
         self.row_seconds = seconds / len(some.x)
         self._keep(start, some, chunk)
         return seconds
@@ -214,7 +219,8 @@ class Dispatcher:
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""
-        size = self._sizes.good(self.row_seconds, threads)
+        known = self.row_seconds
+        size = self._sizes.good(known, threads) if known else self._sizes.first
         least = int(_LAST_SHARE * size)
         share = max(ceil(self._untaken / threads), least)
         if self._untaken - share < least:  # too few for another chunk

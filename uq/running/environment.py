@@ -48,10 +48,18 @@ def _numba_settings() -> dict[str, str]:
     }
 
 
-def started(module: str) -> tuple[subprocess.Popen[bytes], Connection]:
+def started(
+    module: str, prints: int = subprocess.DEVNULL
+) -> tuple[subprocess.Popen[bytes], Connection]:
     """Start a process with a connection to this one, the number of which is its argument.
 
     It is in a session of its own: Ctrl-C reaches this process, which ends the other.
+
+    Parameters
+    ----------
+    module : str
+    prints : int
+        File descriptor for what it prints.
 
     Raises
     ------
@@ -64,7 +72,7 @@ def started(module: str) -> tuple[subprocess.Popen[bytes], Connection]:
             process = subprocess.Popen(
                 command(module, str(there.fileno())),
                 stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
+                stdout=prints,
                 pass_fds=(there.fileno(),),
                 start_new_session=True,
                 env=inherited(),

@@ -40,6 +40,14 @@ def processes(workload: Workload, workers: int | None) -> int:
     return min(1 if workers == 0 else workers or CORES, workload.total // workload.group)
 
 
+def first_rows_alone(workload: Workload, workers: int | None) -> bool:
+    """Return whether one process computes the first rows, before workers share the others.
+
+    It learns what they cost, and compiles the model, which one from outside does not need.
+    """
+    return not workers or not isinstance(workload.model.batch, RowByRow)
+
+
 class Executor:
     """Computes the rows of one dispatcher after another; a context manager.
 
@@ -109,7 +117,7 @@ class Executor:
             dispatcher.finish_here()
         elif dispatcher.left:
             crew = self._started(dispatcher)
-            if not begun:
+            if not begun and first_rows_alone(self._workload, workers):
                 dispatcher.begin_here(_SHARE_HERE)
             dispatcher.finish_on(crew)
         self._seconds += dispatcher.row_seconds * dispatcher.rows

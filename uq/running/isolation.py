@@ -7,7 +7,6 @@ message, the others the same values as anywhere.
 import signal
 import subprocess
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
@@ -25,6 +24,7 @@ from uq.outside.descendants import end_with_descendants
 from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
+from uq.running.child import Action
 from uq.running.environment import started
 from uq.study.registry import code_of
 
@@ -36,13 +36,8 @@ TRIES = 3
 
 _PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash more often
 _STARTS = 3
-_FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more on a busy computer
 _DYING_SECONDS = 5.0
 _STUCK_SECONDS = 5.0  # beyond its limit, after which a row is stopped that should stop itself
-_POLL_SECONDS = 0.2  # so that an interrupt is seen
-
-
-Action = Callable[[], object]
 
 Evaluate = Callable[[Floats, NDArray[np.uint64], int], Chunk]
 """``evaluate(x, seed, start)`` -> chunk, as `uq.rows.evaluate.evaluate` for one model."""
@@ -59,19 +54,13 @@ def spec_of(workload: "Workload") -> child.ModelSpec:
 
 @contextmanager
 def isolated(
-    workload: "Workload", limit: float | None = None, compiling: Action = lambda: None
+    spec: child.ModelSpec,
+    limit: float | None = None,
+    compiling: Action = lambda: None,
+    prints: int = subprocess.DEVNULL,
 ) -> Iterator[Evaluate]:
-    """Yield a function that computes rows of a workload in a separate process.
-
-    Parameters
-    ----------
-    workload : Workload
-    limit : float, optional
-        Time limit of a row [s].
-    compiling : callable
-        Called when that process starts to compile.
-    """
-    process = Isolated(spec_of(workload), limit, compiling)
+    """Yield a function that computes rows in a separate process; parameters as of `Isolated`."""
+    process = Isolated(spec, limit, compiling, prints)
     with undone(process.close):
         process.begin()
         yield process.evaluate
@@ -87,14 +76,21 @@ class Isolated:
         Time limit of a row [s]; compilation does not count.
     compiling : callable
         Called when the process starts to compile.
+    prints : int
+        File descriptor for what the model prints.
     """
 
     def __init__(
-        self, spec: child.ModelSpec, limit: float | None = None, compiling: Action = lambda: None
+        self,
+        spec: child.ModelSpec,
+        limit: float | None = None,
+        compiling: Action = lambda: None,
+        prints: int = subprocess.DEVNULL,
     ) -> None:
         self.spec = spec
         self.limit = limit
         self._compiling = compiling
+        self._prints = prints
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
         self._ready = self._stops_rows = False
@@ -166,19 +162,7 @@ class Isolated:
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
         """Return the answer of the process, or None when its time is over."""
-        began: float | None = time.monotonic()
-        while True:
-            while not connection.poll(min(limit or _POLL_SECONDS, _POLL_SECONDS)):
-                if limit and began and time.monotonic() > began + limit:
-                    return None
-            kind, value = connection.recv()
-            if kind == child.COMPILING:
-                began = None
-                self._compiling()
-            elif kind == child.COMPILED:
-                began = time.monotonic()
-            else:
-                return kind, value
+        return child.answer_of(connection, limit, self._compiling)
 
     def begin(self) -> None:
         """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
@@ -188,7 +172,7 @@ class Isolated:
     def _begun(self) -> Connection:
         if self._connection:
             return self._connection
-        self._process, self._connection = started("uq.running.child")
+        self._process, self._connection = started("uq.running.child", self._prints)
         with suppress(OSError):  # of a process that died: `start` sees it
             self._connection.send((self.spec, self.limit))
         return self._connection
@@ -217,7 +201,7 @@ class Isolated:
             if kind == child.REFUSED:
                 self._end()
                 raise value
-            self._grace, self._ready, self._stops_rows = _FIRST_SECONDS, True, value
+            self._grace, self._ready, self._stops_rows = child.FIRST_SECONDS, True, value
             return connection
         raise RunError(f"a process for the rows could not start: {reason}")
 

@@ -16,8 +16,10 @@ import numpy as np
 
 from uq.contract import Model
 from uq.errors import InputError
+from uq.outside.descendants import end_with_descendants
 from uq.outside.returned import Returned, as_plain, from_plain, joined
 from uq.outside.row_by_row import RowByRow
+from uq.running.child import FIRST_SECONDS, REFUSED, Action, answer_of
 from uq.running.environment import started
 from uq.running.options import Say, ignore
 from uq.study.registry import code_of, find_model, located, with_returns
@@ -36,7 +38,12 @@ _SLOW = 3.0  # seconds after which a user is told that rows are run
 Row = tuple[list[float], int]
 
 
-def load_study(path: str | PathLike[str], model: str | None = None, say: Say = ignore) -> "Study":
+def load_study(
+    path: str | PathLike[str],
+    model: str | None = None,
+    say: Say = ignore,
+    row_limit: float | None = None,
+) -> "Study":
     """Read and check a study file.
 
     Parameters
@@ -48,6 +55,8 @@ def load_study(path: str | PathLike[str], model: str | None = None, say: Say = i
         or a file ``"mine.py"`` (``"mine.py:NAME"`` where it has several).
     say : callable, optional
         Called with a line for the user if it takes long to find out what the model returns.
+    row_limit : float, optional
+        Time limit of a row that is run to find out [s].
 
     Returns
     -------
@@ -66,11 +75,11 @@ def load_study(path: str | PathLike[str], model: str | None = None, say: Say = i
     """
     from uq.study import definition
 
-    study = _known(definition.load_study(path, model and located(model)), say)
+    study = _known(definition.load_study(path, model and located(model)), say, row_limit)
     if isinstance(study.model.batch, RowByRow):
         from uq.running.scales import check_scales
 
-        check_scales(study)
+        check_scales(study, row_limit)
     return study
 
 
@@ -83,15 +92,20 @@ def study_of_text(text: str, source: str, model: str | None) -> "Study":
 
 def load_model(reference: str) -> Model:
     """Return a model; what a function returns that does not declare it, by its nominal row."""
+    return find_model(known_reference(reference))
+
+
+def known_reference(reference: str) -> str:
+    """Return a reference that holds in any process, to a model of which the outputs are known."""
     reference = located(reference)
     model = find_model(reference)
     if model.outputs:
-        return model
+        return reference
     nominal = list(model.nominal.values()), 0
-    return find_model(with_returns(reference, _found(reference, [nominal])))
+    return with_returns(reference, _found(reference, [nominal]))
 
 
-def _known(study: "Study", say: Say = ignore) -> "Study":
+def _known(study: "Study", say: Say = ignore, limit: float | None = None) -> "Study":
     """Return a study whose model has outputs."""
     if study.model.outputs:
         return study
@@ -103,11 +117,13 @@ def _known(study: "Study", say: Say = ignore) -> "Study":
     tried = [(list(nominal.values()), 0)]
     tried += zip(first.x.tolist(), first.seed.tolist(), strict=True)
     reference = study.model_reference
-    known = with_returns(reference, _found(reference, tried, say))
+    known = with_returns(reference, _found(reference, tried, say, limit))
     return study_from_text(study.text, study.path, known)
 
 
-def _found(reference: str, tried: list[Row], say: Say = ignore) -> dict[str, Returned]:
+def _found(
+    reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
+) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
     from platformdirs import user_cache_path
 
@@ -117,7 +133,7 @@ def _found(reference: str, tried: list[Row], say: Say = ignore) -> dict[str, Ret
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()
-    found = joined(list(_returned(reference, tried, say)))
+    found = joined(list(_returned(reference, tried, say, limit)))
     if time.monotonic() - began > _WORTH_KEEPING:
         with suppress(OSError):
             kept.parent.mkdir(parents=True, exist_ok=True)
@@ -125,7 +141,9 @@ def _found(reference: str, tried: list[Row], say: Say = ignore) -> dict[str, Ret
     return found
 
 
-def _returned(reference: str, tried: list[Row], say: Say) -> Iterator[dict[str, Returned]]:
+def _returned(
+    reference: str, tried: list[Row], say: Say, limit: float | None
+) -> Iterator[dict[str, Returned]]:
     """Yield what rows return; a later one that fails is passed over, as in a run it has a status.
 
     Raises
@@ -135,44 +153,65 @@ def _returned(reference: str, tried: list[Row], say: Say) -> Iterator[dict[str, 
     """
     from uq.running import probe
 
-    todo = iter(enumerate(tried))
-    left = len(tried)
+    todo, done = iter(tried), 0
     began, told = time.monotonic(), False
-    while left:
-        for i, said, value in _in_process(reference, todo):
-            left = len(tried) - i - 1
-            seconds = time.monotonic() - began
-            if seconds > _SLOW and left and not told:
-                told = True
-                more = seconds / (i + 1) * left
-                say(
-                    f"running {left} more rows, once, to see what the model returns: about"
-                    f" {duration(more) or f'{more:.0f} s'}; 'returns' in @uq.machine states it"
-                )
-            if said == probe.REFUSED:
-                raise value
+
+    def waiting() -> None:
+        nonlocal told
+        seconds, left = time.monotonic() - began, len(tried) - done
+        if seconds < _SLOW or told:
+            return
+        told = True
+        more = seconds / done * left if done else 0.0
+        about = f": about {duration(more) or f'{more:.0f} s'}" if done else ""
+        say(
+            f"running {left} rows, once, to see what the model returns{about}; 'returns' in"
+            " @uq.machine states it"
+        )
+
+    while done < len(tried):
+        for said, value in _in_process(reference, todo, limit, waiting):
+            done += 1
             if said == probe.RETURNED:
                 yield from_plain(value)
-            elif i == 0:
+            elif done == 1:
                 raise InputError(f"model '{reference}': its nominal row {value}")
 
 
-def _in_process(reference: str, todo: Iterator[tuple[int, Row]]) -> Iterator[tuple[int, str, Any]]:
-    """Yield the number of each row and what it did, until one kills the process."""
+def _in_process(
+    reference: str, todo: Iterator[Row], limit: float | None, waiting: Action
+) -> Iterator[tuple[str, Any]]:
+    """Yield what each row did, until one ends the process or must be stopped.
+
+    Raises
+    ------
+    InputError
+        When the process has no such model.
+    """
     from uq.running import probe
 
     process, connection = started("uq.running.probe")
+    grace: float | None = None
     try:
         connection.send(reference)
-        for i, row in todo:
+        for row in todo:
             try:
+                if grace is None:
+                    said, value = connection.recv()
+                    if said == REFUSED:
+                        raise value
+                    grace = FIRST_SECONDS
                 connection.send(row)
-                said, value = connection.recv()
+                answer = answer_of(connection, limit and limit + grace, waiting=waiting)
             except (EOFError, OSError):
-                yield i, probe.RAISED, "killed its process"
+                yield probe.RAISED, "killed its process"
                 return
-            yield i, said, value
+            if answer is None:
+                yield probe.RAISED, f"did not end within {limit:g} s"
+                return
+            yield answer
+            grace = 0.0
     finally:
         connection.close()
-        process.kill()
+        end_with_descendants(process.pid)
         process.communicate()

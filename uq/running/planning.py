@@ -20,19 +20,22 @@ from uq.rows.sampling import Rows
 from uq.rows.workload import Workload, workload_of
 from uq.running.dispatch import CHUNK_SECONDS, ChunkSizes
 from uq.running.environment import command, inherited
-from uq.running.executor import in_one_process, processes
-from uq.running.isolation import Action, Evaluate, isolated
-from uq.running.options import RunOptions
+from uq.running.executor import first_rows_alone, in_one_process, processes
+from uq.running.isolation import Action, Evaluate, isolated, spec_of
+from uq.running.options import RunOptions, Say, ignore
 from uq.store import row_bytes
 from uq.study.definition import Study
+from uq.wording import duration
 
 PILOT_SECONDS = 8.0
 """Time for the pilot, once the model is compiled."""
 
 _SLOW_SECONDS = 2.0  # of a first chunk, of which loading takes little
 
+_LONG_SECONDS = 8.0  # of a chunk, so that few are computed
+
 _FILE_BYTES = 30_000  # names, units, the study
-_CHUNKS_AT_LEAST = 2  # per process
+_CHUNKS_AT_LEAST = 2  # per process, of slow rows in all
 _GOLDEN = (5**0.5 - 1) / 2
 # The overhead of a run, as a multiple of the time that loading its packages takes: both grow
 # together on a busy computer.
@@ -73,7 +76,10 @@ class Cost(NamedTuple):
 
 
 def pilot(
-    study: Study, workers: int | None = None, compiling: Action = lambda: None
+    study: Study,
+    workers: int | None = None,
+    compiling: Action = lambda: None,
+    say: Say = ignore,
 ) -> tuple[Cost, xr.Dataset]:
     """Run a few rows of a study, in as many processes as the whole run would use.
 
@@ -84,6 +90,8 @@ def pilot(
         As in `uq.run`.
     compiling : callable
         Called when compilation of the model starts.
+    say : callable
+        Called with a line for the user if rows are so slow that the pilot takes a while.
 
     Returns
     -------
@@ -102,12 +110,18 @@ def pilot(
 
     with ExitStack() as stack:
         evaluators = [
-            stack.enter_context(isolated(workload, None, when_compiling)) for _ in range(count)
+            stack.enter_context(isolated(spec_of(workload), None, when_compiling))
+            for _ in range(count)
         ]
         load_seconds = _load_seconds()
         row_seconds, first_seconds = _warm_up(workload, evaluators, compiled)
         size = ChunkSizes(workload).good(row_seconds)
-        done, chunks = _spread_chunks(workload, evaluators, size)
+        least = _CHUNKS_AT_LEAST * count
+        if size * row_seconds > _LONG_SECONDS:
+            least = max(_CHUNKS_AT_LEAST, count)
+            each = duration(row_seconds) or f"{row_seconds:.3g} s"
+            say(f"a row takes about {each}: running {least * size} more, {count} at a time")
+        done, chunks = _spread_chunks(workload, evaluators, size, least)
     starts, some, found, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
@@ -121,7 +135,8 @@ def pilot(
         count = 1
     beside = _RUN_LOADS * load_seconds
     if workers or count > 1:
-        beside += _WORKERS_LOADS * load_seconds + first_seconds
+        beside += _WORKERS_LOADS * load_seconds
+        beside += first_seconds if first_rows_alone(workload, workers) else 0.0
     shares = 1.0, max(0.0, 1 - error), 1 + error
     likely, low, high = (alone / count * share + beside for share in shares)
     times = row_seconds, likely, low, high
@@ -177,15 +192,17 @@ def _warm_up(
 
 
 def _spread_chunks(
-    workload: Workload, evaluators: Sequence[Evaluate], size: int
+    workload: Workload, evaluators: Sequence[Evaluate], size: int, least: int
 ) -> tuple[list[tuple[int, Rows, Chunk, float]], int]:
     """Return chunks spread over the study, with their first row and time, and how many it has.
+
+    There are at least so many, and more as time allows.
 
     They are cut as in a run: rows that are computed together may share work.
     """
     chunks = ceil(workload.total / size)
     starts = [index * size for index in _spread(chunks)]
-    least, end = _CHUNKS_AT_LEAST * len(evaluators), time.perf_counter() + PILOT_SECONDS
+    end = time.perf_counter() + PILOT_SECONDS
     done: dict[int, tuple[Rows, Chunk, float]] = {}
     turn = Lock()
 

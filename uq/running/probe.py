@@ -6,10 +6,10 @@ from typing import Any
 
 from uq.errors import InputError, described
 from uq.outside.returned import WrongReturnError, as_plain, seen_in
-from uq.running.child import end_with_parent
+from uq.running.child import READY, REFUSED, end_with_parent, telling_of_compilation
 from uq.study.registry import find_model
 
-RETURNED, RAISED, REFUSED = "returned", "raised", "refused"
+RETURNED, RAISED = "returned", "raised"
 """What a row did, with what it returned as plain data, or with a sentence."""
 
 
@@ -23,15 +23,17 @@ def main(handle: str) -> None:
     except InputError as error:
         connection.send((REFUSED, error))
         return
-    while True:
-        row, seed = connection.recv()
-        try:
-            answer: tuple[str, Any] = RETURNED, as_plain(seen_in(batch.row(row, seed)))
-        except WrongReturnError as error:
-            answer = RAISED, str(error)
-        except (Exception, SystemExit) as error:
-            answer = RAISED, f"raised {described(error)}"
-        connection.send(answer)
+    connection.send((READY, None))
+    with telling_of_compilation(connection):
+        while True:
+            row, seed = connection.recv()
+            try:
+                answer: tuple[str, Any] = RETURNED, as_plain(seen_in(batch.row(row, seed)))
+            except WrongReturnError as error:
+                answer = RAISED, str(error)
+            except (Exception, SystemExit) as error:
+                answer = RAISED, f"raised {described(error)}"
+            connection.send(answer)
 
 
 if __name__ == "__main__":

@@ -92,7 +92,7 @@ def run(
     10240
     """
     if not isinstance(study, Study):
-        study = load_study(study)
+        study = load_study(study, row_limit=row_limit)
     path = output_path(study, output)
     options = RunOptions(
         workers, scheduler, chunk_rows, row_limit, fresh, mixed, progress or ignore, say or ignore

@@ -19,7 +19,7 @@ from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import row_block
 from uq.rows.workload import workload_of
-from uq.running.isolation import isolated
+from uq.running.isolation import isolated, spec_of
 from uq.study.registry import code_of
 from uq.study.sources import DISTRIBUTION
 
@@ -31,8 +31,14 @@ _SAME = 1e-9  # relative difference
 _EACH = 3  # rows that differ in scale alone
 
 
-def check_scales(study: "Study") -> None:
+def check_scales(study: "Study", row_limit: float | None = None) -> None:
     """Compute a few rows, if scales are declared; remembered until the machine changes.
+
+    Parameters
+    ----------
+    study : Study
+    row_limit : float, optional
+        Time limit of a row [s].
 
     Raises
     ------
@@ -51,7 +57,7 @@ def check_scales(study: "Study") -> None:
     kept = _kept(study, x, seed)
     if kept.exists():
         return
-    with isolated(workload_of(study)) as batch:
+    with isolated(spec_of(workload_of(study)), row_limit) as batch:
         chunk = batch(x, seed, 0)
     faults = [
         fault for name, one in scaled.items() for fault in _faults(model, name, one, x, chunk)

@@ -157,7 +157,7 @@ def run(
     from uq.cli.run import carried_out, end, loaded
     from uq.running.runner import finished, output_path, run_study
 
-    asked = loaded(study, model, samples)
+    asked = loaded(study, model, samples, row_limit)
     target = output_path(asked, output)
     if not fresh and (ds := finished(asked, target)) is not None:
         note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"

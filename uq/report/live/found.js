@@ -60,7 +60,7 @@ class Found {
     const everything = this.everything(column);
     const some = isAll ? everything : {curve: outliving(column, mask), quantiles: this.quantiles(column, mask)};
     PROBABILITIES.forEach((probability, i) => lines.push(make("tr", {"data-key": `quantile/${probability}`},
-      make("th", {scope: "row"}, `${quantileName(probability, column)} of ${column.label}`),
+      make("th", {scope: "row"}, `${column.quantileName(probability)} of ${column.label}`),
       ...(isAll ? [] : [quantileCell(column, some.quantiles[i])]), quantileCell(column, everything.quantiles[i]))));
     this.table.replaceChildren(make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...lines));
     this.drawCurves(column, everything.curve, some.curve, isAll);
@@ -79,12 +79,11 @@ class Found {
   }
 
   drawCurves(column, everything, some, isAll, pointwise) {
-    const what = column.life ? "Share that outlives each time" : "Share of rows above each value";
     const lines = [{curve: everything, name: "all"}];
     if (!isAll) lines.push({curve: some, name: "chosen"});
     const half = bandOf(this.rows, some), band = pointwise ?? this.censoredBand(column, some, isAll ? this.one : this.selection.mask);
     Object.assign(lines.at(-1), {half, band});
-    const title = `${what}: ${column.title}`;
+    const title = `${column.curveName}: ${column.title}`;
     const words = isFinite(half) ? ", 95 % band" : band ? ", pointwise 95 % intervals" : "";
     this.picture.replaceChildren(curvesOf(column, lines, title), make("figcaption", {},
       isAll ? `${title}${words}.` : `${title}: chosen rows (bold${words}) and all rows (thin).`));
@@ -106,11 +105,6 @@ class Found {
 function cellOf({share, low, high, more}) {
   const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to ${percent(high)}` : "";
   return intervalCell(isNaN(share) ? "\u2013" : data(share, percent(share)), low, high, ends, more);
-}
-
-function quantileName(probability, column) {
-  if (probability === 0.5) return "median";
-  return column.life ? `B${100 * probability}` : `${100 * probability}\u00a0% quantile`;
 }
 
 function quantileCell(column, {value, low, high, more}) {

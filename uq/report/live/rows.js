@@ -37,6 +37,17 @@ class Column {
     return this.alike;
   }
 
+  // What its curve shows, and its quantiles.
+  get curveName() {
+    if (this.success) return "Share that has not yet succeeded";
+    return this.life ? "Share that outlives each time" : "Share above each value";
+  }
+
+  quantileName(probability) {
+    if (probability === 0.5) return "median";
+    return this.life && !this.success ? `B${100 * probability}` : `${100 * probability}\u00a0% quantile`;
+  }
+
   // A value in the unit shown, without it.
   digits(value, digits = 4) {
     return number(value / this.per, digits + this.common);

@@ -55,7 +55,7 @@ function tolerancesOf(rows) {
     const before = {curve: curves.get(shown), name: "all"}, lines = [before];
     if (curve) lines.push({curve, name: "chosen", band});
     else before.band = band;
-    const title = `${shown.life ? "Share that outlives each time" : "Share above each value"}: ${shown.title}`;
+    const title = `${shown.curveName}: ${shown.title}`;
     const intervals = band ? ", pointwise 95 % intervals" : "";
     picture.replaceChildren(curvesOf(shown, lines, title), make("figcaption", {},
       curve ? `${title}: these laws (bold${intervals}) and as studied (thin).` : `${title}${intervals}.`));

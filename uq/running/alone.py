@@ -1,0 +1,40 @@
+"""One row of a model, in a process of its own if the model may end it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from uq.outside.row_by_row import RowByRow
+from uq.rows.one_row import Row, run_row
+from uq.running.child import Action, ModelSpec
+from uq.running.isolation import isolated
+from uq.running.loading import known_reference
+from uq.study.registry import code_of, find_model
+
+_STDERR = 2
+
+
+def run_alone(
+    reference: str,
+    parameters: Mapping[str, float],
+    settings: Mapping[str, Any],
+    seed: int = 0,
+    compiling: Action = lambda: None,
+) -> Row:
+    """Run a model once; what one from outside prints goes to standard error.
+
+    Parameters
+    ----------
+    reference : str
+        As for `uq.study.registry.find_model`.
+    parameters, settings, seed
+        As for `uq.simulate`.
+    compiling : callable
+        Called when another process starts to compile.
+    """
+    reference = known_reference(reference)
+    model = find_model(reference)
+    if not isinstance(model.batch, RowByRow):
+        return run_row(model, parameters, settings, seed)
+    spec = ModelSpec(reference, model.version, (), code=code_of(reference))
+    with isolated(spec, None, compiling, prints=_STDERR) as batch:
+        return run_row(model, parameters, settings, seed, lambda x, seeds: batch(x, seeds, 0))
