@@ -7,7 +7,7 @@ it (`uq.interim_levels`).
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf, isnan
+from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -178,8 +178,10 @@ def statistic(
     if (p := until.probability) is not None:
         return life_quantiles(element, {"": p}, replicate, level)[""]
     values = element.at_most
-    if not len(values) or not np.isfinite(values).all():
+    if not len(values):
         return NOTHING
+    if not np.isfinite(values).all():
+        return Estimate(reason="some rows never end, or are censored")
     within = intervals.replicates_of_some(replicate, element.present)
     return moments(values, within, level).mean
 
@@ -193,7 +195,7 @@ def _probability(
         of = Population(element, replicate, level)
         return of.below(threshold) if until.above is None else of.above(threshold)
     if element.unknown_sides(threshold).any():
-        return NOTHING
+        return Estimate(reason="some rows are censored before that")
     kept, values = ~element.failed, element.for_thresholds
     hits = (values > threshold if until.above is not None else values < threshold)[kept]
     within = intervals.replicates_of_some(replicate, kept)
@@ -227,13 +229,12 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     """State why a run ended, and the estimate at that point."""
     until, samples = design.until, int(ds.attrs["samples"])
     assert until is not None
-    size = _latest(design, ds)
-    seen = interim_estimate(design, first_samples(ds, size))
+    size, seen = _stop(design, ds)
     found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
     if isnan(found.low) and isnan(found.high) and found.reason != EXACT:
         why = f" ({found.reason})" * bool(found.reason)
         return f"the budget of {samples} samples is spent, and {seen.what} has no interval{why}"
-    known = f"{seen.what} is {_in_words(found, unit)}"
+    known = f"{seen.what} {_in_words(found, unit)}"
     if seen.lost:
         lost = "groups with failed rows" if until.index else "failed rows"
         known += f" (without {seen.lost} {lost})"
@@ -250,6 +251,16 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     )
 
 
+def _stop(design: "DesignTable", ds: xr.Dataset) -> tuple[int, InterimEstimate]:
+    """Return the size at which the run may end, the last where it may not, and the estimate."""
+    sizes = [size for size in interim_sizes(design) if size <= ds.attrs["samples"]]
+    for size in sizes or [0]:
+        seen = interim_estimate(design, first_samples(ds, size))
+        if seen.reached:
+            break
+    return size, seen
+
+
 def _as_required(half_width: float, unit: Unit) -> str:
     """Return a half-width as written, or in the unit of the estimate."""
     if isinstance(half_width, Written):
@@ -258,5 +269,9 @@ def _as_required(half_width: float, unit: Unit) -> str:
 
 
 def _in_words(found: Estimate, unit: Unit) -> str:
-    value, ends = brief(found, unit.size)
-    return f"{value}, {beside(ends, unit.name)}" if ends else value
+    if isnan(found.value):
+        sides = {"at least": found.low, "at most": found.high}
+        ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]
+        return "".join(["is not known", *ends])
+    value, both = brief(found, unit.size)
+    return f"is {value}, {beside(both, unit.name)}" if both else f"is {value}"
