@@ -17,10 +17,12 @@ from uq import interim_levels, intervals
 from uq.analysis.life_quantiles import life_quantiles, quantile_estimate
 from uq.designs.layouts import PATHS
 from uq.designs.registry import DESIGNS
+from uq.element_names import is_whole
 from uq.estimate import NOTHING, Estimate
 from uq.indices.samples import sample_of
 from uq.indices.sensitivities import indices_of_target
-from uq.indices.targets import lightened, number_of
+from uq.indices.targets import Target, lightened, number_of
+from uq.indices.whole import wholes
 from uq.methods.registry import METHODS, kinds_with_intervals
 from uq.moments import moments
 from uq.population.functionals import Population
@@ -212,8 +214,7 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
     assert until is not None and until.index is not None
     kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
     sample = replace(sample_of(ds), confidence=confidence(design), difference=until.difference)
-    for element in named_elements(ds, until.output):
-        target = lightened(number_of(element))
+    for target in _targets(ds, until.output):
         own = replace(sample, values=target.values)
         found = indices_of_target(ds, METHODS[method], target, own)
         values = found.kinds().get(kind, {})
@@ -223,6 +224,15 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
         for name, one in (alive or {label: Estimate(reason=found.refused)}).items():
             what = " ".join(filter(None, (until.index, name, "of", target.name)))
             yield InterimEstimate(what, one, until.half_width, found.groups_dropped)
+
+
+def _targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+    """Yield what has an index: each element that is meant, or all of them together."""
+    elements = named_elements(ds, output)
+    if is_whole(output):
+        yield next(wholes(elements))
+    else:
+        yield from (lightened(number_of(element)) for element in elements)
 
 
 def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
