@@ -22,6 +22,7 @@ FEWER = {
     "beam-depths": 8,
     "beam-lifetime": 600,
     "beam-sensitivity": 16,
+    "vibrator-run-up": 8,
     "vibrator-tolerances": 200,
 }
 """Study -> rows (or rows of a replicate) that draw its figures in a test."""

@@ -69,3 +69,16 @@ def spread(lengths: Sequence[int], most: float) -> list[list[int]]:
         np.linspace(0, length - 1, count).round().astype(int).tolist()
         for length, count in zip(lengths, counts, strict=True)
     ]
+
+
+def whole_name(output: str) -> str:
+    """Return the name of all elements of an output together: ``work_rate[:]``."""
+    return f"{output}{_WHOLE}"
+
+
+def is_whole(name: str) -> bool:
+    """Whether a name is that of all elements together."""
+    return name.endswith(_WHOLE)
+
+
+_WHOLE = "[:]"

@@ -174,6 +174,15 @@ EXAMPLES = (
         "beam-depths",
     ),
     _of_result(
+        "index-curves-in-time",
+        INPUTS,
+        "Sensitivity indices over time",
+        "What shapes the speed of a motor from instant to instant of its run-up: first its own"
+        " torque and inertia; once the motors have locked, either torque.",
+        'index_curves(ds, "run_up_speed_1")',
+        "vibrator-run-up",
+    ),
+    _of_result(
         "pairs",
         INPUTS,
         "Regimes over the inputs that separate them",

@@ -220,7 +220,7 @@ OUTPUTS: Mapping[str, Output] = {
         dims=("site", "instant"),
     ),
     "largest_worn_depth": Output(
-        "m", "the larger of the two sites' worn depths at the instant", dims=("instant",)
+        "m", "larger worn depth of the two sites at the instant", dims=("instant",)
     ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
     "period": Output(

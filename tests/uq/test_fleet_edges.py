@@ -94,3 +94,16 @@ def test_a_few_units_leave_the_ends_of_the_band_open(units):
         ends = (found(least), 0.95), (found(most), 0.05)
         held += [one.low < share < one.high for one, share in ends]
     assert np.mean(held) >= 0.85
+
+
+@pytest.mark.parametrize("count", [10, 11, 50])
+def test_a_band_whose_worlds_are_of_two_kinds_is_in_order(count):
+    ds = rows(SHARED_Z)
+    z = np.where(np.arange(100) < count, -3.0, 0.0)
+    ds["life"].values *= np.exp((z - ds["z"].values) / 2)
+    ds["z"].values[:] = z
+    found = fleet_of(ds, 50, [0.3, 1.0, 2.0], allow=3)
+    for one in (*found.first.values(), *(each for two in found.by.values() for each in two)):
+        assert one.low.value <= one.high.value
+        for end in (one.low, one.high):
+            assert not (end.value < end.low or end.value > end.high)

@@ -65,7 +65,7 @@ def test_outputs_can_be_named_in_every_way():
         "log(angle)": "no such output",
         "log(life)": "no such output",
         "rank(regime)": "no such output",
-        "P(life[side=left,depth=0.5]<2.0)": "no such output",
+        "P(life[side=left,depth=0.5]<2.0)": r"no such event .*allowed: P\(life.*thresholds",
         "P(regime=medium)": "no such output",
     }.items():
         with pytest.raises(InputError, match=sentence):

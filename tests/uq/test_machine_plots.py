@@ -124,7 +124,7 @@ def test_a_portrait_and_its_section_share_a_scale():
     figure = plots.phase_portrait(orbit, section=orbit.isel(phase=[0]))
     curve, point = figure.axes[0].lines
     assert curve.get_xdata()[0] == point.get_xdata()[0] == pytest.approx(2.0)
-    assert labels(figure) == ["V [m s⁻¹]", "X [mm]"] and entries(figure) == ["Poincaré section"]
+    assert labels(figure) == ["v [m s⁻¹]", "x [mm]"] and entries(figure) == ["Poincaré section"]
     two = xr.concat([orbit, 2 * orbit.assign_attrs()], "start", combine_attrs="override")
     assert entries(plots.section(two)) == ["start 1", "start 2"]
 

@@ -142,7 +142,8 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
 def test_studies_with_one_seed_are_not_paired_row_by_row():
     ds, other = nested_result(), nested_result(seed=6)
     assert kinship(ds, other) is Kinship.STRANGERS
-    assert kinship(ds, ds) is Kinship.UNKNOWN
+    assert kinship(ds, ds) is Kinship.ROWS_SAME
+    assert kinship(ds, nested_result(samples=32)) is Kinship.UNKNOWN
     assert kinship(ds, linear(seed=5)) is Kinship.UNKNOWN
     even = nested_result(method="sobol", replicates=4)
     assert kinship(even, even) is Kinship.REPLICATES

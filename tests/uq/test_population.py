@@ -257,6 +257,20 @@ def test_a_mean_that_few_rows_carry_is_not_trusted():
     assert found.low < 1e-300 and found.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("probability", "end", "needed"), [(0.05, "lower", 72), (0.99, "upper", 368)]
+)
+def test_a_quantile_with_one_end_says_how_many_rows_give_the_other(probability, end, needed):
+    def of(samples):
+        study = scaled_study({"a": lognormal(0.5), "z": NORMAL}, samples=samples)
+        return populated(computed(study))[0].quantile(probability)
+
+    few = of(30)
+    assert few.reason == f"no {end} end: 30 effective rows, and it needs {needed}"
+    assert np.isnan(few.low) == (end == "lower") and np.isnan(few.high) == (end == "upper")
+    assert of(needed).has_interval and not of(needed).reason
+
+
 def test_samples_of_several_rows_count_once():
     rng = np.random.default_rng(1)
     shared = np.repeat(rng.random(60), 20)

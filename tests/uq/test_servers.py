@@ -3,6 +3,8 @@
 import itertools
 import json
 import socket
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -204,6 +206,38 @@ def test_an_answer_that_comes_twice_is_never_that_of_the_next_row(uq, hostile):
     run(uq, hostile(INFO | {"Evaluate": twice}), "--workers", "0", **study)
     y = package.open_result("own.nc")["y"].values
     assert len(np.unique(y)) == 10 and (np.diff(y) == 1).all()
+
+
+@pytest.mark.slow
+def test_of_several_servers_one_may_die(uq, folder):
+    kept = folder / "asked"
+    kept.mkdir()
+    body = "open(f'asked/{sys.argv[1]}', 'a').write('.')\ntime.sleep(0.01)\n"
+    with (
+        TheirServer(folder / "asked", body + "return [[2 * parameters[0][0]]]") as one,
+        TheirServer(folder, body + "return [[2 * parameters[0][0]]]") as other,
+    ):
+        command = [sys.executable, "-m", "uq", "run", "own.toml", "--quiet", "-o", "own.nc"]
+        study = {"model": "m", "name": "x1", "lower": 0, "upper": 1, "samples": 400}
+        (folder / "own.toml").write_text(STUDY.format(**study))
+        command += ["--model", f"{one.address},{other.address}", "--workers", "2"]
+        running = subprocess.Popen(command)
+        asked = [kept / server.base.rpartition(":")[2] for server in (one, other)]
+        until = time.monotonic() + 60
+        while not all(file.exists() and file.stat().st_size > 20 for file in asked):
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        one.kill()
+        assert running.wait(60) == 0
+    ds = package.open_result("own.nc")
+    assert (ds["status"] == 0).all() and (ds["y"] == 2 * ds["x1"]).all()
+    assert 20 < asked[0].stat().st_size < asked[1].stat().st_size
+
+
+def test_servers_of_different_models_are_refused(uq, hostile):
+    first, other = hostile(INFO), hostile(INFO | {"OutputSizes": {"outputSizes": [2]}})
+    ended = uq("models", f"{first},{other}")
+    assert ended.code == 2 and ended.err == f"{other}: describes itself otherwise than {first}\n"
 
 
 def test_a_server_that_is_restarted_loses_no_row(monkeypatch, hostile):

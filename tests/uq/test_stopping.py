@@ -142,6 +142,9 @@ def test_extending_gives_as_many_as_are_asked_for_whatever_is_known(folder):
     assert "with the first 500 of 700 samples" in note
     again = runner.run(of, "out.nc", progress=pytest.fail)
     assert again.attrs["samples"] == 700
+    amending.extend(folder / "out.nc", 1000)  # another look, and not the one it stopped at
+    (note,) = summarised(open_result(folder / "out.nc"))["notes"]
+    assert "with the first 500 of 1000 samples" in note
 
 
 def test_a_new_description_changes_no_number_of_rows(folder):
@@ -182,6 +185,7 @@ def test_a_lifetime_that_never_ends_and_failed_rows_do_not_stop_a_run_early(tmp_
     table |= {"uncertain": {"rate": wear}, "fixed": {"threshold": 2.5e-10}}
     endless = runner.run(study_of(table, "exponential-wear"), tmp_path / "wear.nc", workers=0)
     assert endless.attrs["samples"] == 64
+    assert any("some rows never end" in note for note in summarised(endless)["notes"])
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import pytest
 from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import study, tables
 
+from benchmarks.coverage import whole
 from uq.analysis import stopping
 from uq.errors import InputError
 from uq.indices.as_json import sensitivity_json
@@ -203,3 +204,33 @@ def test_the_editor_knows_the_keys():
 
     keys = json_schema()["definitions"]["Until"]["properties"]
     assert set(keys) >= {"b_life", "index", "input", "difference"}
+
+
+@pytest.mark.parametrize(("design", "index"), [("saltelli", "ST"), ("shapley", "shapley")])
+def test_a_run_may_stop_at_the_index_of_all_elements_together(monkeypatch, design, index):
+    replicates = 4 if design == "saltelli" else 1
+    until = {"output": "front[:]", "index": index, "half_width": 0.1}
+    given = tables(until, samples=64, method=design, replicates=replicates)
+    of = study_of(given | {"uncertain": whole.LAWS}, whole.NAME)
+    ds = computed(of)
+    seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
+    every = sensitivity_json(sensitivities(ds, output="front[:]"))["outputs"]["front[:]"][index]
+    known = {name: one for name, one in every.items() if one["low"] is not None}
+    halves = {name: (one["high"] - one["low"]) / 2 for name, one in known.items()}
+    widest = max(halves, key=halves.get)
+    assert seen.what == f"{index} {widest} of front[:]"
+    assert seen.half_width == pytest.approx(halves[widest], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("until", "line"),
+    [
+        ({}, r"all elements together have only an index; 'front' is each of them"),
+        ({"above": 1.0}, r"all elements together have only an index"),
+        ({"output": "fronts[:]", "index": "ST"}, r"no such output"),
+    ],
+)
+def test_what_all_elements_together_do_not_have_is_refused(until, line):
+    given = tables({"output": "front[:]", "half_width": 0.1} | until, 64, "saltelli", 4)
+    with pytest.raises(InputError, match=line):
+        study_of(given | {"uncertain": whole.LAWS}, whole.NAME)

@@ -113,7 +113,7 @@ def test_lives_of_zero_have_no_logarithm_and_no_rate():
 def test_events_are_named_with_spaces_and_units_and_others_are_refused():
     ds = asking(kinds("saltelli", replicates=4), thresholds={"work": 0.5, "life": 1.0})
     element = "work[side=left]"
-    (name,) = indices(ds, output=f"P( {element} > 0.5 )".replace("( ", "("))["outputs"]
+    (name,) = indices(ds, output=f"P( {element} > 0.5 )")["outputs"]
     assert name == f"P({element}>0.5)"
     (name,) = indices(ds, output="P(life[side=left,depth=0.5] < 1 s)")["outputs"]
     assert name == "P(life[side=left,depth=0.5]<1.0)"

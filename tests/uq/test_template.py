@@ -18,7 +18,7 @@ from uq.study.template import template
 def test_a_template_is_a_study(name):
     model = find_model(name)
     study = study_from_text(template(model))
-    assert study.model is model
+    assert study.model == model.given(model.settings())
     assert study.settings == model.settings()
     assert 1 <= len(study.uncertain) <= 3
     x = row_block(study, 0, 100).x

@@ -116,7 +116,7 @@ def test_the_numbers_of_each_sentence_lead_to_themselves():
     for key in keys:
         assert traced(ds, key).equal, key
     rest = re.sub(r"<span data-trace=.*?</span>|<style>.*?</style>", "", text, flags=re.DOTALL)
-    assert " %" in text and " %" not in rest
+    assert "\N{NO-BREAK SPACE}%" in text and "\N{NO-BREAK SPACE}%" not in rest
 
 
 def test_every_number_of_a_report_leads_to_itself(no_other_figures):

@@ -239,7 +239,8 @@ def test_cheap_outputs_have_the_bits_of_the_dear_ones():
             )
             seed, settings = np.arange(5, dtype=np.uint64), model.settings()
             dear, alone = (
-                evaluate(one, settings, x, seed).columns[name] for one in (model, model.alone(name))
+                evaluate(one.given(settings), settings, x, seed).columns[name]
+                for one in (model, model.alone(name))
             )
             assert dear.tobytes() == alone.tobytes()
 

@@ -9,9 +9,10 @@ from scipy import stats
 from uq.analysis.fleet import fleet_of
 from uq.analysis.level_shares import by_level
 from uq.analysis.summary import summarise
-from uq.errors import InputError
+from uq.errors import InputError, RunError
 from uq.exploring.updating import update
 from uq.learning.answer import learnt, learnt_json
+from uq.learning.remaining import remaining
 from uq.learning.result import as_unit
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 2.0}
@@ -88,11 +89,41 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     none = np.average((1 - p) ** 3, weights=np.exp(-(z**2) / 2))
     kept = fleet_of(ds, 3, [6e5]).by[6e5][1].estimate
     assert kept.low < none < kept.high and kept.high - kept.low < 0.06
+    found = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
+    ends = stats.norm.cdf((np.log(6e5) - middle + spread * np.array([-1.96, 1.96])) / own)
+    assert list(found["over_shared"].values()) == pytest.approx(ends, abs=0.02)
     share = by_level(ds).outputs["log(life)"].shares["shared"]
     truth = spread**2 / (spread**2 + own**2)
     assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + own**2)
     with pytest.raises(InputError, match="not with rows that inspections have weighted"):
         fleet_of(as_unit(ds, "A"), 3)
+
+
+def test_the_range_over_what_is_shared_needs_its_probabilities_without_noise():
+    """A few units of a world do not give them; and units that share nothing have no range."""
+    of_worlds = update(wear(600, rate="shared", units=3), measured(6e5, 7e5, cv=CV))
+    nothing = update(wear(600), measured(6e5, cv=CV))
+    for ds in (of_worlds, nothing):
+        of_time = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
+        assert "over_shared" not in of_time and of_time["value"] > 0
+
+
+@pytest.mark.slow
+def test_ranges_over_what_is_shared_hold_the_truth():
+    """95 % of 1,000 worlds drawn from the study, three units of each inspected."""
+    rng, held = np.random.default_rng(4), []
+    ds = wear(1000, depth="shared", units=4)
+    for _ in range(1000):
+        depth = DEPTH[0] * np.exp(DEPTH[1] * rng.standard_normal())
+        rates = RATE[0] * np.exp(RATE[1] * rng.standard_normal(3))
+        noise = np.exp(np.log1p(CV**2) ** 0.5 * rng.standard_normal(3))
+        try:
+            after = update(ds, measured(*(depth / rates * noise), cv=CV))
+        except RunError:
+            continue
+        low, high = next(remaining(after, [6e5])).over_shared[6e5].values()
+        held.append(low <= stats.norm.cdf(np.log(6e5 * RATE[0] / depth) / RATE[1]) <= high)
+    assert len(held) > 950 and 0.93 <= np.mean(held) <= 0.97
 
 
 def test_units_that_do_not_differ_need_no_rows_of_their_own():

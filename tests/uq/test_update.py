@@ -1,11 +1,13 @@
 """The posterior of a result: in closed form where that is known, and each measurement used once."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from command_line import everything, strict_json
+from computed import linear
 from learnt_studies import exactly, measured, wear
 from scipy.stats import lognorm, norm
 
@@ -13,7 +15,7 @@ from uq.errors import InputError, RunError
 from uq.exploring.updating import update
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.next_inspection import worth
-from uq.learning.result import as_unit, prior_of
+from uq.learning.result import as_unit, prior_of, unit_quality
 from uq.population.smoothing import smoothed
 from uq.rows.results import open_result
 from uq.store.files import write_result
@@ -120,6 +122,15 @@ def test_what_contradicts_the_rows_is_refused(result, tmp_path):
     with pytest.raises(InputError, match="no row of this result agrees with the inspections"):
         update(result, [{"unit": "A", "output": "life", "kind": "ended", "time": 1.0}], target)
     assert everything(tmp_path) == []
+
+
+def test_as_many_rows_as_a_refusal_names_are_enough():
+    """Any measurement with an error bounds the weights: enough rows can always be named."""
+    precise = [{"unit": "A", "output": "y", "kind": "measured", "value": 5.0, "sd": 0.01}]
+    with pytest.raises(RunError, match="single rows may carry more than 1 % of all") as refused:
+        update(linear(samples=500), precise)
+    more = int(re.search(r"add (\d+) rows", str(refused.value))[1])
+    assert unit_quality(update(linear(samples=500 + more), precise))[0].effective > 50
 
 
 def test_a_model_error_widens(result):

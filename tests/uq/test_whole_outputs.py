@@ -139,6 +139,7 @@ def test_it_has_a_name():
         ("angle[:]", "rbd-fast", r"no such element 'angle\[:\]'; did you mean 'angle'"),
         ("work[:]", "delta", "'delta' has no index of all elements together .* rbd-fast, sobol"),
         ("rate(work[:])", "rbd-fast", "no such output"),
+        ("P(work[:] > 1)", "rbd-fast", "an event is that of one element"),
     ):
         with pytest.raises(InputError, match=sentence):
             indices(ds, method, output=asked)

@@ -10,11 +10,11 @@ from uq.analysis.statistics.counts import stated_error
 from uq.analysis.statistics.statistic import Reader
 from uq.analysis.summary import summarise
 from uq.designs.registry import DESIGNS
+from uq.element_names import is_whole, whole_name
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import split_name
 from uq.methods.registry import METHODS, piloted_by
-from uq.rows.element import is_whole, whole_name
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 from uq.rows.nesting import first_samples
 from uq.rows.variables import error_name

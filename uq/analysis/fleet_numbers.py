@@ -116,7 +116,7 @@ class FleetNumbers:
     ) -> Banded:
         one, *lost = found
         if self._varies and not isnan(one.value):
-            low, high = band(LOW), band(HIGH)
+            low, high = _in_order(band(LOW), band(HIGH))
         else:
             low = high = Estimate() if self._varies else replace(one, reason=one.reason or ALIKE)
         self.ends.append((low, high))
@@ -175,7 +175,7 @@ class FleetNumbers:
                 return 1.0
             return float(special.ndtr(root(excess, (-_FARTHEST, _FARTHEST), _SETTLED)))
 
-        return replace(middle, value=at("value"), low=at("low"), high=at("high"))
+        return _around(replace(middle, value=at("value"), low=at("low"), high=at("high")))
 
     def _time_of(self, share: float, probability: float, near: float) -> Estimate:
         """Return the time by which a share of worlds has a larger probability of a unit's end."""
@@ -204,11 +204,22 @@ class FleetNumbers:
             next(filter(None, (getattr(one, name) for one in seen)), "")
             for name in ("reason", "assumes")
         )
-        return Estimate(*found, reason, assumes)
+        return _around(Estimate(*found, reason, assumes))
 
 
 class _UnknownError(ArithmeticError):
     """The spread over worlds is not known there."""
+
+
+def _around(one: Estimate) -> Estimate:
+    """Return an estimate inside its interval: on a plateau the roots found need not be in order."""
+    low, high = np.minimum(one.low, one.value), np.maximum(one.high, one.value)
+    return one if isnan(one.value) else replace(one, low=float(low), high=float(high))
+
+
+def _in_order(low: Estimate, high: Estimate) -> tuple[Estimate, Estimate]:
+    """Return the ends of a band, which on a plateau may be found to cross."""
+    return (high, low) if low.value > high.value else (low, high)
 
 
 def _times(one: Estimate, factor: float) -> Estimate:

@@ -7,7 +7,7 @@ it (`uq.interim_levels`).
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf, isnan
+from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,10 +17,12 @@ from uq import interim_levels, intervals
 from uq.analysis.life_quantiles import life_quantiles, quantile_estimate
 from uq.designs.layouts import PATHS
 from uq.designs.registry import DESIGNS
+from uq.element_names import is_whole
 from uq.estimate import NOTHING, Estimate
 from uq.indices.samples import sample_of
 from uq.indices.sensitivities import indices_of_target
-from uq.indices.targets import lightened, number_of
+from uq.indices.targets import Target, lightened, number_of
+from uq.indices.whole import wholes
 from uq.methods.registry import METHODS, kinds_with_intervals
 from uq.moments import moments
 from uq.population.functionals import Population
@@ -178,8 +180,10 @@ def statistic(
     if (p := until.probability) is not None:
         return life_quantiles(element, {"": p}, replicate, level)[""]
     values = element.at_most
-    if not len(values) or not np.isfinite(values).all():
+    if not len(values):
         return NOTHING
+    if not np.isfinite(values).all():
+        return Estimate(reason="some rows never end, or are censored")
     within = intervals.replicates_of_some(replicate, element.present)
     return moments(values, within, level).mean
 
@@ -193,7 +197,7 @@ def _probability(
         of = Population(element, replicate, level)
         return of.below(threshold) if until.above is None else of.above(threshold)
     if element.unknown_sides(threshold).any():
-        return NOTHING
+        return Estimate(reason="some rows are censored before that")
     kept, values = ~element.failed, element.for_thresholds
     hits = (values > threshold if until.above is not None else values < threshold)[kept]
     within = intervals.replicates_of_some(replicate, kept)
@@ -210,8 +214,7 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
     assert until is not None and until.index is not None
     kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
     sample = replace(sample_of(ds), confidence=confidence(design), difference=until.difference)
-    for element in named_elements(ds, until.output):
-        target = lightened(number_of(element))
+    for target in _targets(ds, until.output):
         own = replace(sample, values=target.values)
         found = indices_of_target(ds, METHODS[method], target, own)
         values = found.kinds().get(kind, {})
@@ -223,17 +226,25 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
             yield InterimEstimate(what, one, until.half_width, found.groups_dropped)
 
 
+def _targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+    """Yield what has an index: each element that is meant, or all of them together."""
+    elements = named_elements(ds, output)
+    if is_whole(output):
+        yield next(wholes(elements))
+    else:
+        yield from (lightened(number_of(element)) for element in elements)
+
+
 def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     """State why a run ended, and the estimate at that point."""
     until, samples = design.until, int(ds.attrs["samples"])
     assert until is not None
-    size = _latest(design, ds)
-    seen = interim_estimate(design, first_samples(ds, size))
+    size, seen = _stop(design, ds)
     found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
     if isnan(found.low) and isnan(found.high) and found.reason != EXACT:
         why = f" ({found.reason})" * bool(found.reason)
         return f"the budget of {samples} samples is spent, and {seen.what} has no interval{why}"
-    known = f"{seen.what} is {_in_words(found, unit)}"
+    known = f"{seen.what} {_in_words(found, unit)}"
     if seen.lost:
         lost = "groups with failed rows" if until.index else "failed rows"
         known += f" (without {seen.lost} {lost})"
@@ -250,6 +261,16 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     )
 
 
+def _stop(design: "DesignTable", ds: xr.Dataset) -> tuple[int, InterimEstimate]:
+    """Return the size at which the run may end, the last where it may not, and the estimate."""
+    sizes = [size for size in interim_sizes(design) if size <= ds.attrs["samples"]]
+    for size in sizes or [0]:
+        seen = interim_estimate(design, first_samples(ds, size))
+        if seen.reached:
+            break
+    return size, seen
+
+
 def _as_required(half_width: float, unit: Unit) -> str:
     """Return a half-width as written, or in the unit of the estimate."""
     if isinstance(half_width, Written):
@@ -258,5 +279,9 @@ def _as_required(half_width: float, unit: Unit) -> str:
 
 
 def _in_words(found: Estimate, unit: Unit) -> str:
-    value, ends = brief(found, unit.size)
-    return f"{value}, {beside(ends, unit.name)}" if ends else value
+    if isnan(found.value):
+        sides = {"at least": found.low, "at most": found.high}
+        ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]
+        return "".join(["is not known", *ends])
+    value, both = brief(found, unit.size)
+    return f"is {value}, {beside(both, unit.name)}" if both else f"is {value}"

@@ -127,6 +127,10 @@ def _show_lives(lives: Sequence[Remaining]) -> None:
     ends = (f"P(by {number(time / unit.seconds)})" for time in times)
     header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
     grid([_line(one, unit.seconds, times) for one in lives if one.life], header=header)
+    for time, points in (pair for one in lives for pair in one.over_shared.items()):
+        span = " to ".join(map(percent, points.values()))
+        text = f"P(by {number(time / unit.seconds)}) of units not inspected: {span} (95 %)"
+        paragraph(f"{text}, depending on what units share", indent=2)
     if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
         paragraph(f"hardly a row in which it still runs: {', '.join(gone)}", indent=2)
 

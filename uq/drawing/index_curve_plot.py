@@ -117,7 +117,7 @@ def index_curves(
     else:
         roomy(drawn[-1])
     drawn[-1].set_xlabel(labelled(ds[along], unit.name))
-    heading(drawn[0], as_label(_subject(elements[0], form), width=56))
+    heading(drawn[0], as_label(_subject(elements[0], form), width=48))
     return finish(drawn[-1])
 
 

@@ -9,11 +9,11 @@ from uq.drawing.catalogue import Subject
 from uq.drawing.convergence_plot import followed, total_indices
 from uq.drawing.elements_plot import occurring_regimes
 from uq.drawing.index_curve_plot import dimension_of
+from uq.element_names import is_whole
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import TargetIndices, methods
 from uq.indices.targets import split_name
-from uq.rows.element import is_whole
 from uq.rows.elements import analysis_of, shown_outputs
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import xarray as xr
 
+from uq.element_names import is_whole, whole_name
 from uq.errors import InputError, choices, nearest
 from uq.indices import targets
 from uq.indices.targets import (
@@ -19,7 +20,7 @@ from uq.indices.targets import (
 from uq.indices.whole import wholes
 from uq.methods.method import Method
 from uq.methods.registry import METHODS
-from uq.rows.element import Element, is_whole, whole_name
+from uq.rows.element import Element
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.variables import is_category
 from uq.written import read_threshold
@@ -73,6 +74,8 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
     if not named and isinstance(output, str):
         output = canonical(output)
         form, inside, threshold = split_name(output)
+        if is_whole(inside) and form == "P":
+            raise InputError(f"'{output}': an event is that of one element; name it instead of [:]")
         if is_whole(inside) and not asked.aggregates:
             able = ", ".join(name for name, one in METHODS.items() if one.aggregates)
             raise InputError(
@@ -101,9 +104,7 @@ def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
     written, name = name, canonical(name)
     form, inside, _ = split_name(name)
     if (output := inside.partition("[")[0]) in ds and (text := threshold_text(written)):
-        read_threshold(
-            "threshold", text, output, ds[output].attrs["units"]
-        )  # refuses what does not fit
+        read_threshold("threshold", text, output, ds[output].attrs["units"])  # or refuse it
     if is_whole(inside):
         every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]

@@ -111,7 +111,7 @@ FORMS = {"log": "logarithm", "rank": "rank", "rate": "inverse"}
 """The same in words."""
 
 
-_EVENT = re.compile(r"P\(\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)")
+_EVENT = re.compile(r"P\(\s*\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)")
 
 
 def split_name(name: str) -> tuple[str, str, str]:

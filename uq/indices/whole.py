@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from uq.element_names import whole_name
 from uq.indices.targets import FORMS, Target, lightened, number_of, split_name, transformed
-from uq.rows.element import Element, whole_name
+from uq.rows.element import Element
 from uq.wording import percent
 
 

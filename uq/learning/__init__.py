@@ -18,6 +18,7 @@ Reading order; a module imports only those above it:
     result            the posterior as a result, and the rows of one unit
     ledger            each measurement used once
     inputs_learnt     inputs before and after, and what is confounded
+    over_shared       how the probability of an end spreads over what units share
     remaining         lives to come
     taught            how much each inspection taught
     strangeness       how strange the inspections are before anything is learnt

@@ -117,7 +117,9 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
         to all others; ``strangeness``: the probability, before them, of inspections at least as
         strange; ``notes``; ``units``: label -> life -> ``seen`` (when it was last
         seen running), ``runs``, ``remaining`` (quantiles from then on), ``by`` (probability to have
-        ended by a time), ``effective_rows``; ``uninspected``: the same of units never inspected.
+        ended by a time), ``effective_rows``; ``uninspected``: the same of units never inspected,
+        with ``over_shared`` beside a probability, where known: its 2.5 and 97.5 % points over what
+        units share.
     """
     units: dict[str, dict[str, Any]] = {}
     for one in found.lives:
@@ -155,10 +157,14 @@ def _spread(one: Spread) -> dict[str, Any]:
 
 
 def _life(one: Remaining) -> dict[str, Any]:
+    def spread(time: float) -> dict[str, Any]:
+        points = one.over_shared.get(time, {})
+        return {"over_shared": {repr(p): x for p, x in points.items()}} if points else {}
+
     return {
         "seen": one.seen,
         "runs": json_form.whole(one.runs),
         "remaining": {repr(p): json_form.whole(found) for p, found in one.life.items()},
-        "by": {repr(time): json_form.whole(found) for time, found in one.by.items()},
+        "by": {repr(time): json_form.whole(p) | spread(time) for time, p in one.by.items()},
         "effective_rows": one.effective_rows,
     }

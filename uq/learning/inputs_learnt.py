@@ -154,15 +154,16 @@ def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Float
 def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread:
     mean = float(np.average(values, weights=weights))
     sd = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
-    return Spread(Estimate(mean), Estimate(sd), _quantiles(values, weights, asked))
+    return Spread(Estimate(mean), Estimate(sd), quantiles(values, weights, asked))
 
 
 def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
     values, weights = ds[name].values, ds[WEIGHT].values
     moments = moments_of_rows(values, weights, replicates_of(ds))
-    return Spread(*moments, _quantiles(values, weights, asked))
+    return Spread(*moments, quantiles(values, weights, asked))
 
 
-def _quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:
+def quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:
+    """Return the quantiles asked for of weighted values."""
     order, share = _ascending(values, weights)
     return dict(zip(asked, np.interp(asked, share, values[order]).tolist(), strict=True))

@@ -1,7 +1,7 @@
 """The lives to come: of each unit still running, and of units never inspected."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
@@ -9,6 +9,7 @@ import xarray as xr
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
 from uq.learning.inspections import Inspection, Kind
+from uq.learning.over_shared import over_shared
 from uq.learning.result import as_unit, inspections_of
 from uq.population.functionals import Population
 from uq.population.smoothing import effective_rows, per_sample
@@ -42,6 +43,9 @@ class Remaining:
     by : dict of float to Estimate
         Time from the beginning of the life [s] -> probability that it has ended by then.
     effective_rows : float
+    over_shared : dict of float to dict of float to float
+        For units never inspected: time -> 2.5 and 97.5 % points, over what units share, of that
+        probability (`uq.learning.over_shared`).
     """
 
     unit: str
@@ -51,6 +55,7 @@ class Remaining:
     life: dict[float, Estimate]
     by: dict[float, Estimate]
     effective_rows: float
+    over_shared: dict[float, dict[float, float]] = field(default_factory=dict)
 
 
 def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
@@ -84,7 +89,10 @@ def _of_unit(rows: xr.Dataset, label: str, seen: float, by: Sequence[float]) -> 
     for element in elements_of(rows, shown_outputs(rows, analysis)):
         if element.is_lifetime and not element.declared.success:
             times = [*by] or [t for t in analysis.thresholds.get(element.output, ()) if t > seen]
-            yield _of_life(element, part, label, seen, times)
+            found = _of_life(element, part, label, seen, times)
+            later = [time for time in found.by if time > seen and label == ANY]
+            ranges = {time: over_shared(rows, element, seen, time) for time in later}
+            yield replace(found, over_shared={t: one for t, one in ranges.items() if one})
 
 
 def _of_life(

@@ -7,12 +7,15 @@ import numpy as np
 
 from uq.learning.posterior import Posterior, Weighted
 from uq.population.means import FEW
-from uq.population.smoothing import refusal
+from uq.population.smoothing import DOUBTFUL, refusal, rows_to_carry_little
 
 HOPELESS = (
     "the rows hardly visit what the inspections leave, and no moderate number of rows helps; the"
     " laws, the model (--model-error) or an inspection may be wrong"
 )
+
+_MODERATE = 100.0
+"""Times the rows that can still be added."""
 
 _OPEN = 0.01
 """Share of rows in which a censored life may leave open what an inspection saw."""
@@ -45,18 +48,32 @@ def _censored(found: Posterior) -> Iterator[str]:
 
 
 def _reasons(found: Posterior) -> Iterator[str]:
-    if why := _why(found.any_unit):
-        yield f"what all units share: {why}"
-    for label, one in found.units.items():
+    """Yield what is wrong, that of the fewest effective rows first."""
+    each = {"what all units share": found.any_unit}
+    each |= {f"unit {label}": one for label, one in found.units.items()}
+    for whose, one in sorted(each.items(), key=lambda pair: pair[1].weights.effective):
         if why := _why(one):
-            yield f"unit {label}: {why}"
+            yield f"{whose}: {why}"
 
 
 def _why(one: Weighted) -> str:
     found = one.weights
+    several = "rows" if found.rows == len(one.rows) else "samples"
     if why := refusal(found.k, found.rows, HOPELESS):
-        return why
+        more = rows_to_carry_little(found.most) - found.rows
+        if found.k < DOUBTFUL or more > _MODERATE * found.rows:
+            return why
+        return f"single rows may carry more than 1 % of all: add {_rounded_up(more)} {several}"
     if found.effective >= FEW:
         return ""
     more = ceil(found.rows * (FEW / found.effective - 1))
-    return f"worth {found.effective:.1f} samples of equal weight, below {FEW}: add {more} samples"
+    return (
+        f"worth {found.effective:.1f} {several} of equal weight, below {FEW}:"
+        f" add {_rounded_up(more)} {several}"
+    )
+
+
+def _rounded_up(count: float) -> int:
+    """Return a number of rows with two digits."""
+    unit = 10 ** max(len(str(ceil(count))) - 2, 0)
+    return ceil(count / unit) * unit

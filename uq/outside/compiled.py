@@ -16,25 +16,6 @@ from uq.contract import Floats, censored_name
 from uq.outside.returned import Returned
 from uq.outside.row_by_row import SEED, RowByRow
 
-_LOOP = """
-def loop(x, seed, bad, {outputs}):
-    for i in range(len(x)):
-        try:
-            {values} = function({arguments})
-{assigned}
-        except Exception:
-            bad[i] = True
-"""
-_NUMBER = """
-            {output}[i] = {value}
-"""
-_ARRAY = """
-            if {value}.shape == {output}.shape[1:]:
-                {output}[i] = {value}
-            else:
-                bad[i] = True
-"""
-
 
 def is_compiled(function: Callable[..., Any]) -> bool:
     """Whether a function is compiled by numba."""
@@ -58,7 +39,7 @@ class Compiled(RowByRow):
             return super().__call__(x, seed, settings)
         columns = {n: np.empty((len(x), *one.shape)) for n, one in self.returned.items()}
         bad = np.zeros(len(x), dtype=bool)
-        loop(x, seed, bad, *columns.values())
+        loop(x, seed, bad, tuple(columns.values()))
         for name, one in self.returned.items():
             bad |= _illegal(one, columns[name].reshape(len(x), -1)).any(axis=1)
         for name, one in self.returned.items():
@@ -100,23 +81,61 @@ def _loop_of(
     loose = any(function.targetoptions.get(one) for one in ("fastmath", "parallel", "forceobj"))
     if loose or config.USING_SVML:
         return None
-    places = {name: f"x[i, {j}]" for j, name in enumerate(names)} | {SEED: "seed[i]"}
-    outputs, values = ([f"{word}{k}" for k in range(len(dims))] for word in ("out", "value"))
-    source = _LOOP.format(
-        outputs=", ".join(outputs),
-        values=", ".join(values) + ",",
-        arguments=", ".join(places[name] for name in signature(function.py_func).parameters),
-        assigned="".join(
-            (_ARRAY if n else _NUMBER).format(output=output, value=value)
-            for n, output, value in zip(dims, outputs, values, strict=True)
-        ),
-    )
-    made: dict[str, Any] = {"function": function}
-    exec(source, made)
-    loop = numba.njit(nogil=True)(made["loop"])
+    arguments = list(signature(function.py_func).parameters)
+    place = arguments.index(SEED) if SEED in arguments else None
+    called = _called(function, len(names), place)
+    kept = _kept(dims)
+
+    @numba.njit(nogil=True)
+    def loop(x: Any, seed: Any, bad: Any, columns: Any) -> None:
+        for i in range(len(x)):
+            try:
+                bad[i] = not kept(called(x[i], seed[i]), columns, i)
+            except Exception:  # numba knows no other
+                bad[i] = True
+
     try:  # on no rows
-        arrays = [np.empty((0,) * (1 + n)) for n in dims]
-        loop(np.empty((0, len(names))), np.empty(0, np.uint64), np.empty(0, np.bool_), *arrays)
+        columns = tuple(np.empty((0,) * (1 + n)) for n in dims)
+        loop(np.empty((0, len(names))), np.empty(0, np.uint64), np.empty(0, np.bool_), columns)
     except Exception:  # by itself, each row says what is wrong
         return None
     return loop
+
+
+def _called(function: Any, count: int, place: int | None) -> Any:
+    """Return a compiled function of a row and its seed, which is an argument in some place."""
+    import numba
+    from numba.np.unsafe import ndarray
+
+    as_tuple: Any = ndarray.to_fixed_tuple
+
+    if place is None:
+        return numba.njit(lambda row, seed: function(*as_tuple(row, count)))
+
+    @numba.njit
+    def call(row: Any, seed: Any) -> Any:
+        x = as_tuple(row, count)
+        return function(*x[:place], seed, *x[place:])
+
+    return call
+
+
+def _kept(dims: tuple[int, ...]) -> Any:
+    """Return a compiled function that keeps values, and returns whether their shapes are right."""
+    import numba
+
+    if not dims:
+        return numba.njit(lambda values, columns, i: len(values) == 0)
+    others, is_number = _kept(dims[1:]), dims[0] == 0
+
+    @numba.njit
+    def keep(values: Any, columns: Any, i: int) -> bool:
+        if is_number:
+            columns[0][i] = values[0]
+        elif values[0].shape == columns[0].shape[1:]:
+            columns[0][i] = values[0]
+        else:
+            return False
+        return others(values[1:], columns[1:], i)
+
+    return keep

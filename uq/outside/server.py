@@ -2,10 +2,12 @@
 
 import hashlib
 import json
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import count
 from math import inf
 from typing import Any, Self
 
@@ -17,6 +19,8 @@ from uq.outside.um_bridge import DESCRIBED, VERSION, ServerError, call, split_ad
 
 _SOON = 5.0  # seconds for which a server is expected to start
 _LARGEST = 10_000_000  # numbers in an answer
+
+_turns = count(os.getpid())  # of several servers, each process begins with another one
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ def server_model(address: str) -> Model:
     Parameters
     ----------
     address : str
-        ``http://HOST:PORT/NAME``.
+        ``http://HOST:PORT/NAME``, or several with commas between them: of the same model.
 
     Returns
     -------
@@ -49,7 +53,11 @@ def server_model(address: str) -> Model:
     InputError
         When no such model is there.
     """
-    known = _known(address)
+    first, *others = address.split(",")
+    known = _known(first)
+    for other in others:
+        if replace(_known(other), server=known.server) != known:
+            raise InputError(f"{other}: describes itself otherwise than {first}")
     described = known.information.get(DESCRIBED) or {}
     try:
         fields = {
@@ -74,7 +82,8 @@ def server_model(address: str) -> Model:
         }
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise InputError(f"{address}: describes itself wrongly: {error!r}") from None
-    evaluate = _Evaluate(known, tuple(fields), tuple(outputs) if described else ())
+    servers = tuple(split_address(one)[0] for one in address.split(","))
+    evaluate = _Evaluate(known, servers, tuple(fields), tuple(outputs) if described else ())
     name = re.sub(r"[^A-Za-z0-9_-]", "-", known.name)
     random = bool(described.get("random"))
     batch = RowByRow(evaluate, tuple(fields), outputs, random)
@@ -84,7 +93,7 @@ def server_model(address: str) -> Model:
 
 def code_of_server(address: str) -> str:
     """Return a hash of what a server says of a model: its code cannot be seen."""
-    known = _known(address)
+    known = _known(address.partition(",")[0])
     sizes = known.inputs, known.outputs
     said = json.dumps([known.name, VERSION, *sizes, known.information], sort_keys=True)
     return hashlib.sha256(said.encode()).hexdigest()[:16]
@@ -136,6 +145,7 @@ class _Evaluate:
     """One call for a row."""
 
     known: _Known
+    servers: tuple[str, ...]
     names: tuple[str, ...]
     outputs: tuple[str, ...]
     limit: float = inf  # time for a row [s]
@@ -158,7 +168,9 @@ class _Evaluate:
             first += size
         config = {"seed": row["seed"]} if "seed" in row else {}
         body = {"name": self.known.name, "input": vectors, "config": config}
-        answer = call(self.known.server, "Evaluate", body, limit=self.limit)
+        turn = next(_turns) % len(self.servers)
+        servers = self.servers[turn:] + self.servers[:turn]
+        answer = call(servers, "Evaluate", body, limit=self.limit)
         output = answer.get("output") if isinstance(answer, dict) else None
         if not isinstance(output, list) or not all(isinstance(one, list) for one in output):
             raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")

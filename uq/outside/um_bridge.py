@@ -9,6 +9,7 @@ References
 import http.client
 import json
 import time
+from collections.abc import Sequence
 from math import inf, isfinite
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
@@ -27,6 +28,9 @@ _PART = 1_000_000  # of it, between looks at the clock
 _PATIENCE = 60.0  # seconds for which a server that does not answer is asked again
 _PAUSES = (0.1, 0.3, 1.0, 3.0)
 
+_OUT_SECONDS = 10.0  # for which others are asked before a server that did not answer
+
+_out = dict[str, float]()  # servers that did not answer, and when
 _silent = set[str]()  # servers that have not answered for that time: they are asked only once
 
 
@@ -54,7 +58,7 @@ def split_address(address: str) -> tuple[str, str]:
 
 
 def call(
-    server: str,
+    server: str | Sequence[str],
     what: str,
     body: Any = None,
     patience: float | None = None,
@@ -64,8 +68,8 @@ def call(
 
     Parameters
     ----------
-    server : str
-        ``http://HOST:PORT``.
+    server : str or sequence of str
+        ``http://HOST:PORT``; of several, any may answer, and those that lately did not come last.
     what : str
         Such as ``Evaluate``.
     body : object, optional
@@ -81,24 +85,30 @@ def call(
     ------
     ServerError, OverdueError
     """
-    began, tries = time.monotonic(), 0
+    began, rounds = time.monotonic(), 0
     until = began + limit
+    servers = [server] if isinstance(server, str) else list(server)
+    servers.sort(key=lambda one: began < _out.get(one, -inf) + _OUT_SECONDS)
     while True:
-        try:
-            answer = _answer(server, what, body, until)
-            _silent.discard(server)
-            return answer
-        except (OSError, http.client.HTTPException) as error:
-            now = time.monotonic()
-            if now > until:
-                raise OverdueError(f"{server} did not answer within {limit:g} s") from None
-            if server in _silent or now - began > (_PATIENCE if patience is None else patience):
-                _silent.add(server)
-                reason = one_line(error) or type(error).__name__
-                raise ServerError(f"{server} does not answer: {reason}") from None
-        pause = _PAUSES[min(tries, len(_PAUSES) - 1)]
+        for one in servers:
+            try:
+                answer = _answer(one, what, body, until)
+                _silent.discard(one)
+                _out.pop(one, None)
+                return answer
+            except (OSError, http.client.HTTPException) as error:
+                now, reason = time.monotonic(), one_line(error) or type(error).__name__
+                if now > until:
+                    raise OverdueError(f"{one} did not answer within {limit:g} s") from None
+                _out[one] = now
+        longest = _PATIENCE if patience is None else patience
+        if _silent.issuperset(servers) or now - began > longest:
+            _silent.update(servers)
+            do = "do" if len(servers) > 1 else "does"
+            raise ServerError(f"{' and '.join(servers)} {do} not answer: {reason}")
+        pause = _PAUSES[min(rounds, len(_PAUSES) - 1)]
         time.sleep(max(min(pause, until - time.monotonic()), 0.0))
-        tries += 1
+        rounds += 1
 
 
 def _answer(server: str, what: str, body: Any, until: float) -> Any:

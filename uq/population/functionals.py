@@ -3,13 +3,20 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from math import exp, isfinite, isnan, log, nan
+from math import ceil, exp, isfinite, isnan, log, nan
 
 import numpy as np
 
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE, ROUNDING, Replicates, is_constant, replicates_of_some
+from uq.intervals import (
+    CONFIDENCE,
+    ROUNDING,
+    Replicates,
+    is_constant,
+    replicates_of_some,
+    upper_probability,
+)
 from uq.population.means import pulls, rows_of_few, trusted, weighted_share
 from uq.roots import root
 from uq.rows.element import Element
@@ -18,7 +25,6 @@ _TOLERANCE = 1e-12
 _FARTHEST = 60  # steps of growing length from a quantile to the end of its interval
 _SHOW_VARIANCE = 30  # independent parts, at least
 _LATEST = 1e300
-_FEW = "too few rows for this end of the interval"
 _CENSORED = "rows were censored before that time"
 
 
@@ -111,11 +117,11 @@ class Population:
         part = replicates_of_some(self.part, kept)
         return trusted(found, weights[kept], part, self.element.most)
 
-    def _near(self, value: float) -> Callable[[float], Estimate]:
+    def _near(self, value: float) -> tuple[Callable[[float], Estimate], float]:
         """Return a function that estimates P(Y < y) among the rows that have a value.
 
         It is for all y as cautious as it must be at a quantile: else ends would only be given
-        where rows happen to agree.
+        where rows happen to agree. With it the number of rows of which it has the interval of hits.
         """
         kept = self.element.present
         weights, part = self._of(kept)
@@ -125,7 +131,19 @@ class Population:
         def share(y: float) -> Estimate:
             return weighted_share(self._below(y)[kept], weights, part, rows, self.confidence)
 
-        return share
+        return share, rows
+
+    def _why_open(self, probability: float, low: float, high: float, rows: float) -> str:
+        """Return why a quantile lacks an end of its interval, or ""."""
+        missing = [name for name, end in (("lower", low), ("upper", high)) if isnan(end)]
+        if not missing:
+            return ""
+        without_hits = min(1 - probability if name == "lower" else probability for name in missing)
+        needed = ceil(log(1 - upper_probability(self.confidence)) / log(without_hits))
+        ends = f"no {' or '.join(missing)} end"
+        if not rows < needed:
+            return f"{ends}: too few rows carry it"
+        return f"{ends}: {rows:.3g} effective rows, and it needs {needed}"
 
     def _below(self, value: float) -> Floats:
         """Return the probability that each row lies below a value: of an angle, not its size."""
@@ -181,7 +199,7 @@ class Population:
         if isnan(value) or (place := self._typical) is None:
             return Estimate(value)
         inside = min(max(value, 1 / _LATEST), _LATEST)
-        share = self._near(inside)
+        share, rows = self._near(inside)
         middle = share(inside)
         if isnan(middle.low):
             return Estimate(value, reason=middle.reason)
@@ -202,7 +220,7 @@ class Population:
             start, unit = log(value), unit / 30
         low = 0.0 if value == 0 else min(end(start, unit, "high"), value)
         high = value if value == np.inf else max(end(start, unit, "low"), value)
-        return Estimate(value, low, high, _FEW if isnan(low) or isnan(high) else "")
+        return Estimate(value, low, high, self._why_open(probability, low, high, rows))
 
     def _along_values(self, probability: float) -> Estimate:
         """Return a quantile of known values, which is one of them."""
@@ -224,8 +242,9 @@ class Population:
         if len(cut) and value >= cut.min():
             return Estimate(reason=_CENSORED)
         beside = float(after[np.searchsorted(values, value)]) if isfinite(value) else np.inf
-        share = self._near(beside)
-        return Estimate(value, least(share, "high"), least(share, "low"))
+        share, rows = self._near(beside)
+        low, high = least(share, "high"), least(share, "low")
+        return Estimate(value, low, high, self._why_open(probability, low, high, rows))
 
 
 def first_step(

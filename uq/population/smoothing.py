@@ -14,7 +14,9 @@ from uq.rows.weights import largest_weight, row_weights
 from uq.tails import DISTINCT, generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
-_HOPELESS = 0.7
+DOUBTFUL = 0.7
+"""Shape of the largest weights above which their mean cannot be trusted, however many rows."""
+
 _NEGLIGIBLE = 1e-3
 _LITTLE = 0.01
 _SAME = 1e-9  # relative difference of numbers that only rounding tells apart
@@ -109,7 +111,12 @@ def no_weights(rows: int, why: str) -> Smoothed:
 
 def carries_little(most: float, rows: int) -> bool:
     """Whether no row of so many can carry more than a hundredth of what all carry."""
-    return most <= _LITTLE * rows
+    return rows_to_carry_little(most) <= rows
+
+
+def rows_to_carry_little(most: float) -> float:
+    """Return of how many rows none can carry more than a hundredth, given the largest weight."""
+    return most / _LITTLE
 
 
 def weights_of(rows: xr.Dataset) -> Smoothed | None:
@@ -163,7 +170,7 @@ def tail_shape(numbers: Floats) -> float:
 
 def largest_shape(rows: int) -> float:
     """Return the largest shape with which so many rows can be trusted."""
-    return min(_HOPELESS, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
+    return min(DOUBTFUL, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
 
 
 HOPELESS = (
@@ -180,7 +187,7 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     if most == -inf:
         parts = "part" if rows == 1 else "parts"
         return f"weights rest on {rows} independent {parts}, and more than 10 are needed"
-    if k < _HOPELESS:
+    if k < DOUBTFUL:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:

@@ -146,19 +146,6 @@ class Element:
         return np.where(self.censored, np.inf, self.values)[self.present]
 
 
-def whole_name(output: str) -> str:
-    """Return the name of all elements of an output together: ``work_rate[:]``."""
-    return f"{output}{_WHOLE}"
-
-
-def is_whole(name: str) -> bool:
-    """Whether a name is that of all elements together."""
-    return name.endswith(_WHOLE)
-
-
-_WHOLE = "[:]"
-
-
 def elements_in(
     name: str,
     declared: Output,

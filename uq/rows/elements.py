@@ -15,11 +15,11 @@ from uq.contract import Mask as Mask
 from uq.contract import censored_name
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
-from uq.element_names import MOST_PLACES, Place, place_of
+from uq.element_names import MOST_PLACES, Place, is_whole, place_of, whole_name
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.element import Element as Element
-from uq.rows.element import elements_in, is_whole, places, whole_name
+from uq.rows.element import elements_in, places
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of

@@ -9,7 +9,7 @@ from uq.designs.design import Design
 from uq.designs.layouts import PATHS
 from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.designs.registry import DESIGNS
-from uq.element_names import places
+from uq.element_names import places, whole_name
 from uq.errors import choices, nearest
 from uq.inputs.faults import Fault, unknown
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
@@ -70,7 +70,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         if not faults and model.outputs:
             yield from _until_faults(model, name, until)
-            yield from _element_faults(model, name, until["output"], settings)
+            yield from _element_faults(model, name, until, settings)
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[Fault]:
@@ -90,14 +90,21 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
         yield Fault((*path, "half_width"), problem, half_width)
 
 
-def _element_faults(model: Model, name: str, element: str, settings: Any) -> Iterator[Fault]:
+def _element_faults(
+    model: Model, name: str, until: Mapping[str, Any], settings: Any
+) -> Iterator[Fault]:
     """Yield whether an output has no such element with these settings."""
+    element = until["output"]
     if element == name or settings is None:
         return
     coordinates = model.coordinates(settings)
     axes = {dim: coordinates[dim] for dim in model.outputs[name].dims}
     names = [label for label, *_ in places(name, axes)]
-    if element not in names:
+    if element == whole_name(name) and len(names) > 1:
+        if "index" not in until:
+            problem = f"all elements together have only an index; '{name}' is each of them"
+            yield Fault(("design", "until", "output"), problem, element)
+    elif element not in names:
         problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
         yield Fault(("design", "until", "output"), problem, element)
 

@@ -39,7 +39,8 @@ def template(model: Model) -> str:
     """
     suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
     laws = dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
-    numbers = [name for name, output in model.outputs.items() if not output.is_category]
+    outputs = model.given(model.settings()).outputs
+    numbers = [name for name, output in outputs.items() if not output.is_category]
     return "\n".join(
         [
             "#:schema vibrolife-study.schema.json",
@@ -71,7 +72,7 @@ def template(model: Model) -> str:
                 AnalysisTable,
                 {},
                 {
-                    "outputs": list(model.outputs),
+                    "outputs": list(outputs),
                     "tolerance": {"coverage": 0.95, "confidence": 0.95},
                     "thresholds": {numbers[0]: 1.0},
                     "sensitivity": ["rbd-fast"],
