@@ -190,6 +190,21 @@ def test_what_the_next_inspection_is_worth(uq, folder):
     ended = uq("next-inspection", "posterior.nc", "--inspect", "life", "--json")
     assert [one["units"] for one in strict_json(ended.out)["narrowing"]] == [1, 5, 20]
     assert uq("next-inspection", "posterior.nc", "--inspect", "lif").err.count("\n") == 1
+    for time in ("-1", "nan"):
+        ended = uq("next-inspection", "posterior.nc", "--inspect", "life", "--at", time)
+        assert ended.code == 2 and "must be finite, and 0 or more" in ended.err
+    below = posterior.assign(life=posterior["life"] - 1e6)
+    with pytest.raises(InputError, match=r"life is negative in .* % of the rows"):
+        worth(below, "life")
+
+
+def test_the_rows_of_a_run_are_not_overwritten_by_a_posterior(result, tmp_path):
+    write_result(result, tmp_path / "run.nc")
+    with pytest.raises(InputError, match="no inspections have weighted; choose another output"):
+        update(tmp_path / "run.nc", measured(5e5), tmp_path / "run.nc")
+    assert open_result(tmp_path / "run.nc").identical(result)
+    first = update(tmp_path / "run.nc", measured(5e5), tmp_path / "after.nc")
+    assert not update(tmp_path / "run.nc", measured(6e5), tmp_path / "after.nc").equals(first)
 
 
 def test_rows_as_those_of_one_unit(result):

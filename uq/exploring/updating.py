@@ -17,6 +17,7 @@ from uq.learning.trust import censoring, distrust
 from uq.rows.elements import independent_rows, why_no_statistics
 from uq.rows.results import open_result
 from uq.rows.sampling import rows_per_sample
+from uq.rows.weights import has_weights
 from uq.running.loading import load_study
 from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study
@@ -143,6 +144,8 @@ def learn(
     """Return a result as the inspections leave it, and write it."""
     if why := why_no_statistics(ds):
         raise InputError(f"uq update: the rows of a '{ds.attrs['design']}' design {why}")
+    if output is not None and Path(output).is_file():
+        _check_that_it_is_a_posterior(Path(output))
     inspections = all_of(ds, new)
     cv = float(ds.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
     if not 0 <= cv < 10:
@@ -161,3 +164,10 @@ def learn(
     for path in kept:
         path.unlink(missing_ok=True)
     return result
+
+
+def _check_that_it_is_a_posterior(path: Path) -> None:
+    """Refuse to overwrite rows that a run computed: only they can be extended and verified."""
+    remedy = "choose another output"
+    if not has_weights(open_result(path, remedy)):
+        raise InputError(f"{path}: holds rows that no inspections have weighted; {remedy}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import nan
+from math import inf, nan
 
 import numpy as np
 import xarray as xr
@@ -79,7 +79,8 @@ def worth(
     Raises
     ------
     InputError
-        When samples have a single unit, or there is no such output or life.
+        When samples have a single unit, there is no such output or life, or the output is negative
+        in some rows.
 
     Notes
     -----
@@ -100,6 +101,8 @@ def worth(
         raise InputError(
             "uq next-inspection: samples have a single unit: set [design] units = 2 or more"
         )
+    if wrong := [time for time in times if not 0 <= time < inf]:
+        raise InputError(f"uq next-inspection: time = {wrong[0]:g}: must be finite, and 0 or more")
     element = _the_life(rows, life)
     weights = weights_of(rows)
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
@@ -107,7 +110,13 @@ def worth(
     found = {}
     for time in times or (None,):
         look = look_at(rows, Inspection("", output, Kind.MEASURED, time, 1e-300, cv=cv))
-        seen = _logarithm(look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0])
+        truth = look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0]
+        if negative := np.mean(truth < 0):
+            raise InputError(
+                f"uq next-inspection: {output} is negative in {100 * negative:.2g} % of the rows: a"
+                " coefficient of variation cannot describe the error of such a measurement"
+            )
+        seen = _logarithm(truth)
         between = _Between(target, seen, worth_of_rows, place)
         for count in units:
             found[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
