@@ -10,6 +10,7 @@ from scipy import special
 from typer.testing import CliRunner
 
 from benchmarks.coverage import scaled as counted
+from benchmarks.coverage.tally import LOW
 from uq.analysis.what_if import answer, read_changes, what_if, what_if_json
 from uq.cli.app import app
 from uq.contract import Output
@@ -300,7 +301,10 @@ def test_on_the_command_line(result, tmp_path):
 
 @pytest.mark.slow
 def test_differences_from_fresh_rows_hold_zero():
-    assert [line for line in counted.what_if(1000) if line.unexplained] == []
+    lines = [line for line in counted.what_if(1000) if line.given]
+    assert min(line.given for line in lines) > 990
+    # Reasons are given for caution alone: no interval holds the truth too seldom.
+    assert [line for line in lines if line.unexplained or line.coverage[0] < LOW] == []
 
 
 @pytest.mark.slow
