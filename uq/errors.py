@@ -29,14 +29,19 @@ class RunError(Exception):
     """A run that gives no result although its input is valid: one plain sentence."""
 
 
+_LONGEST = 500  # characters of a text that a model wrote
+
+
 def one_line(error: BaseException) -> str:
     """Return the text of an exception in one line, which may be empty."""
     return " ".join(str(error).split())
 
 
 def described(error: BaseException) -> str:
-    """Return the kind of an exception and its text in one line."""
+    """Return the kind of an exception and the beginning of its text in one line."""
     text = one_line(error)
+    if len(text) > _LONGEST:
+        text = text[:_LONGEST] + " ..."
     return f"{type(error).__name__}: {text}" if text else repr(error)
 
 

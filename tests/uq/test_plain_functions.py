@@ -253,6 +253,11 @@ MISTAKES = {
     "import uq\n@uq.machine\ndef wear(load=float('inf')): ...\n": "nominal value inf of 'load'",
     BOUNDED % "(2.0, 3.0)": "nominal value 1 of 'load' must be a finite number between 2 and 3",
     BOUNDED % "(3.0, 0.0)": "bounds of 'load' must be a lower and a higher number, not (3, 0)",
+    BOUNDED % "(0.0, None)": "annotation (0.0, None): a unit, a pair of bounds or a meaning",
+    "import uq\n@uq.machine\ndef wear(world=1.0): ...\n": (
+        "parameter 'world' is the name of one of a result's own variables"
+    ),
+    "import uq\n@uq.machine\ndef wear(load=1.0): raise ValueError('x' * 9999)\n": "xxx ...",
     BOUNDED % "'newtons per metre!'": "unit 'newtons per metre!' of 'load': write its factors with",
     "import uq\n@uq.machine(returns={'y': 'hours'})\ndef wear(load=1.0): ...\n": (
         "unit 'hours' of output 'y': write it as 'h'"
@@ -263,7 +268,7 @@ MISTAKES = {
         "output 'load': 'load' is the name of a parameter; choose another"
     ),
     "import uq\n@uq.machine\ndef wear(load=1.0): return {'status': load}\n": (
-        "'status' is the name of a result's own variables"
+        "'status' is the name of one of a result's own variables"
     ),
     "import uq\n@uq.machine\ndef wear(load=1.0): return {'y': [load], 'y_index': 0.0}\n": (
         "'y_index' is the name of output 'y' or of a part of it"

@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import inf
+from numbers import Real
 from typing import Any, TypeVar, get_args, get_type_hints, overload
 
 from uq.contract import Model, Parameter
@@ -160,7 +161,7 @@ def _parameter(name: str, hint: Any) -> Parameter:
     for extra in get_args(hint)[1:] if hint is not float else ():
         if isinstance(extra, Parameter):
             return extra
-        if isinstance(extra, tuple) and len(extra) == 2:
+        if isinstance(extra, tuple) and [isinstance(one, Real) for one in extra] == [True] * 2:
             bounds = (float(extra[0]), float(extra[1]))
         elif isinstance(extra, str):
             if next(words, "") == "unit":

@@ -107,14 +107,13 @@ def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[
 
 def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
     """Yield what is wrong with names, all of which stand side by side in a result."""
-    taken = dict.fromkeys(_TAKEN, "of a result's own variables") | dict.fromkeys(
-        fields, "of a parameter"
-    )
+    reserved = "of one of a result's own variables"
+    taken = dict.fromkeys(fields, "of a parameter") | dict.fromkeys(_TAKEN, reserved)
     for name in fields:
         if not name.isidentifier() or keyword.iskeyword(name) or name.startswith("_"):
             yield f"parameter '{name}' cannot have this name in Python; choose another"
         if name in _TAKEN:
-            yield f"parameter '{name}' has the name of one {taken[name]}; choose another"
+            yield f"parameter '{name}' is the name {taken[name]}; choose another"
     for name, one in returned.items():
         made = [name, *dimensions(name, one.shape), *([censored_name(name)] if one.life else [])]
         for new in made:
