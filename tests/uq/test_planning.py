@@ -83,6 +83,12 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
     assert ("S1" in expected.indices) == (method == "saltelli")
 
 
+def test_plan_says_that_scrambled_designs_may_be_better(uq, write_study):
+    design = {"method": "saltelli", "samples": 8, "replicates": 4}
+    path = write_study(model="linear", uncertain=("x1", "x2"), **design)
+    assert "\nLargest width to expect of the 95 % intervals" in uq("plan", path, "--workers", 0).out
+
+
 def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
     monkeypatch.setattr(planning, "_load_seconds", lambda: 1.0)
     path = write_study(model="linear", uncertain=("x1",), more="[settings]\nfail_above = 0.6")

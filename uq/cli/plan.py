@@ -7,6 +7,7 @@ from uq.analysis.joint_bounds import Needed, rows_needed
 from uq.analysis.widths import Widths, expected_widths
 from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say, say_compiling
+from uq.rows.elements import has_independent_samples
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import Study
@@ -25,7 +26,7 @@ def plan(study: Study, workers: int | None, json: bool) -> None:
         print_json(as_json(cost, failures, widths, needed))
     else:
         _show(study, cost, failures, needed)
-        _show_widths(widths)
+        _show_widths(widths, has_independent_samples(ds))
 
 
 def as_json(
@@ -81,9 +82,10 @@ def _why_needed(needed: Needed, cost: Cost) -> str:
     return f"needed for {of}, if none fails{short}"
 
 
-def _show_widths(widths: Mapping[str, Widths]) -> None:
+def _show_widths(widths: Mapping[str, Widths], independent: bool) -> None:
     asked = [repr(probability) for width in widths.values() for probability in width.quantiles]
-    heading("\nExpected width of the 95 % intervals of mean and quantiles")
+    expected = "Expected width" if independent else "Largest width to expect"
+    heading(f"\n{expected} of the 95 % intervals of mean and quantiles")
     grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
     others = [
         (label, _short(one))
