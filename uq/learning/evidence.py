@@ -25,8 +25,12 @@ FINEST = 1e-9
 """Share of the posterior that the grid of the integrated input may leave out on each side."""
 
 _NODES = 64
+_MOST_NODES = 512
+_FINE = 8.0
+"""Nodes that share the law of the integrated input in a row, at least."""
+
 _FAR = 7.5
-_PASSES = 6
+_PASSES = 8
 
 
 class Grid(NamedTuple):
@@ -104,7 +108,8 @@ def weigh(
     -------
     Evidence
     """
-    grids = [_grid(0.0, 1.0, quantiles)] * len(likelihoods)
+    grids = [_grid(0.0, 1.0, quantiles, _NODES)] * len(likelihoods)
+    nodes = _NODES
     for _ in range(_PASSES):
         units, found = weigh_on(grids, likelihoods, world_of, worlds, own)
         if quantiles is None or not np.isfinite(found.log_evidence):
@@ -113,9 +118,25 @@ def weigh(
         if not own:
             narrower = narrower[:1] * len(grids)
         if not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
-            break
-        grids = [_grid(low, high, quantiles) for low, high in narrower]
+            each = zip(likelihoods, world_of, grids, found.rest, strict=True)
+            if nodes == _MOST_NODES or min(_nodes_of_a_row(*one) for one in each) >= _FINE:
+                break
+            nodes *= 2
+        grids = [_grid(low, high, quantiles, nodes) for low, high in narrower]
     return found
+
+
+def _nodes_of_a_row(
+    likelihood: Likelihood, world: NDArray[np.intp], grid: Grid, rest: Floats
+) -> float:
+    """Return how many nodes share the law of the integrated input in a row, on average."""
+    joint = rest[world] + likelihood(grid.values)
+    top = joint.max(axis=1, keepdims=True)
+    share = np.exp(joint - np.where(np.isfinite(top), top, 0.0))
+    total = share.sum(axis=1)
+    worth = total * np.exp(top[:, 0] - top.max())
+    nodes = total**2 / np.maximum((share**2).sum(axis=1), 1e-300)
+    return float(np.average(nodes, weights=worth))
 
 
 def weigh_on(
@@ -133,12 +154,12 @@ def weigh_on(
     return units, (_own if own else _shared)(units, grids, worlds)
 
 
-def _grid(low: float, high: float, quantiles: Quantiles | None) -> Grid:
+def _grid(low: float, high: float, quantiles: Quantiles | None, nodes: int) -> Grid:
     if quantiles is None:
         return Grid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
     first, last = _scores(low, high)
-    scores = np.linspace(first, last, _NODES + 1)[1:-1]
-    return _joined([np.linspace(low, high, _NODES + 1), special.ndtr(scores)], quantiles)
+    scores = np.linspace(first, last, nodes + 1)[1:-1]
+    return _joined([np.linspace(low, high, nodes + 1), special.ndtr(scores)], quantiles)
 
 
 def _scores(low: float, high: float) -> Floats:
