@@ -159,9 +159,12 @@ def test_a_fault_costs_its_row_and_keeps_its_folder(uq, body, folder, fault):
 
 
 @pytest.mark.slow
-def test_an_fmu_that_crashes_is_one_sentence_of_simulate(uq, body):
+def test_an_fmu_that_crashes_is_one_sentence_of_simulate(uq, body, folder):
     ended = uq("simulate", "body.toml", "--set", "fault=4")
-    assert ended.code == 1 and ended.out.startswith("body: crashed  killed its process (Aborted)")
+    said = "body: crashed killed its process (Aborted); see "
+    assert ended.code == 1 and " ".join(ended.out.split()).startswith(said)
+    (kept,) = (folder / "body.rows").iterdir()
+    assert f" {kept}\n" in ended.out  # in one piece
 
 
 def test_another_fmu_is_noticed(uq, body, library):
