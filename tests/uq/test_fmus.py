@@ -206,18 +206,19 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, body, folder, change):
 
 
 TWICE = DESCRIPTION.replace('"T0"', '"body_rate"')
-OLD = DESCRIPTION.replace(
-    'fmiVersion="2.0"',
-    'fmiVersion="1.0" numberOfContinuousStates="0" numberOfEventIndicators="0"',
-).replace('declaredType="Rate"', "")
+NEW = """<fmiModelDescription fmiVersion="3.0" modelName="Body" instantiationToken="{{body}}">
+  <CoSimulation modelIdentifier="body"/>{experiment}<ModelVariables>
+    <Float64 name="T" valueReference="3" causality="output"/><Clock name="tick"/>
+  </ModelVariables><ModelStructure/></fmiModelDescription>"""
 ODD_STEP = EXPERIMENT.replace("0.01", "0.03")
 BAD = {
     "no archive": (None, "is no FMU: BadZipFile"),
     "no description": ({"description": "<x/>"}, "is no FMU"),
     "of FMI 1.0": (
-        {"description": OLD},
-        "is of FMI 1.0, not 2.0",
+        {"description": DESCRIPTION.replace('fmiVersion="2.0"', 'fmiVersion="1.0"')},
+        "is of FMI 1.0, not 2.0; export it as such",
     ),
+    "of FMI 3.0": ({"description": NEW}, "is of FMI 3.0, not 2.0; export it as such"),
     "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
     "two of a name": (
         {"description": TWICE},

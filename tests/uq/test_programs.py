@@ -166,7 +166,7 @@ HOSTILE = {
     "read answer < /dev/tty || exit 4": ("raised", "ended with exit code"),
     "echo life = nan; exit 0": ("bad-shape", "wrote no file 'out.json'"),
     "rm input.txt; exit 0": ("bad-shape", "has no 'life' in its output: no match"),
-    "echo life = many; exit 0": ("bad-shape", "could not convert string to float: 'many'"),
+    "echo life = many; exit 0": ("bad-shape", "no number: 'many'"),
     "echo '<html>' > out.json; echo life = 1; exit 0": ("bad-shape", "has no 'pair' in 'out.json'"),
     "ulimit -f 1; yes": ("raised", "File size limit exceeded"),
 }
