@@ -8,29 +8,15 @@ import cooling_fmu
 import numpy as np
 import pytest
 from cooling_fmu import DESCRIPTION, EXPERIMENT
+from own_machines import opened
+from own_study import own_study
 
-import uq as package
 from uq.contract import Status
 from uq.outside.fmu import reduced
 from uq.outside.fmu_file import FmuOutputTable
 from uq.outside.fmu_said import cf_unit
 from uq.outside.returned import Censored
 from uq.study.registry import find_model
-
-STUDY = """
-[study]
-name = "own"
-model = "body"
-[design]
-method = "monte-carlo"
-samples = 20
-seed = 1
-[uncertain.{name}]
-distribution = "uniform"
-lower = {lower}
-upper = {upper}
-source = "assumed"
-"""
 
 MACHINE = """
 [machine]
@@ -71,9 +57,9 @@ def body(folder, library):
 
 
 def run(uq, model, *more, name="rate", lower=0.1, upper=2.0):
-    Path("own.toml").write_text(STUDY.format(name=name, lower=lower, upper=upper))
+    Path("own.toml").write_text(own_study("body", name, lower, upper))
     ended = uq("run", "own.toml", "--model", model, "-o", "own.nc", "--quiet", *more)
-    return ended, package.open_result("own.nc") if Path("own.nc").is_file() else None
+    return ended, opened()
 
 
 def test_an_fmu_alone_has_its_own_parameters_and_outputs(uq, body, folder):
