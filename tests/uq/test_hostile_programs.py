@@ -93,6 +93,16 @@ def test_of_many_failed_rows_little_is_kept(folder, monkeypatch):
     assert (kept / "small").is_file() and 4000 < folders.size_of(kept) <= 5000
 
 
+def test_the_folder_of_a_row_that_no_longer_fails_is_removed(folder):
+    rows = Folders(folder / "rows")
+    with suppress(ValueError), rows.row([1.0]):
+        raise ValueError
+    assert rows.kept([1.0]).is_dir()
+    with rows.row([1.0]):
+        pass
+    assert not list(rows.root.iterdir())
+
+
 LOST = {
     "exec sleep 300": ("timed-out", "did not end within 0.5 s"),
     "kill -9 $PPID; exec sleep 300": ("crashed", "killed its process (Killed)"),

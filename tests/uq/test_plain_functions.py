@@ -88,14 +88,13 @@ def test_a_row_that_leaves_the_program_or_its_folder_costs_that_row_only(
     assert (ds["y"].values[~heavy] == 1).all()
 
 
-def test_an_interrupt_raised_by_a_row_is_its_status(uq, write_function, capfd):
+def test_an_interrupt_raised_by_a_row_is_its_status(write_function, capfd):
     file = write_function(
         "import sys, warnings, uq\n@uq.machine\ndef wear(load: float = 1.0):\n"
         "    warnings.warn('noise')\n    print('noise', file=sys.stderr)\n"
         "    if load > 1.9:\n        raise KeyboardInterrupt\n    return {'y': 10**30}\n"
     )
-    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet")
-    ds = package.open_result("own.nc")
+    ds = package.run(package.load_study("own.toml", file), "own.nc")
     heavy = ds["load"].values > 1.9
     assert (ds["status"].values == np.where(heavy, Status.RAISED, Status.OK)).all() and heavy.any()
     assert ds["status"].attrs["example_raised"].endswith("KeyboardInterrupt()")

@@ -81,6 +81,8 @@ class Folders:
         except Exception:
             self._keep(folder, numbers)
             raise
+        else:
+            shutil.rmtree(self.kept(numbers), ignore_errors=True)  # of an earlier run
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 

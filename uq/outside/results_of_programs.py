@@ -99,7 +99,7 @@ def _in_csv(text: str, column: str) -> float:
 def _matched(text: str, pattern: str) -> float:
     found = re.findall(pattern, text, re.MULTILINE)
     if not found:
-        raise ValueError("no match of its pattern")
+        raise ValueError(f"no match of its pattern {pattern}")
     return _real(found[-1])
 
 
