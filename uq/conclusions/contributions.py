@@ -121,6 +121,8 @@ class Ranking:
         Why there is no ranking: no index, or nothing settled; "" where there is one.
     rows_factor : float
         How many times the rows would settle it; NaN where that does not apply.
+    is_flat : bool
+        Whether it is settled that no input contributes measurably.
     """
 
     target: str
@@ -130,6 +132,7 @@ class Ranking:
     contributions: tuple[Contribution, ...] = ()
     reason: str = ""
     rows_factor: float = float("nan")
+    is_flat: bool = False
 
     @property
     def leader(self) -> Contribution | None:
@@ -141,6 +144,11 @@ class Ranking:
         """Whether what contributes most contributes much."""
         one = self.leader
         return one is not None and not (one.share_of_variance and one.value < SMALL)
+
+    @property
+    def denies_a_leader(self) -> bool:
+        """Whether it is settled that no single input contributes much."""
+        return self.is_flat or (self.leader is not None and not self.leads)
 
     @property
     def sentence(self) -> str:

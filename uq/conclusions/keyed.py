@@ -1,5 +1,7 @@
 """Sentences of the answer as HTML, each with the keys of its numbers for ``uq trace``."""
 
+from collections.abc import Iterator
+
 from markupsafe import Markup, escape
 
 from uq.conclusions.contributions import Contribution
@@ -92,6 +94,16 @@ def leader(one: Quantity) -> Markup:
         text = sentence(ranking.leader.effect)
         known.append(keyed(text, *_keys(one, 0, "effects", ranking.leader)))
     return Markup(" ").join(known)
+
+
+def earliest(one: Quantity) -> Iterator[Markup]:
+    """Yield what distinguishes the rows that end first, and which these are."""
+    if one.earliest is not None:
+        key = _key(one, "earliest")
+        if one.earliest.sentence:
+            yield keyed(one.earliest.sentence, key)
+        command = Markup("<code>{}</code>").format(plain(one.earliest.command))
+        yield Markup("{} To see the first: {}").format(keyed(one.earliest.first, key), command)
 
 
 def size(one: Quantity, number: int, of: Contribution) -> Markup:
