@@ -159,8 +159,8 @@ class Checker:
         text = change.sentence()
         if not change.step or not change.by.has_interval or "direction" in text:
             return
-        *_, by, low, high = numbers_in(text)
-        if not low <= by <= high or not is_about_even(change.by):
+        _, by, *ends = numbers_in(text.replace("one standard deviation", "1"))
+        if ends and not ends[0] <= by <= ends[1] or not is_about_even(change.by):
             yield f"interval of {text}"
         x, y = self.rows[name].values, self.values(one)
         if change.unit.name == "%":

@@ -148,8 +148,11 @@ def test_page_terminal_and_json_say_the_same():
     assert "What ends first" in html and said.command in html
     assert said.sentence in repr(found) and said.first in repr(found)
     plain = answer_json(conclude(Findings(ds)))["quantities"]["life"]["earliest"]
-    assert plain["rows"] == list(said.rows) and plain["sentence"] == said.sentence
-    assert plain["inputs"]["x4"]["rank"]["value"] == said.inputs[0].rank.value
+    assert (
+        plain["lives"] == dict(zip(map(str, said.rows), said.lives, strict=True))
+        and plain["sentence"] == said.sentence
+    )
+    assert plain["inputs"]["x4"]["rank"] == said.inputs[0].rank.value
 
 
 def test_never_more_than_five_per_cent():

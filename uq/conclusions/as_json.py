@@ -25,8 +25,8 @@ def answer_json(found: Answer) -> dict[str, Any]:
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
         input ``over``. A ranking has ``contributions``: ``inputs`` -> index, ``effects`` -> change
         with a ``step`` of the input, in a ``unit`` or, where that is "", in that of the output. The
-        earliest rows have ``rows``, ``lives``, and the ``inputs`` and ``regimes`` that distinguish
-        them.
+        earliest rows have ``lives`` (row -> life), and the ``inputs`` and ``regimes`` that
+        distinguish them.
     """
     return {
         "rows": found.rows,
@@ -51,8 +51,7 @@ def _earliest(one: Earliest) -> dict[str, Any]:
         "sentence": one.sentence,
         "first": one.first,
         "command": one.command,
-        "rows": list(one.rows),
-        "lives": list(one.lives),
+        "lives": {str(row): life for row, life in zip(one.rows, one.lives, strict=True)},
         "size": one.size,
         "of": one.of,
         "inputs": {
@@ -61,7 +60,9 @@ def _earliest(one: Earliest) -> dict[str, Any]:
                 "outwards": each.outwards,
                 "median": each.median,
                 "median_of_others": each.others,
-                "rank": json_form.numbers(each.rank),
+                "rank": each.rank.value,
+                "rank_low": json_form.number(each.rank.low),
+                "rank_high": json_form.number(each.rank.high),
             }
             for each in one.inputs or ()
         },

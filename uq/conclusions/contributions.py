@@ -42,8 +42,10 @@ class Change:
         if not self.step or not self.by.has_interval:
             return f"more{of} {verb}"
         low, high = sorted(map(abs, (self.by.low, self.by.high)))
-        by = self.unit.text(abs(self.by.value))
-        return f"{self.step} more{of} {verb} by {by} ({self.unit.bare_between(low, high)})"
+        text = f"{self.step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
+        if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
+            return text
+        return f"{text} ({self.unit.bare_between(low, high)})"
 
 
 @dataclass(frozen=True)

@@ -98,12 +98,15 @@ def leader(one: Quantity) -> Markup:
 
 def earliest(one: Quantity) -> Iterator[Markup]:
     """Yield what distinguishes the rows that end first, and which these are."""
-    if one.earliest is not None:
-        key = _key(one, "earliest")
-        if one.earliest.sentence:
-            yield keyed(one.earliest.sentence, key)
-        command = Markup("<code>{}</code>").format(plain(one.earliest.command))
-        yield Markup("{} To see the first: {}").format(keyed(one.earliest.first, key), command)
+    if (said := one.earliest) is None:
+        return
+    if said.sentence:
+        apart = [("inputs", each.name) for each in said.inputs or ()]
+        apart += [("regimes", each.label) for each in said.regimes]
+        yield keyed(said.sentence, *(_key(one, "earliest", *each) for each in [("size",), *apart]))
+    command = Markup("<code>{}</code>").format(plain(said.command))
+    first = keyed(said.first, _key(one, "earliest", "lives"))
+    yield Markup("{} To see the first: {}").format(first, command)
 
 
 def size(one: Quantity, number: int, of: Contribution) -> Markup:
