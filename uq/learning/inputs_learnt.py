@@ -33,7 +33,7 @@ class Spread:
     ----------
     mean, sd : Estimate
         Of the posterior with intervals, which say how well the rows determine them; missing, with
-        the reason, where Pareto k of weight times value, or times squared deviation, is too large.
+        the reason, where Pareto k of weight times value, or times its square, is too large.
     quantiles : dict of float to float
     """
 
@@ -164,12 +164,9 @@ def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
     values, weights = ds[name].values, ds[WEIGHT].values
     part = replicates_of(ds)
     mean, sd = moments_of_rows(values, weights, part)
-    off = (values - mean.value) ** 2
-    moments = (
-        trusted(found, weights * numbers, part, hopeless=_FEW_ROWS)
-        for found, numbers in ((mean, values), (sd, off))
-    )
-    return Spread(*moments, quantiles(values, weights, asked))
+    mean = trusted(mean, weights * values, part, hopeless=_FEW_ROWS)
+    sd = trusted(sd, weights * values**2, part, hopeless=_FEW_ROWS)
+    return Spread(mean, sd, quantiles(values, weights, asked))
 
 
 def quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:
