@@ -1,6 +1,6 @@
 """New rows where the inspections point, if those of a result hardly go there."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -34,7 +34,6 @@ ENOUGH = 400.0
 _SHARE = 4
 _FEWEST = 100
 _SEED = 23
-_DRAW, _SETTLE = 0, 1
 
 
 @dataclass(frozen=True)
@@ -163,8 +162,7 @@ class _Rounds:
                 if not why:
                     break
                 raise RunError(f"after {self._number * self._each} new rows: {_short(rounds, why)}")
-            around = self._around(repetitions, found, of, _DRAW)
-            rounds.append(self._computed([one.drawn(*of_it) for one, of_it in around]))
+            rounds.append(self._computed(self._drawn(repetitions, found, of)))
             count = len(repetitions)
             of = np.append(of, np.repeat(np.arange(count, dtype=of.dtype), self._each // count))
             log_importance = np.empty(len(of))
@@ -181,22 +179,24 @@ class _Rounds:
         self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
     ) -> list[Repetition]:
         """Return repetitions that draw around the rows of these, and drop them."""
-        around = self._around(repetitions, found, rows["replicate"].values, _SETTLE)
-        return [one.settled(*of_it) for one, of_it in around]
+        of, likelihoods = rows["replicate"].values, _log_likelihoods(found)
+        each = [[log[of == r] for log in likelihoods] for r in range(len(repetitions))]
+        return Repetition.settled(
+            repetitions, each, _columns(self._study, found), self._rng(len(repetitions))
+        )
 
-    def _around(
-        self,
-        repetitions: Sequence[Repetition],
-        found: Posterior,
-        of: NDArray[np.integer],
-        purpose: int,
-    ) -> Iterator[tuple[Repetition, tuple[list[Floats], NDArray[np.intp], np.random.Generator]]]:
-        """Yield each repetition with what it draws around, and its random numbers."""
+    def _drawn(
+        self, repetitions: Sequence[Repetition], found: Posterior, of: NDArray[np.integer]
+    ) -> list[Floats]:
+        """Return the part of a round that each repetition draws."""
         likelihoods, columns = _log_likelihoods(found), _columns(self._study, found)
-        for r, one in enumerate(repetitions):
-            seed = self._study.design.seed, _SEED, self._number, r, purpose
-            rng = np.random.default_rng(seed)
-            yield one, ([log[of == r] for log in likelihoods], columns, rng)
+        return [
+            one.drawn([log[of == r] for log in likelihoods], columns, self._rng(r))
+            for r, one in enumerate(repetitions)
+        ]
+
+    def _rng(self, part: int) -> np.random.Generator:
+        return np.random.default_rng((self._study.design.seed, _SEED, self._number, part))
 
     def _computed(self, scores: Sequence[Floats]) -> xr.Dataset:
         """Return the next round, kept beside the result until that is complete."""

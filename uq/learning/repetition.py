@@ -65,38 +65,12 @@ class Repetition:
         ndarray, shape (each, inputs)
             Normal scores.
         """
-        proposal = self._last or self._around(log_likelihoods, columns, rng)
+        proposal = self._last
+        if proposal is None:
+            proposal = _around(self._scores, self.log_importance, log_likelihoods, columns, rng)
         new = proposal.drawn(self._each, self._scores.shape[1], rng)
         self._add(proposal, new)
         return new
-
-    def settled(
-        self,
-        log_likelihoods: Sequence[Floats],
-        columns: NDArray[np.intp],
-        rng: np.random.Generator,
-    ) -> "Repetition":
-        """Return one that begins anew, and draws around all rows so far; see `drawn`.
-
-        Its rows are independent of the proposal. Those to which proposals were fitted are not: they
-        count too little, for the proposals are denser there.
-        """
-        last = self._around(log_likelihoods, columns, rng).wider(_WIDER)
-        return Repetition(self._scores[: self._own], self._each, last)
-
-    def _around(
-        self,
-        log_likelihoods: Sequence[Floats],
-        columns: NDArray[np.intp],
-        rng: np.random.Generator,
-    ) -> Proposal:
-        """Return a proposal around its rows, weighted with as much likelihood as they bear."""
-        weights = np.zeros(len(self._scores))
-        for one in log_likelihoods:
-            possible = one if np.isfinite(one).any() else np.zeros(len(one))
-            of_unit = tempered(self.log_importance, possible)
-            weights += of_unit / of_unit.sum()
-        return fitted(self._scores, weights, columns, rng)
 
     def _add(self, proposal: Proposal, new: Floats) -> None:
         log_each = np.log(self._each)
@@ -108,3 +82,45 @@ class Repetition:
         before = np.concatenate([self._log_mixture, mixture])
         self._log_mixture = np.logaddexp(before, log_each + proposal.log_ratio(self._scores))
         self.log_importance = np.log(len(self._scores)) - self._log_mixture
+
+    @staticmethod
+    def settled(
+        repetitions: Sequence["Repetition"],
+        log_likelihoods: Sequence[Sequence[Floats]],
+        columns: NDArray[np.intp],
+        rng: np.random.Generator,
+    ) -> "list[Repetition]":
+        """Return repetitions that begin anew, and draw around all rows that these have so far.
+
+        Their rows are independent of the proposal, and of each other given it. Those to which
+        proposals were fitted are not: they count too little, for the proposals are denser there.
+
+        Parameters
+        ----------
+        repetitions : sequence of Repetition
+        log_likelihoods : sequence of sequence of ndarray
+            Of each repetition, as for `drawn`.
+        columns, rng
+            As for `drawn`.
+        """
+        scores = np.concatenate([one._scores for one in repetitions])
+        log_importance = np.concatenate([one.log_importance for one in repetitions])
+        of_units = [np.concatenate(each) for each in zip(*log_likelihoods, strict=True)]
+        last = _around(scores, log_importance, of_units, columns, rng).wider(_WIDER)
+        return [Repetition(one._scores[: one._own], one._each, last) for one in repetitions]
+
+
+def _around(
+    scores: Floats,
+    log_importance: Floats,
+    log_likelihoods: Sequence[Floats],
+    columns: NDArray[np.intp],
+    rng: np.random.Generator,
+) -> Proposal:
+    """Return a proposal around rows, weighted with as much likelihood as they bear."""
+    weights = np.zeros(len(scores))
+    for one in log_likelihoods:
+        possible = one if np.isfinite(one).any() else np.zeros(len(one))
+        of_unit = tempered(log_importance, possible)
+        weights += of_unit / of_unit.sum()
+    return fitted(scores, weights, columns, rng)
