@@ -15,6 +15,7 @@ import xarray as xr
 
 from uq import interim_levels, intervals
 from uq.analysis.life_quantiles import life_quantiles, quantile_estimate
+from uq.contract import Floats
 from uq.designs.layouts import PATHS
 from uq.designs.registry import DESIGNS
 from uq.element_names import is_whole
@@ -30,6 +31,7 @@ from uq.population.means import EXACT
 from uq.population.scaling import population
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.rows.nesting import first_samples
+from uq.skewed_means import corrected_mean_interval
 from uq.units import Unit, beside, unit_of
 from uq.wording import brief, in_unit, threshold
 from uq.written import Written
@@ -185,7 +187,16 @@ def statistic(
     if not np.isfinite(values).all():
         return Estimate(reason="some rows never end, or are censored")
     within = intervals.replicates_of_some(replicate, element.present)
-    return moments(values, within, level).mean
+    return _mean(values, within, level)
+
+
+def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
+    """Estimate a mean: of few skewed rows the scatter is least where the mean is off most."""
+    found = moments(values, replicate, level).mean
+    if not found.has_interval:
+        return found
+    low, high = corrected_mean_interval(values, replicate, level)
+    return replace(found, low=low, high=high)
 
 
 def _probability(
