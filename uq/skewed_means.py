@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import CONFIDENCE, Ends, Replicates, by_replicate, sized, upper_probability
 from uq.quantile_functions import student
@@ -45,7 +46,12 @@ def corrected_mean_interval(
     error = float(estimates.std(ddof=1)) / n**0.5
     t = student(upper_probability(confidence), n - 1)
     low, high = (mean - error * _untransformed(end, skewness / n**0.5) for end in (t, -t))
-    return size * low, size * high
+    low, high = size * low, size * high
+    if replicate is None or isinstance(replicate, Clusters) and replicate.are_samples:
+        return low, high
+    away = values - values.mean()
+    moved = float(away[np.abs(away).argmax()]) / len(values)
+    return low + min(moved, 0.0), high + max(moved, 0.0)
 
 
 def _untransformed(x: float, skewness: float) -> float:

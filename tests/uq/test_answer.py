@@ -25,11 +25,12 @@ from uq.conclusions.parts import Event
 from uq.conclusions.promises import Promise
 from uq.conclusions.remedies import Tightened
 from uq.conclusions.tightening import halved
-from uq.conclusions.words import Unit, called_together, rounded, rows_in_words
+from uq.conclusions.words import Unit, called_together, rounded
 from uq.contract import Status
 from uq.estimate import Estimate
 from uq.printed import printed
 from uq.study.reading import read_study_text
+from uq.wording import rows_in_words
 
 DAY = 86400.0
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"

@@ -39,9 +39,14 @@ def test_a_corrected_mean_leaves_no_skewness_of_first_order(values):
 def test_a_corrected_mean_without_skewness_is_students_interval():
     even = np.r_[VALUES, -VALUES]
     assert corrected_mean_interval(even) == pytest.approx(mean_interval(even))
-    by_replicate = [VALUES[REPLICATE == r].mean() for r in range(8)]
-    expected = corrected_mean_interval(np.array(by_replicate))
-    assert corrected_mean_interval(VALUES, REPLICATE) == pytest.approx(expected)
+
+
+def test_a_corrected_mean_of_replicates_allows_for_one_more_row_as_far_out():
+    means = np.array([VALUES[REPLICATE == r].mean() for r in range(8)])
+    low, high = corrected_mean_interval(means)
+    more = (VALUES.max() - VALUES.mean()) / 200
+    assert corrected_mean_interval(VALUES, REPLICATE) == pytest.approx((low, high + more))
+    assert corrected_mean_interval(-VALUES, REPLICATE) == pytest.approx((-high - more, -low))
 
 
 @pytest.mark.parametrize(
