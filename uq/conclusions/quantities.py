@@ -22,6 +22,7 @@ from uq.conclusions.bounds import (
     quantile_of,
 )
 from uq.conclusions.contributions import Ranking
+from uq.conclusions.earliest import earliest
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Range
 from uq.conclusions.rankings import method_for, ranking_of
@@ -42,6 +43,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -145,7 +147,15 @@ def _quantity(
         tuple(_events(findings, described, element, unit)),
         _as_computed(_ranking(findings, element, unit), described),
         wanted,
+        earliest(findings, element, unit, context.replicate)
+        if _may_end_badly(findings.ds, element)
+        else None,
     )
+
+
+def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:
+    """Return whether the rows that end first are of interest, and stand for themselves."""
+    return element.is_lifetime and not element.declared.success and not has_weights(ds)
 
 
 def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None:
