@@ -170,6 +170,8 @@ def test_where_no_row_can_be_is_refused(result):
         what_if(result, {"fixed.c": 1.0})
     with pytest.raises(InputError, match="times and level of 'a' cannot be changed"):
         what_if(result, {"uncertain.a.times": "z"})
+    with pytest.raises(InputError, match="^what if: which inputs are the same cannot be changed$"):
+        what_if(result, {"uncertain.a.equals": "z"})
     with pytest.raises(InputError, match="must be uncertain.NAME.KEY=VALUE"):
         read_changes(["uncertain.z.sd"])
     with pytest.raises(InputError, match="uncertain.z.sd is changed twice"):
