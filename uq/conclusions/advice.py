@@ -1,6 +1,7 @@
 """What to do, by rules: mend, add rows, measure, tighten, or nothing."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isfinite, isinf
 
 import xarray as xr
@@ -189,7 +190,11 @@ def _open(findings: Findings, answered: Sequence[Quantity]) -> list[Unsettled]:
     """
     known = outputs_of(findings.ds)
     own = [one for one in answered if not is_error(one.output, known)] or answered
-    found = [one for quantity in own for one in unsettled(quantity)]
+    found = [
+        replace(one, what=f"{one.what} ({quantity.words})") if len(own) > 1 else one
+        for quantity in own
+        for one in unsettled(quantity)
+    ]
     found += bounds_unsettled(findings, own)
     return sorted(found, key=lambda one: -one.factor)
 

@@ -14,6 +14,7 @@ from uq.analysis.statistics.statistic import Context, Statistic
 from uq.analysis.statistics.tolerance import tolerance
 from uq.analysis.summary import Described, summarise
 from uq.conclusions.contributions import Ranking
+from uq.conclusions.earliest import earliest
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.rankings import method_for, ranking_of
@@ -144,7 +145,15 @@ def _quantity(
         tuple(_events(findings, described, element, unit)),
         _as_computed(_ranking(findings, element, unit), described),
         wanted,
+        earliest(findings, element, unit, context.replicate)
+        if _may_end_badly(findings.ds, element)
+        else None,
     )
+
+
+def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:
+    """Return whether the rows that end first are of interest, and stand for themselves."""
+    return element.is_lifetime and not element.declared.success and not has_weights(ds)
 
 
 def _quantile(described: Described, p: float) -> Estimate:

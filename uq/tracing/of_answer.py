@@ -5,6 +5,7 @@ from typing import Any
 
 import xarray as xr
 
+from uq.analysis.earliest import inputs_apart
 from uq.analysis.effects import effects
 from uq.analysis.event_curve import event_curve
 from uq.analysis.findings import Findings
@@ -50,6 +51,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         ranking = value_at(said, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
         return Origin((cited(effects) if "effects" in names else index,), ds)
+    if "earliest" in names:
+        return Origin((cited(inputs_apart),), ds)
     if "parts" in names or "decided_by" in names:
         return Origin((cited(event_curve), cited(share_interval)), ds)
     rows = independent_rows(ds)
