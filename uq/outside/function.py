@@ -15,6 +15,12 @@ from uq.outside.row_by_row import SEED, Fields, RowByRow, model_from
 
 _MARK = "_uq_machine"
 
+_UNFIT = (
+    (inspect.iscoroutinefunction, "is written with 'async def'; write it with 'def'"),
+    (inspect.isasyncgenfunction, "is written with 'async def'; write it with 'def'"),
+    (inspect.isgeneratorfunction, "has a 'yield'; it must return its outputs"),
+)
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -82,6 +88,8 @@ def machine(
             raise InputError(
                 f"@uq.machine: {function!r} is not a function with a name; write one with 'def'"
             )
+        if kind := next((word for test, word in _UNFIT if test(function)), ""):
+            raise InputError(f"machine '{plain.__name__}': {kind}")
         setattr(function, _MARK, Declared(returns, title, version))
         return function
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from numbers import Number
 from typing import Any
 
 import numpy as np
@@ -118,14 +119,25 @@ def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.b
         cut = np.zeros(given.shape, dtype=bool)
         if given.dtype == object:
             cut = np.asarray([isinstance(one, Censored) for one in given.flat]).reshape(given.shape)
-            plain = [one.time if isinstance(one, Censored) else one for one in given.flat]
-            given = np.asarray(plain).reshape(given.shape)
+            given = np.asarray([_plain(one) for one in given.flat]).reshape(given.shape)
         if given.dtype.kind not in "fiub":
             raise TypeError
+        if not given.size:
+            raise WrongReturnError(f"returned '{name}' as an empty array")
         return given.astype(float), cut
+    except OverflowError:
+        raise WrongReturnError(f"returned '{name}' with an integer too large for a float") from None
     except (TypeError, ValueError):
         kind = type(value).__name__
         raise WrongReturnError(f"returned '{name}' as {kind}, not as a number or array") from None
+
+
+def _plain(one: Any) -> Any:
+    """Return a number as a float, such as an integer of many digits or the time of a `Censored`."""
+    if isinstance(one, Censored):
+        return one.time
+    number: Any = one
+    return float(number) if isinstance(one, Number) else one
 
 
 def seen_in(row: Any) -> dict[str, Returned]:
