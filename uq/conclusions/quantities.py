@@ -165,6 +165,8 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
     target = number_of(element)
     name = (target if METHODS[method].scale_free else lightened(target)).name
     verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
+    if element.is_angle:  # all else that is said is of its magnitude
+        verb = ("lowers its signed value", "raises its signed value")
     try:
         found = ranking_of(findings, name, method, verb)
     except InputError as refused:
