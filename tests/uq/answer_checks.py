@@ -162,7 +162,10 @@ class Checker:
         _, by, *ends = numbers_in(text.replace("one standard deviation", "1"))
         if ends and not ends[0] <= by <= ends[1] or not is_about_even(change.by):
             yield f"interval of {text}"
-        x, y = self.rows[name].values, self.values(one)
+        (element,) = named_elements(self.rows, one.name)
+        if element.is_angle and "its signed value" not in text:
+            yield f"of the magnitude: {text}"
+        x, y = self.rows[name].values, element.values
         if change.unit.name == "%":
             slope = np.polyfit(np.log(x), np.log(y), 1)[0]
             per_cent = float(change.step.removesuffix(" %"))

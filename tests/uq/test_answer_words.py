@@ -3,7 +3,8 @@
 import numpy as np
 
 from uq.conclusions.promises import Promise
-from uq.conclusions.words import Unit, called_together, rounded, rows_in_words
+from uq.conclusions.words import Unit, called_together, rounded
+from uq.wording import rows_in_words
 
 
 def test_twins_are_named_together():

@@ -116,6 +116,9 @@ def test_what_only_scales_a_life_is_integrated(uq, write_function):
     [
         (("/ load", "/ (load + 1e-6)"), "'life' does not scale as declared: at load = "),
         (("hard > 1.5", "load > 1.5"), "not inf|it is inf, not"),
+        (("/ load", "/ min(load, 1.9)"), "'life' does not scale as declared: at load = 2"),
+        (("/ load", "/ (load if hard < 0.85 else 1.0)"), "'life' does not scale as declared"),
+        (("/ load", "/ (load if hard > 0.25 else 1.0)"), "'life' does not scale as declared"),
         (("censored(20.0)", "censored(1e9)"), "it is 1e+09, not"),
         (('"depth": 2.0', '"dept": 2.0'), "scales: no such parameter; did you mean 'depth'?"),
         (('"depth": 2.0', '"depth": 0.0'), "depth = 0.0 must be a number but 0"),

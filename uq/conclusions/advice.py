@@ -18,8 +18,6 @@ from uq.conclusions.tightening import changes_of, tightened
 from uq.conclusions.words import (
     called,
     called_together,
-    grouped,
-    rows_in_words,
     sentence,
     share_text,
     twin_of,
@@ -30,6 +28,7 @@ from uq.rows.nesting import is_nested
 from uq.rows.results import failed
 from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
+from uq.wording import grouped, rows_in_words
 
 
 def advise(

@@ -86,7 +86,8 @@ def _promise(one: Promise) -> dict[str, Any]:
         "upper_quantile_high": high.high,
     }
     plain = {name: json_form.number(value) for name, value in numbers.items()}
-    return {"sentence": one.sentence, "reason": one.reason} | plain
+    joint = {"joint": list(one.joint)} if one.joint else {}
+    return {"sentence": one.sentence, "reason": one.reason} | plain | joint
 
 
 def _range(one: Range) -> dict[str, Any]:

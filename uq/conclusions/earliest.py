@@ -14,12 +14,12 @@ from uq.analysis.earliest import (
     regimes_apart,
 )
 from uq.analysis.findings import Findings
-from uq.conclusions.words import Unit, called, grouped, sentence, share_text, unit_for
+from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
 from uq.errors import InputError
 from uq.intervals import Replicates
 from uq.rows.elements import Element
 from uq.rows.row_choice import lowest_rows
-from uq.wording import percent
+from uq.wording import grouped, percent
 
 _MOST_ROWS = 3
 _MOST_INPUTS = 3

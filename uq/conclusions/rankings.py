@@ -10,7 +10,7 @@ import xarray as xr
 from uq.analysis.effects import Effect, effects
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Change, Contribution, Ranking
-from uq.conclusions.words import Unit, called, rows_in_words, twin_of
+from uq.conclusions.words import Unit, called, twin_of
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import choices
@@ -29,6 +29,7 @@ from uq.rows.elements import has_independent_samples, replicates_of, study_file_
 from uq.rows.nesting import one_of_each_sample
 from uq.rows.weights import has_weights
 from uq.study.file import Tied
+from uq.wording import rows_in_words
 
 GOAL = 0.1
 """Half-width of the interval of an index at which it counts as known."""

@@ -17,7 +17,7 @@ from uq.population.row_inputs import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
-from uq.rows.weights import MOST, ONLY_INSPECTED, WEIGHT, has_weights
+from uq.rows.weights import MOST, OF_UNIT, ONLY_INSPECTED, WEIGHT, has_weights
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
@@ -154,7 +154,8 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
         rows = rows.drop_vars(_NESTING, errors="ignore")
     weight = ds.variables[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
     weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
-    return rows.assign({WEIGHT: weight}).assign_attrs(title=f"{_prior_title(ds)}, unit {label}")
+    attrs = {"title": f"{_prior_title(ds)}, unit {label}", OF_UNIT: label}
+    return rows.assign({WEIGHT: weight}).assign_attrs(attrs)
 
 
 def inspections_of(ds: xr.Dataset) -> list[Inspection]:

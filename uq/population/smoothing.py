@@ -119,6 +119,21 @@ def rows_to_carry_little(most: float) -> float:
     return most / _LITTLE
 
 
+def of_samples(weights: Floats) -> Smoothed:
+    """Return the weights of samples, as inspections left them."""
+    return Smoothed(weights, tail_shape(weights), len(weights), effective_rows(weights))
+
+
+def quality(weights: Smoothed | None) -> dict[str, float]:
+    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
+    return {} if weights is None else {"effective_rows": weights.effective, "pareto_k": weights.k}
+
+
+def worth_in_words(weights: Smoothed) -> str:
+    """Return of how many samples of equal weight they are worth."""
+    return f"{weights.rows} samples, worth {weights.effective:.0f} of equal weight"
+
+
 def weights_of(rows: xr.Dataset) -> Smoothed | None:
     """Return the weights that inspections have given the rows of a result, None if none have.
 

@@ -9,6 +9,7 @@ from uq.analysis.earliest import inputs_apart
 from uq.analysis.effects import effects
 from uq.analysis.event_curve import event_curve
 from uq.analysis.findings import Findings
+from uq.analysis.joint_bounds import SIDES
 from uq.analysis.summary import status_counts, summarise
 from uq.conclusions.answer import conclude, regimes_of
 from uq.conclusions.as_json import answer_json
@@ -69,7 +70,9 @@ def _estimators(ds: xr.Dataset, name: str, part: str, *rest: str) -> Iterator[Ci
     found = summarise(ds, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]
     if part == "promise":
-        keys = [("tolerance", "lower")] * ("quantile" not in "".join(rest)) + keys
+        joint = asked.joint_bounds.get(name.partition("[")[0])
+        bound = ("joint_bounds", SIDES[joint][0]) if joint else ("tolerance", "lower")
+        keys = [bound] * ("quantile" not in "".join(rest)) + keys
     elif part == "events":
         side = "below" if "<" in rest[0] else "above"
         keys = [("thresholds", split_name(rest[0])[2], side)]
