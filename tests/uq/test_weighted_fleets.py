@@ -105,5 +105,5 @@ def test_a_weight_of_zero_is_no_sample():
 
 @pytest.mark.parametrize("question", [lambda ds: fleet_of(ds, 1), by_level])
 def test_an_inspected_unit_is_no_fleet(posterior, question):
-    with pytest.raises(InputError, match="not of unit 'A' alone; ask it of the whole posterior"):
+    with pytest.raises(InputError, match="these rows stand for unit 'A'; use the whole posterior"):
         question(as_unit(posterior, "A"))
