@@ -8,7 +8,6 @@ from uq.learning.evidence import Grid
 from uq.learning.integrated import Scale
 
 _GOLDEN = (5**0.5 - 1) / 2
-_SEED = 22
 _TINY = 2.0**-53
 _FLAT, _STEEPEST = 1e-6, 30.0
 
@@ -41,13 +40,11 @@ def in_order(count: int) -> Floats:
     return np.asarray(np.modf((np.arange(count) + 1) * _GOLDEN)[0])
 
 
-def in_random_order(count: int) -> Floats:
-    """Return numbers spread evenly between 0 and 1, in random order.
-
-    For rows that count unequally: in order, they and the repetitions of a sampler would depend on
-    each other.
-    """
-    return (np.random.default_rng(_SEED).permutation(count) + 0.5) / count
+def in_order_of_weight(weights: Floats) -> Floats:
+    """Return numbers between 0 and 1, spread evenly over the rows that count, shape (n,)."""
+    found = np.empty(len(weights))
+    found[np.argsort(-weights, kind="stable")] = in_order(len(weights))
+    return found
 
 
 def _tilted(within: Floats, grid: Grid, worth: Floats, node: NDArray[np.intp]) -> Floats:

@@ -13,7 +13,7 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.drawn_scale import drawn_scale, in_order, in_random_order
+from uq.learning.drawn_scale import drawn_scale, in_order, in_order_of_weight
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
@@ -268,5 +268,5 @@ def _inspected(
     kept = np.isin(np.arange(len(world)), rows)
     with np.errstate(divide="ignore"):
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
-    at = in_random_order(len(rows))
+    at = in_order_of_weight(of_rows)
     return Weighted(rows, weights, drawn_scale(grid, worth, scale, at) if scale else None)
