@@ -48,8 +48,8 @@ def shapley_indices(sample: Sample) -> Indices:
     (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
     path is (y - end)^2/2. A polynomial of known effects serves as control variate
-    (`uq.methods.controlled`); errors of its regression are scaled to the variance that they have
-    without the regression, as of "HC2" in [4]_.
+    (`uq.methods.controlled`); a path's error is that from the regression on all others, "HC3" of
+    [4]_.
 
     References
     ----------
@@ -95,5 +95,5 @@ def shapley_indices(sample: Sample) -> Indices:
 def _linearised(parts: Floats, leverage: Floats | float = 0.0) -> tuple[Floats, Floats]:
     """Return shares of the variance, shape (d,), and the errors of paths, shape (n, d)."""
     mean = parts.mean(axis=0)
-    shares, scatter = mean / mean.sum(), (parts - mean) / (1 - leverage) ** 0.5
+    shares, scatter = mean / mean.sum(), (parts - mean) / (1 - leverage)
     return shares, (scatter - shares * scatter.sum(axis=1, keepdims=True)) / mean.sum()
