@@ -8,9 +8,14 @@ from unittest.mock import patch
 
 import dask  # noqa: F401  (before a verb that only reads calls it absent)
 import pytest
+from hypothesis import HealthCheck, settings
 
 import models.numerics.jit  # noqa: F401  (before numba: all tests compile as the command does)
 from uq.cli import main
+
+# How long an example takes says how busy the machine is.
+settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("busy")
 
 
 class Ended(NamedTuple):

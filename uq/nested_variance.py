@@ -56,7 +56,8 @@ class NestedShares(NamedTuple):
 class _Sums(NamedTuple):
     """Sums over samples, or over all samples but those of one group: shapes (), or (groups,)."""
 
-    samples: Floats
+    weights: Floats
+    squares: Floats
     mean: Floats
     square: Floats
     noise: Floats
@@ -82,6 +83,7 @@ def nested_shares(
     errors: Floats | None = None,
     replicate: NDArray[np.integer] | None = None,
     known: Floats | None = None,
+    weights: Floats | None = None,
 ) -> NestedShares:
     """Estimate the shares of the variance of samples, units and repeats.
 
@@ -97,6 +99,8 @@ def nested_shares(
     known : ndarray, shape (3, samples, units, repeats), optional
         What each row adds to the variances of samples, units and repeats, known without scatter:
         of independent terms that `values` have at their means.
+    weights : ndarray, shape (samples,), optional
+        Of samples.
 
     Returns
     -------
@@ -107,7 +111,9 @@ def nested_shares(
     Analysis of variance: the components are unbiased for any laws [1]_. With s_u^2 the variance of
     the repeats of a unit, b^2 that of the unit means of a sample and m their mean, they are
     mean(s_u^2), mean(b^2) - mean(s_u^2) / repeats, and var(m) - mean(b^2) / units, where means are
-    over samples; where values are missing, with the numbers of those that are there.
+    over samples; where values are missing, with the numbers of those that are there. With weights w
+    of samples, means are weighted, and var(m) is unbiased for weights that do not depend on m: its
+    divisor is sum(w) - sum(w^2) / sum(w).
 
     Intervals: Student's t with the jackknife over independent samples (or replicates) [2]_ of a
     share p, on the scale log((p + e) / (1 - p + f)), where e and f are the noise that was
@@ -121,7 +127,8 @@ def nested_shares(
     .. [2] J. N. Arvesen, "Jackknifing U-statistics", Ann. Math. Stat. 40, 2076-2100 (1969).
     """
     added = np.zeros((3, *values.shape)) if known is None else known
-    columns, whole = _columns(values, errors, added)
+    worth = np.ones(len(values)) if weights is None else weights
+    columns, whole = _columns(values, errors, added, worth)
     independent = np.flatnonzero(whole)
     if replicate is not None:
         _, independent = np.unique(replicate[whole], return_inverse=True)
@@ -129,7 +136,7 @@ def nested_shares(
         independent = np.arange(len(independent))
     total = _Sums(*columns.sum(axis=1))
     shares, variance = _shares(total)
-    left_out = int((~whole).sum())
+    left_out = int((~whole & (worth > 0)).sum())
     there = values[whole][np.isfinite(values[whole])]
     least = ROUNDING * float(np.nan_to_num(np.sqrt(np.abs(variance))))
     scatters = len(there) > 1 and not is_constant(there) and np.ptp(there) > least
@@ -159,13 +166,15 @@ def nested_shares(
     return NestedShares(outer, middle, inner, error, float(variance), left_out)
 
 
-def _columns(values: Floats, errors: Floats | None, added: Floats) -> tuple[Floats, Mask]:
-    """Return the terms of `_Sums` of each sample that has them, shape (11, n), and which have."""
+def _columns(
+    values: Floats, errors: Floats | None, added: Floats, worth: Floats
+) -> tuple[Floats, Mask]:
+    """Return the terms of `_Sums` of each sample that has them, shape (12, n), and which have."""
     counts = np.isfinite(values).sum(axis=2)
     units = (counts > 0).sum(axis=1)
     repeated = (counts > 1).sum(axis=1)
     enough_units = units > min(values.shape[1] - 1, 1)
-    whole = enough_units & ((repeated > 0) | (values.shape[2] == 1))
+    whole = enough_units & ((repeated > 0) | (values.shape[2] == 1)) & (worth > 0)
     values, counts, units, repeated = (one[whole] for one in (values, counts, units, repeated))
     there = np.isfinite(values)
     known_sums = np.where(there, added[:, whole], 0.0).sum(axis=(2, 3)) / there.sum(axis=(1, 2))
@@ -191,9 +200,9 @@ def _columns(values: Floats, errors: Floats | None, added: Floats) -> tuple[Floa
         stated = np.isfinite(square) & np.isfinite(values)
         sums = np.where(stated, square, 0.0).sum(axis=(1, 2))
         squares = np.divide(sums, stated.sum(axis=(1, 2)), out=squares, where=stated.any((1, 2)))
-    ones = np.ones(len(values))
-    columns = (ones, sample_means, sample_means**2, between / units, between - floor, inner, floor)
-    return np.stack([*columns, squares, *known_sums]), whole
+    worth, ones = worth[whole], np.ones(len(values))
+    columns = (sample_means, sample_means**2, between / units, between - floor, inner, floor)
+    return np.stack([ones, worth, *columns, squares, *known_sums]) * worth, whole
 
 
 def _mean_and_variance(
@@ -210,10 +219,11 @@ def _mean_and_variance(
 
 def _shares(sums: _Sums) -> tuple[tuple[_Share, ...], Floats]:
     """Return the shares of samples, units, repeats and errors, and the variance."""
-    n = sums.samples
+    n = sums.weights
     with np.errstate(divide="ignore", invalid="ignore"):
         noise, floor, error = (one / n for one in (sums.noise, sums.floor, sums.error))
-        outer = (sums.square - sums.mean**2 / n) / (n - 1) - noise + sums.known_outer / n
+        free = n - sums.squares / n
+        outer = (sums.square - sums.mean**2 / n) / free - noise + sums.known_outer / n
         middle = (sums.middle + sums.known_middle) / n
         inner = (sums.inner + sums.known_inner) / n
         variance = outer + middle + inner

@@ -7,7 +7,8 @@ from uq.units import PREFIXED
 _NUMBER = re.compile(r"(?<![^\s(\[])-?(?:\d[\d.]*(?:e[-+]?\d+)?|∞|inf)(?![\w-])")
 _TIMES = "minutes?|hours?|days?|years?"
 _UNIT = rf"(?:[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω)|{_TIMES}|%)(?!\w)"
-_BEFORE_UNIT = re.compile(rf"(?<=\d) (?={_UNIT})|(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])")
+_POWER = r"(?<=\d) (?=× 10)|(?<=×) (?=10)"
+_BEFORE_UNIT = re.compile(rf"(?<=\d) (?={_UNIT})|(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}")
 
 
 def minus(text: str) -> str:

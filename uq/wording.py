@@ -2,13 +2,16 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from math import floor, inf, isclose, isfinite, isnan, log10
+from math import ceil, floor, inf, isclose, isfinite, isnan, log10
 from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
 from uq.units import Unit, beside, powers, time_unit, unit_of
 from uq.written import Written
+
+HUGE = 1e9
+"""Numbers of rows beyond this are read as powers of ten."""
 
 
 def capitalized(text: str) -> str:
@@ -195,6 +198,19 @@ def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) ->
 def percent_interval(low: float, high: float) -> str:
     """Return the ends of the interval of a share in per cent."""
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+
+def rows_in_words(rows: float) -> str:
+    """Return a number of rows, rounded up to two digits; a huge one as a power of ten."""
+    if rows > HUGE:
+        return f"{rows:.0e}".replace("e+", "e")
+    digit = 10 ** max(floor(log10(rows)) - 1, 0)
+    return grouped(ceil(rows / digit) * digit)
+
+
+def grouped(rows: int) -> str:
+    """Return a number of rows with its thousands apart."""
+    return f"{rows:,}".replace(",", " ")
 
 
 def listed(labels: Sequence[str], most: int = 8) -> str:

@@ -9,6 +9,7 @@ from benchmarks.coverage.tally import Tally
 from uq.analysis.fleet_numbers import HIGH, LOW, FleetNumbers
 from uq.population.fleets import Units
 from uq.population.scale_laws import IndependentScale
+from uq.population.smoothing import smoothed
 from uq.rows.element import Element
 from uq.rows.nesting import Nesting
 
@@ -19,12 +20,17 @@ OWN, SHARED = 0.5, 0.5
 NODES = np.linspace(-8, 8, 8001)
 
 CASES = {
-    "units": (50, 50, False),
-    "some-units": (50, 10, False),
-    "exact": (1, 50, True),
-    "exact-many": (1, 40_000, True),
+    "units": (50, 50, False, False),
+    "some-units": (50, 10, False, False),
+    "exact": (1, 50, True, False),
+    "exact-many": (1, 40_000, True, False),
+    "weighted-units": (10, 5, False, True),
+    "weighted-exact": (1, 50, True, True),
 }
-"""Units of each sample, units of the fleet, whether the depth is integrated."""
+"""Units of each sample, units of the fleet, whether the depth is integrated, whether samples are
+weighted from a wider law of the rate, shifted, to its own, as inspections weight them."""
+
+WIDER, SHIFTED = 1.2, 0.3
 
 BEYOND = "10 of 200 samples lie beyond such a point: their share is exact, and conservative"
 REASONS = {
@@ -49,17 +55,27 @@ def first_by(time, size):
     return over_worlds(lambda z: -np.expm1(size * special.log_ndtr(-special.ndtri(given(time, z)))))
 
 
-def drawn(units, integrated, rng):
+def weighted_normals(size, rng):
+    """Return normals of a wider law, shifted, and their weights as standard ones."""
+    z = SHIFTED + WIDER * rng.standard_normal(size)
+    return z, smoothed((((z - SHIFTED) / WIDER) ** 2 - z**2) / 2).weights
+
+
+def drawn(units, integrated, weighted, rng):
     """Return the units of random worlds."""
     shape = (SAMPLES, units)
     depth = OWN * rng.standard_normal(shape)
-    life = np.exp(depth - SHARED * rng.standard_normal((SAMPLES, 1))).ravel()
+    rate, weights = rng.standard_normal(SAMPLES), None
+    if weighted:
+        rate, weights = weighted_normals(SAMPLES, rng)
+    life = np.exp(depth - SHARED * rate[:, None]).ravel()
     nothing = np.zeros(life.size, dtype=bool)
     law = IndependentScale(("depth",), lognormal_term(OWN), depth.ravel()) if integrated else None
     element = Element("life", "life", LIFE, {}, life, nothing, nothing, law)
     sample, unit = np.unravel_index(np.arange(life.size), shape)
     place = Nesting(SAMPLES, units, 1, sample, unit, 0 * unit, np.zeros(SAMPLES, np.int64))
-    return Units(element, place, None, () if integrated else ("depth",))
+    varying = () if integrated else ("depth",)
+    return Units(element, place, None, varying, of_worlds=weights)
 
 
 def worlds_scaled(rest, rng, samples=100, units=10):
@@ -108,8 +124,9 @@ def shared_scale(repetitions):
 
 def fleets(name, repetitions):
     """Count what `uq fleet` reports."""
-    units, size, integrated = CASES[name]
+    units, size, integrated, weighted = CASES[name]
     how = "depth integrated" if integrated else f"of {units} units"
+    how += ", weighted" * weighted
     tally = Tally(f"fleet of {size}, {SAMPLES} samples, {how}", REASONS)
     middle = brentq(lambda x: first_by(np.exp(x), size) - 0.5, -8, 2)
     time, allow = np.exp(middle + 0.3), size // 10
@@ -117,7 +134,7 @@ def fleets(name, repetitions):
     reached = -np.expm1(np.log(0.5) / size)
     rng = np.random.default_rng(7)
     for _ in range(repetitions):
-        of = FleetNumbers(drawn(units, integrated, rng), size, allow, None, True)
+        of = FleetNumbers(drawn(units, integrated, weighted, rng), size, allow, None, True)
         first, failed, kept = of.first(0.5), of.failed(time), of.at_most_allowed(time)
         tally.estimate("median of the first", np.exp(middle), first.estimate)
         mean = over_worlds(lambda z: given(time, z))

@@ -21,10 +21,10 @@ def g_function(repetitions):
     tally = Tally("g-function, saltelli, 8 replicates of 64 groups of 10 rows", REASONS)
     truth = _of_g_function()
     for ds in repeated(study, repetitions):
-        entry = indices_of(ds)["y"]
+        entry = indices_of(ds).get("y")  # its ranks instead, where its tail looks too heavy
         for kind, values in truth.items():
             for name, value in values.items():
-                tally.entry(f"{kind} {name}", value, entry[kind][name])
+                tally.entry(f"{kind} {name}", value, entry and entry[kind][name])
     return tally.lines()
 
 

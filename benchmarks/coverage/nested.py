@@ -12,6 +12,7 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
 
+from benchmarks.coverage.fleets import weighted_normals
 from benchmarks.coverage.problems import Inputs, Settings, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.analysis.as_json import summary_json
@@ -181,6 +182,27 @@ def integrated(repetitions):
                 for level, share, one in zip(PARTS, truth, found[:3], strict=True):
                     part = sum(known) / (1 + sum(known))
                     tally.estimate(f"{level}, {share:.3g}, {part:.0%} known", share, one)
+        lines += tally.lines()
+    return lines
+
+
+def weighted(repetitions):
+    """Count the shares of normal effects in samples that weights make standard normal."""
+    lines = []
+    for samples, units, repeats in SIZES_OF_EFFECTS[1:]:
+        tally = Tally(
+            f"random effects (normal), {samples} weighted samples of {units} units,"
+            f" {repeats} repeats"
+        )
+        rng = np.random.default_rng(0)
+        for _ in range(repetitions):
+            for truth in SHARES:
+                outer, weights = weighted_normals(samples, rng)
+                y = _drawn(EFFECTS["normal"], rng, (0.0, *truth[1:]), (samples, units, repeats))
+                y = y + truth[0] ** 0.5 * outer[:, None, None]
+                found = nested_shares(y, weights=weights)
+                for level, share, one in zip(PARTS, truth, found[:3], strict=True):
+                    tally.estimate(f"{level}, {share:g}", share, one)
         lines += tally.lines()
     return lines
 

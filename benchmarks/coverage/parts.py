@@ -80,6 +80,7 @@ PARTS = {
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
     "levels-integrated": Part(nested.integrated),
+    "levels-weighted": Part(nested.weighted),
     "morris": Part(indices.morris),
     **{
         f"null-{name}": Part(partial(indices.nulls, name), 1000 if name in HSIC else REPETITIONS)

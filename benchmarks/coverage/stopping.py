@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy import stats
+from scipy import special, stats
 
 from benchmarks.coverage import scaled
 from benchmarks.coverage.indices import NAMES, ishigami
@@ -61,6 +61,10 @@ def _jump(u):
     return u[..., 0] + u[..., 2] + JUMP * (u[..., 0] + u[..., 1] > EDGE)
 
 
+def _lognormal(u):
+    return np.exp(special.ndtri(u[..., 0]))
+
+
 def _ishigami(u):
     x = 2 * np.pi * u[..., :3] - np.pi
     return ishigami(x.reshape(-1, 3)).reshape(u.shape[:-1])
@@ -71,6 +75,7 @@ INPUTS = 4
 
 ROWS = {
     "mean": (_ishigami, VALUE, {}, ISHIGAMI_MEAN),
+    "mean, lognormal": (_lognormal, VALUE, {}, np.exp(0.5)),
     "median": (_jump, VALUE, {"quantile": 0.5}, jump_ppf(0.5)),
     "P(> 2.5)": (_jump, VALUE, {"above": 2.5}, jump()["share"]),
     "P(> 9.0)": (_ishigami, VALUE, {"above": 9.0}, 1 - ishigami_cdf(9.0)),

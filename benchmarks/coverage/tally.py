@@ -78,8 +78,9 @@ class Tally:
         self._held.setdefault((what, by), []).append(held)
 
     def entry(self, what, truth, entry, by=OURS):
-        """Count the interval of an entry with ``low`` and ``high``."""
-        self.add(what, truth, entry["low"], entry["high"], by)
+        """Count the interval of an entry with ``low`` and ``high``; without one, none is given."""
+        low, high = (None, None) if entry is None else (entry["low"], entry["high"])
+        self.add(what, truth, low, high, by)
 
     def estimate(self, what, truth, estimate, by=OURS):
         """Count the interval of an `uq.estimate.Estimate`."""

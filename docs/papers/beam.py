@@ -70,6 +70,8 @@ def wear(omega: float) -> xr.Dataset:
     right = both.sel(site="right", drop=True).copy()
     right.attrs["long_name"] = "right gap over the initial gap (x_1)"
     ds["mean_work"].attrs["long_name"] = "dimensionless work-rate"
+    time = "time over S/(k k_c X_0 omega_0)"  # k of the right site
+    ds["dimensionless_time"].attrs["long_name"] = time
     return ds.assign(x=both, x_1=right)
 
 
@@ -194,6 +196,9 @@ def bifurcations() -> Shown:
     omega = np.linspace(3, 11, SWEPT)
     first = nominal(LOW).forcing_frequency / LOW
     ds = bifurcation_diagram(Params(), Settings(), omega * first)
+    velocity = "tip velocity at impact on the right stop, over X_0 omega_0"
+    ds["dimensionless_impact_velocity"].attrs["long_name"] = velocity
+    ds["frequency_ratio"].attrs["long_name"] = "forcing frequency over the rod's first (omega)"
     figure, (axes,) = sheet(1, 1, 2.6)
     plots.bifurcation(ds, "dimensionless_impact_velocity", against="frequency_ratio", axes=axes)
     kinds, counts = np.unique(ds["regime"], return_counts=True)

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from uq.drawing.panel import roomy
 from uq.drawing.style import WIDTH, styled
+from uq.drawing.symbols import typeset
 
 DOCS = Path(__file__).parents[1]
 FOLDER = "papers"
@@ -51,7 +52,7 @@ def sheet(rows: int, columns: int, height: float) -> tuple[Figure, list[Axes]]:
 def name_panels(panels: Iterable[Axes], names: Iterable[str]) -> None:
     """Write above each panel what it shows."""
     for letter, axes, name in zip("abcdefgh", panels, names, strict=False):
-        axes.set_title(f"({letter}) {name}", loc="left")
+        axes.set_title(f"({letter}) {typeset(name)}", loc="left")
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:

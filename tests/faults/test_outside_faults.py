@@ -12,6 +12,7 @@ import cooling_fmu
 import numpy as np
 import psutil
 import pytest
+from own_study import own_study
 from their_server import TheirServer
 
 import uq
@@ -19,21 +20,6 @@ import uq
 KILLS = 30
 PATIENCE = 300.0
 SPREAD = 0.1, 1.2  # seconds from kill to kill: a run takes three to start and compute its rows
-
-STUDY = """
-[study]
-name = "own"
-model = "slow"
-[design]
-method = "monte-carlo"
-samples = 200
-seed = 1
-[uncertain.x1]
-distribution = "uniform"
-lower = 0.0
-upper = 1.0
-source = "assumed"
-"""
 
 FUNCTION = """
 import time
@@ -109,7 +95,7 @@ def started_by(driver):
 def files(folder):
     """Write a study, a function and a program into an empty folder; return it."""
     texts = {"slow.py": FUNCTION, "slow.toml": MACHINE, "slow.sh": PROGRAM, "body.toml": FMU}
-    for name, text in {**texts, "own.toml": STUDY}.items():
+    for name, text in {**texts, "own.toml": own_study("slow", samples=200)}.items():
         (folder / name).write_text(text)
     return folder
 

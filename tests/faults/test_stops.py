@@ -147,6 +147,7 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     assert run_status["done"] + run_status["left"] == 1500
     assert sum(run_status["status"].values()) == run_status["done"]
     assert run_status["rate"] > 0
+    os.kill(run.process.pid, signal.SIGSTOP)  # it lives, and does not end while the next one starts
     code, said = call("run", study, *MODEL)
     assert code == 2
     injected("lock of a living process")

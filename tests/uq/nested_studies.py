@@ -3,6 +3,9 @@
 from computed import UNIFORM, computed, once, study_of
 
 LEVELS = {"x1": "shared", "x2": "own", "x3": "chance"}
+SHARED, OWN, CHANCE = LEVELS.values()
+VARIANCES = {SHARED: 1.0, OWN: 4.0, CHANCE: 9.0}
+"""Of the linear function, in twelfths."""
 
 
 def nested(levels=LEVELS, model=None, uncertain=None, analysis=None, **design):

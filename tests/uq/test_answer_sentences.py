@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from answered import numbers
 from computed import (
     UNIFORM,
     asking,
@@ -14,7 +15,6 @@ from computed import (
     with_status,
 )
 from nested_studies import nested_result
-from test_answer import numbers
 
 from uq.analysis.findings import Findings
 from uq.conclusions.advice import advise, verdict

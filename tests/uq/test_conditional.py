@@ -111,7 +111,7 @@ MIXED = {
 }
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(cuts=st.lists(st.integers(0, 16 * 4), max_size=4))
 def test_paths_of_dependent_inputs_are_the_same_however_they_are_cut(cuts):
     study = study_of(tables(MIXED, "shapley", 16, dependence=PAIR))

@@ -16,6 +16,10 @@ def test_shares_beside_what_is_known():
     assert [line for line in nested.integrated(2000) if line.unexplained] == []
 
 
+def test_shares_of_weighted_samples():
+    assert [line for line in nested.weighted(2000) if line.unexplained] == []
+
+
 @pytest.mark.parametrize("name", list(nested.SIZES))
 def test_statistics_of_all_rows(name):
     assert [line for line in nested.statistics(name, 300) if line.unexplained] == []

@@ -42,7 +42,7 @@ def test_three_inputs_have_all_three_correlations():
     np.testing.assert_allclose(found, ranks, atol=0.01)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(cuts=st.lists(st.integers(0, 64), max_size=4))
 def test_dependent_rows_are_the_same_however_they_are_cut(cuts):
     factor = UNIFORM | {"times": "x1"}

@@ -8,29 +8,15 @@ import cooling_fmu
 import numpy as np
 import pytest
 from cooling_fmu import DESCRIPTION, EXPERIMENT
+from own_machines import opened
+from own_study import own_study
 
-import uq as package
 from uq.contract import Status
 from uq.outside.fmu import reduced
 from uq.outside.fmu_file import FmuOutputTable
 from uq.outside.fmu_said import cf_unit
 from uq.outside.returned import Censored
 from uq.study.registry import find_model
-
-STUDY = """
-[study]
-name = "own"
-model = "body"
-[design]
-method = "monte-carlo"
-samples = 20
-seed = 1
-[uncertain.{name}]
-distribution = "uniform"
-lower = {lower}
-upper = {upper}
-source = "assumed"
-"""
 
 MACHINE = """
 [machine]
@@ -71,9 +57,9 @@ def body(folder, library):
 
 
 def run(uq, model, *more, name="rate", lower=0.1, upper=2.0):
-    Path("own.toml").write_text(STUDY.format(name=name, lower=lower, upper=upper))
+    Path("own.toml").write_text(own_study("body", name, lower, upper))
     ended = uq("run", "own.toml", "--model", model, "-o", "own.nc", "--quiet", *more)
-    return ended, package.open_result("own.nc") if Path("own.nc").is_file() else None
+    return ended, opened()
 
 
 def test_an_fmu_alone_has_its_own_parameters_and_outputs(uq, body, folder):
@@ -159,9 +145,12 @@ def test_a_fault_costs_its_row_and_keeps_its_folder(uq, body, folder, fault):
 
 
 @pytest.mark.slow
-def test_an_fmu_that_crashes_is_one_sentence_of_simulate(uq, body):
+def test_an_fmu_that_crashes_is_one_sentence_of_simulate(uq, body, folder):
     ended = uq("simulate", "body.toml", "--set", "fault=4")
-    assert ended.code == 1 and ended.out.startswith("body: crashed  killed its process (Aborted)")
+    said = "body: crashed killed its process (Aborted); see "
+    assert ended.code == 1 and " ".join(ended.out.split()).startswith(said)
+    (kept,) = (folder / "body.rows").iterdir()
+    assert f" {kept}\n" in ended.out  # in one piece
 
 
 def test_another_fmu_is_noticed(uq, body, library):
@@ -203,18 +192,19 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, body, folder, change):
 
 
 TWICE = DESCRIPTION.replace('"T0"', '"body_rate"')
-OLD = DESCRIPTION.replace(
-    'fmiVersion="2.0"',
-    'fmiVersion="1.0" numberOfContinuousStates="0" numberOfEventIndicators="0"',
-).replace('declaredType="Rate"', "")
+NEW = """<fmiModelDescription fmiVersion="3.0" modelName="Body" instantiationToken="{{body}}">
+  <CoSimulation modelIdentifier="body"/>{experiment}<ModelVariables>
+    <Float64 name="T" valueReference="3" causality="output"/><Clock name="tick"/>
+  </ModelVariables><ModelStructure/></fmiModelDescription>"""
 ODD_STEP = EXPERIMENT.replace("0.01", "0.03")
 BAD = {
     "no archive": (None, "is no FMU: BadZipFile"),
     "no description": ({"description": "<x/>"}, "is no FMU"),
     "of FMI 1.0": (
-        {"description": OLD},
-        "is of FMI 1.0, not 2.0",
+        {"description": DESCRIPTION.replace('fmiVersion="2.0"', 'fmiVersion="1.0"')},
+        "is of FMI 1.0, not 2.0; export it as such",
     ),
+    "of FMI 3.0": ({"description": NEW}, "is of FMI 3.0, not 2.0; export it as such"),
     "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
     "two of a name": (
         {"description": TWICE},

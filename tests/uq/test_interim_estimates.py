@@ -1,5 +1,7 @@
 """What a run sees when it looks: of which rows, of which element, and what it does not know."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -69,3 +71,26 @@ def test_it_is_said_at_which_look_a_run_knew_enough(tmp_path):
     ds = runner.run(study(10.0, samples=500), tmp_path / "out.nc", workers=0)
     (note,) = summarised(ds)["notes"]
     assert "was reached at interim estimate 1 of at most 2" in note
+
+
+def test_a_goal_out_of_reach_is_said_once_at_the_first_look_and_at_the_end(tmp_path):
+    said = []
+    of = study(1e-9, samples=2048)
+    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
+    assert ds.attrs["samples"] == 2048
+    (line,) = [one for one in said if "budget" in one]
+    assert line.startswith("after 256 samples mean of y is ")
+    needed = float(re.search(r"needs about (\S+) samples, more than the budget of 2048", line)[1])
+    half = stopping.interim_estimate(of.design, ds).half_width
+    assert needed == pytest.approx(2048 * (half / 1e-9) ** 2, rel=0.5)
+    (note,) = summarised(ds)["notes"]
+    assert "was not reached; it needs about " in note
+
+
+def test_a_goal_within_reach_is_not_called_out_of_reach(tmp_path):
+    said = []
+    of = study(0.07, samples=1024)
+    at_end = stopping.interim_estimate(of.design, computed(of))
+    assert at_end.required < at_end.half_width < 2 * at_end.required
+    runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
+    assert not [one for one in said if "budget" in one]

@@ -5,6 +5,7 @@ from scipy import stats
 from uq import intervals
 from uq.intervals import mean_interval, share_interval
 from uq.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
+from uq.skewed_means import corrected_mean_interval
 
 RNG = np.random.default_rng(3)
 VALUES = RNG.lognormal(size=200)
@@ -21,6 +22,31 @@ def test_mean_of_replicates_is_students_interval_of_their_means():
     means = [VALUES[REPLICATE == r].mean() for r in range(8)]
     expected = stats.t.interval(0.95, 7, loc=VALUES.mean(), scale=stats.sem(means))
     assert mean_interval(VALUES, REPLICATE) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("values", [VALUES, -1e9 * VALUES, VALUES[:3] + 7])
+def test_a_corrected_mean_leaves_no_skewness_of_first_order(values):
+    n, error = len(values), stats.sem(values)
+    s = stats.skew(values) / np.sqrt(n)
+    for sign, end in zip((-1, 1), corrected_mean_interval(values), strict=True):
+        t = (values.mean() - end) / error  # transformed, it is the end of Student's interval
+        transformed = t + s * t**2 / 3 + s**2 * t**3 / 27 + s / 6
+        assert transformed == pytest.approx(-sign * stats.t.isf(0.025, n - 1))
+    opposite = corrected_mean_interval(-values)
+    assert opposite == pytest.approx([-end for end in reversed(corrected_mean_interval(values))])
+
+
+def test_a_corrected_mean_without_skewness_is_students_interval():
+    even = np.r_[VALUES, -VALUES]
+    assert corrected_mean_interval(even) == pytest.approx(mean_interval(even))
+
+
+def test_a_corrected_mean_of_replicates_allows_for_one_more_row_as_far_out():
+    means = np.array([VALUES[REPLICATE == r].mean() for r in range(8)])
+    low, high = corrected_mean_interval(means)
+    more = (VALUES.max() - VALUES.mean()) / 200
+    assert corrected_mean_interval(VALUES, REPLICATE) == pytest.approx((low, high + more))
+    assert corrected_mean_interval(-VALUES, REPLICATE) == pytest.approx((-high - more, -low))
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Tolerance bounds that hold for several outputs at once."""
 
+import re
+
 import numpy as np
 import pytest
 from computed import UNIFORM, as_text, computed, kinds, study_of, summarised
@@ -9,6 +11,8 @@ import uq
 from uq.analysis.findings import Findings
 from uq.analysis.joint_bounds import Needed, rows_needed
 from uq.conclusions.advice import advise, verdict
+from uq.conclusions.answer import conclude
+from uq.conclusions.as_json import answer_json
 from uq.conclusions.quantities import quantities
 from uq.errors import InputError
 from uq.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
@@ -152,3 +156,39 @@ def test_mistakes_are_one_line(asked, method, words):
     with pytest.raises(InputError, match=words) as refused:
         study_from_text(as_text(tables))
     assert len(refused.value.lines) == 1
+
+
+def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
+    ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
+    found = {one.name: one.promise for one in quantities(Findings(ds))}
+    bounds = summarised(ds)["outputs"]
+    one, angle = found["work[side=left]"], found["angle"]
+    assert one.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(one.lower)
+    assert one.upper > bounds["work[side=left]"]["quantiles"]["0.95"]["value"]
+    words = r"With 95 % confidence, at least 95 % stay below .*, within the joint bounds of work, "
+    assert re.fullmatch(words + "angle.", one.sentence)
+    assert angle.lower == bounds["angle"]["joint_bounds"]["lower"] < angle.upper
+    assert "% stay above " in angle.sentence and " and stay below " in angle.sentence
+    # An output that the study does not name keeps a bound of its own.
+    assert not found["life[side=left,depth=0.5]"].joint
+    said = answer_json(conclude(Findings(ds)))["quantities"]["work[side=left]"]["promise"]
+    assert said["joint"] == ["work", "angle"] and said["upper"] == one.upper
+
+
+def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
+    ds = kinds(samples=80, analysis={"joint_bounds": {"work": "upper"}})
+    one = next(one for one in quantities(Findings(ds)) if one.output == "work").promise
+    assert np.isnan(one.upper) and "With 95 % confidence" not in one.sentence
+    assert one.why.startswith("No joint bound: it needs 93 rows.")
+
+
+def test_both_joint_bounds_of_one_output_are_one_sentence():
+    tables = {
+        "study": {"name": "joint", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 120},
+        "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
+        "analysis": {"joint_bounds": {"y": "both"}},
+    }
+    (one,) = quantities(Findings(computed(study_of(tables))))
+    words = r"With 95 % confidence, at least 95 % stay above \S+ and stay below \S+\."
+    assert re.fullmatch(words, one.promise.sentence), one.promise.sentence

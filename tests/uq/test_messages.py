@@ -1,7 +1,7 @@
 """What a study file says when it is wrong: one line per fault, all at once, nothing else."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from study_text import ISHIGAMI, study_text
 from wordings import STUDY_FAULTS, SYNTAX_FAULTS
@@ -155,7 +155,6 @@ VALUES = st.recursive(
 )
 
 
-@settings(deadline=None)
 @given(place=st.sampled_from(PLACES), value=VALUES, whole_table=st.booleans())
 def test_whatever_stands_anywhere_is_read_or_refused_in_lines(place, value, whole_table):
     table, key = place

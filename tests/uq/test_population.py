@@ -4,47 +4,21 @@ import json
 
 import numpy as np
 import pytest
-from computed import computed, study_of, summarised, with_seed
-from scipy import special, stats
+from computed import computed, summarised, with_seed
+from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
+from scipy import special
 
 from uq.analysis.comparison import compare
 from uq.analysis.lifetime import survival
 from uq.analysis.overview import summary
-from uq.clusters import Clusters
 from uq.inputs.registry import law_of
 from uq.population.functionals import Population
-from uq.population.means import EXACT, FEW, effective_rows, share_to_compare, weighted_share
 from uq.population.row_inputs import inputs_of
-from uq.population.scaling import integrated, population, why_not_integrated
+from uq.population.scaling import integrated, population
 from uq.population.sums import LogTerm, law_of_sum
-from uq.rows.elements import independent_rows, replicates_of
-from uq.two_samples import difference
+from uq.rows.elements import independent_rows
 
 EVERYWHERE = (-np.inf, np.inf)
-NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
-
-
-def lognormal(sigma, median=1.0, **more):
-    return {"distribution": "lognormal", "median": median, "sigma": sigma, **more}
-
-
-def scaled_study(uncertain, design=None, samples=400, **tables):
-    return study_of(
-        {
-            "study": {"name": "scaled", "model": "scaled"},
-            "design": {"method": "monte-carlo", "samples": samples, "seed": 3} | (design or {}),
-            "uncertain": uncertain,
-            "analysis": {"outputs": ["life"], "thresholds": {"life": [1.0]}},
-            **tables,
-        },
-        "sample_models:SCALED",
-    )
-
-
-def populated(ds):
-    rows = independent_rows(ds)
-    element = next(population(rows, ["life"]))
-    return Population(element, replicates_of(rows)), why_not_integrated(rows, element)
 
 
 @pytest.mark.parametrize("sigmas", [(0.5, 0.1), (0.3, 0.3), (1.0, 0.01), (0.5, 0.3, 0.2)])
@@ -77,7 +51,6 @@ def test_a_sum_of_uniform_logarithms_is_a_trapezium():
     assert np.abs(law_of_sum(terms).below(y) - truth).max() < 1e-10
 
 
-WHOLE = {"a": lognormal(0.5), "z": NORMAL}
 CASES = {
     "one": (WHOLE, {}, ("a",)),
     "signs mixed": (
@@ -195,91 +168,6 @@ def test_paired_rows_of_two_studies_are_compared_by_their_laws():
     assert json.dumps(summarised(wider))
 
 
-def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice():
-    """Both are skewed to the same side; each alone has a wider interval."""
-    rare = {"analysis": {"outputs": ["life"], "thresholds": {"life": [0.2]}}}
-    first, second = (computed(with_seed(scaled_study(WHOLE, **rare), seed)) for seed in (1, 2))
-    key = ("life", "P(<0.2)")
-    found = compare(first, second).loc[key]
-    numbers = [next(population(ds, ["life"])).below(0.2) for ds in (first, second)]
-    expected = difference(*map(share_to_compare, numbers), 0.0)
-    assert (found["low"], found["high"]) == pytest.approx((expected.low, expected.high))
-    alone = difference(*map(weighted_share, numbers), 0.0)
-    assert found["high"] - found["low"] < 0.95 * (alone.high - alone.low)
-
-
-def test_failed_rows_still_give_bounds():
-    ds = computed(scaled_study(WHOLE, settings={"fail_above": 1.5}))
-    below = summarised(ds)["outputs"]["life"]["thresholds"]["1.0"]["below"]
-    assert below["failed_low"] < below["low"] < below["high"] < below["failed_high"]
-
-
-def test_few_replicates_of_nested_samples_are_not_few_rows():
-    design = {"method": "sobol", "replicates": 4, "units": 2}
-    found = populated(computed(scaled_study(WHOLE, design, samples=32)))[0].below(1.0)
-    assert found.low < 0.5 < found.high and found.high - found.low < 0.2
-
-
-def test_rows_that_all_failed_have_no_worth():
-    ds = computed(scaled_study(WHOLE, samples=10, settings={"fail_above": -99.0}))
-    assert summarised(ds)["outputs"]["life"]["failed"] == 10
-
-
-def test_probabilities_of_one_but_for_rounding_are_not_exact():
-    """Rows that all end show no more than that a longer life is rare."""
-    found = weighted_share(np.full(16, 1 - 2.0**-53))
-    assert found.value == found.high == 1.0 and 0.7 < found.low < 0.85 and not found.reason
-    assert weighted_share(np.full(16, 1e-9)).reason == EXACT
-
-
-def test_replicates_give_the_interval_of_other_designs():
-    design = {"method": "sobol", "replicates": 8}
-    rows, _ = populated(computed(scaled_study(WHOLE, design, samples=64)))
-    found = rows.below(1.0)
-    assert found.low < 0.5 < found.high and found.high - found.low < 0.02
-    alone, _ = populated(computed(scaled_study(WHOLE, {"method": "sobol"}, samples=64)))
-    assert np.isnan(alone.below(1.0).low)
-
-
-def test_rows_that_differ_in_nothing_else_are_exact():
-    rows, _ = populated(computed(scaled_study({"a": lognormal(0.5)})))
-    found = rows.quantile(0.1)
-    assert found.value == pytest.approx(np.exp(0.5 * stats.norm.ppf(0.1)), rel=1e-9)
-    assert found.reason == EXACT
-
-
-def test_a_mean_that_few_rows_carry_is_not_trusted():
-    """Where no row is likely to end, the interval is that of no hit in so many rows."""
-    numbers = np.full(50, 1e-12)
-    numbers[0] = 1e-6
-    assert effective_rows(numbers) < FEW
-    found = weighted_share(numbers)
-    assert found.low < 1e-300 and found.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("probability", "end", "needed"), [(0.05, "lower", 72), (0.99, "upper", 368)]
-)
-def test_a_quantile_with_one_end_says_how_many_rows_give_the_other(probability, end, needed):
-    def of(samples):
-        study = scaled_study({"a": lognormal(0.5), "z": NORMAL}, samples=samples)
-        return populated(computed(study))[0].quantile(probability)
-
-    few = of(30)
-    assert few.reason == f"no {end} end: 30 effective rows, and it needs {needed}"
-    assert np.isnan(few.low) == (end == "lower") and np.isnan(few.high) == (end == "upper")
-    assert of(needed).has_interval and not of(needed).reason
-
-
-def test_samples_of_several_rows_count_once():
-    rng = np.random.default_rng(1)
-    shared = np.repeat(rng.random(60), 20)
-    numbers = np.clip(shared + 0.01 * rng.random(1200), 0, 1)
-    of = Clusters(np.repeat(np.arange(60), 20), 60)
-    wide, narrow = (weighted_share(numbers, part=part) for part in (of, None))
-    assert wide.high - wide.low > 4 * (narrow.high - narrow.low)
-
-
 def test_each_level_is_integrated_by_itself():
     """What is shared, integrated after what is own, gives what both give at once."""
     shared = lognormal(0.3, level="shared")
@@ -300,6 +188,8 @@ def test_each_level_is_integrated_by_itself():
 
 
 EXPONENTS = {"a": 1.0, "b": -2.0, "c": 0.5}
+
+
 PLACES = {
     "own": {"a": "own"},
     "shared": {"b": "shared"},
@@ -342,19 +232,3 @@ def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
     middle = (y[1:] + y[:-1]) / 2
     assert mean + logs == pytest.approx(middle @ steps, abs=1e-6)
     assert variance == pytest.approx(middle**2 @ steps - (middle @ steps) ** 2, abs=1e-6)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("spread", [0.2, 1.0, 5.0])
-@pytest.mark.parametrize("rows", [30, 300])
-def test_intervals_hold_the_truth(spread, rows):
-    """Each end misses in at most 5 % of samples, whatever share of the scatter is integrated."""
-    rng = np.random.default_rng(2)
-    for p in (1e-4, 0.01, 0.1, 0.5, 0.99):
-        y = np.hypot(1, spread) * stats.norm.ppf(p)
-        misses = np.zeros(2)
-        for _ in range(400):
-            rest = spread * rng.standard_normal(rows)
-            found = weighted_share(special.ndtr(y - rest))
-            misses += found.low > p, found.high < p
-        assert (misses <= 0.05 * 400 + 8).all(), (p, misses)

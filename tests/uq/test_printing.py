@@ -56,6 +56,14 @@ def test_an_explanation_that_does_not_fit_beside_its_heading_stands_below(capsys
     assert lines[2:] == ["life  short"]
 
 
+def test_a_path_longer_than_a_line_can_be_copied(capsys, monkeypatch):
+    monkeypatch.setattr(printing.console, "width", 40)
+    path = f"/{'long/' * 12}end"
+    printing.paragraph(f"ended by the program itself, without a reason; see {path}", indent=2)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == ["  ended by the program itself, without a", "  reason; see", f"  {path}"]
+
+
 def test_numbers_stand_right_and_words_left(capsys):
     printing.grid([("a", "1 %"), ("bcd", "12.5 %"), ("e", "-")], header=("name", "share"))
     lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]

@@ -1,7 +1,6 @@
-"""The report: what is in it, that nothing in a file can act in it, that it needs no other file."""
+"""The report: what is in it, and where."""
 
 import re
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from computed import (
     with_output,
     with_status,
 )
-from matplotlib.figure import Figure
+from read_pages import Page, read
 
 from uq.analysis.findings import Findings
 from uq.conclusions.sources import mark
@@ -24,41 +23,6 @@ from uq.drawing.catalogue import drawables
 from uq.plots import FIGURES
 from uq.report import page
 from uq.report.cells import Cell, Table
-from uq.report.paths import shortened
-from uq.report.pictures import HEAVIEST_SVG, picture, pictures
-from uq.rows import results
-from uq.store.files import write_result
-
-HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
-
-
-class Page(HTMLParser):
-    """The tags, attributes and visible words of a page."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.tags, self.attributes, self.words, self.inside = [], [], "", None
-        self.feed(text)
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append(tag)
-        self.attributes += attrs
-        self.inside = tag if tag in ("script", "style") else None
-        self.words += "" if tag == "wbr" else " "
-
-    def handle_endtag(self, tag):
-        self.inside = None
-
-    def handle_data(self, data):
-        self.words += "" if self.inside else data
-
-    @property
-    def plain_words(self):
-        return " ".join(self.words.split())
-
-
-def read(ds):
-    return Page(page(ds, "OUT.nc"))
 
 
 @pytest.fixture(scope="module")
@@ -133,25 +97,6 @@ def test_a_report_needs_no_network_and_no_other_file(text):
     assert "link" not in Page(text).tags
 
 
-def test_names_from_a_file_are_text():
-    ds = with_output(linear(samples=64), "odd", np.arange(64.0))
-    ds["odd"].attrs["long_name"] = HOSTILE
-    ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
-    ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
-    ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
-    found = Page(page(ds, f"{HOSTILE}.nc"))
-    ours = Page(page(linear(samples=64), "out.nc")).tags.count("script")
-    assert found.tags.count("script") == ours and "img" not in found.tags
-    assert not [name for name, _ in found.attributes if name.startswith("on")]
-    assert found.words.count(HOSTILE) >= 6
-    assert "\\u001b[31m" in found.words and "\x1b" not in found.words
-
-
-def test_the_same_result_gives_the_same_text():
-    ds = asking(kinds(samples=64), outputs=["angle", "regime"])
-    assert page(ds, "a.nc") == page(ds, "a.nc")
-
-
 def test_numbers_are_written_as_one_reads_them():
     tables = {
         "study": {"name": "angles", "model": "linear"},
@@ -220,38 +165,6 @@ def test_all_that_is_said_of_an_output_stands_together(asked, text):
     assert order.index("explore") == 1 and order.index("inputs") > order.index("ended")
 
 
-def test_a_staircase_takes_few_characters_and_keeps_its_place():
-    path = "M 10 20.004 L 10.25 20 L 10.25 19.83 L 11 19 z M 0 0 L -0.5 0.12"
-    assert shortened(path) == "M10 20h.25v-.17l.75-.83zM0 0l-.5 .12"
-    rng = np.random.default_rng(1)
-    places = np.round(rng.uniform(-50, 300, (200, 2)), 6)
-    places[1::2, 0] = places[::2, 0]
-    drawn = shortened("M " + " \nL ".join(f"{x} {y}" for x, y in places))
-    here, found = np.zeros(2), []
-    for kind, numbers in re.findall("([Mhvl])([^Mhvl]+)", drawn):
-        step = [float(one) for one in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
-        step = {"h": [*step, 0.0], "v": [0.0, *step]}.get(kind, step)
-        here = np.array(step) if kind == "M" else here + step
-        found.append(here)
-    assert np.abs(np.array(found) - places).max() < 0.0051
-    assert shortened("M 0 0 C 1 2 3 4 5 6") == "M 0 0 C 1 2 3 4 5 6"
-
-
-def test_a_life_curve_of_many_rows_is_no_image():
-    ds = with_output(linear(samples=4000), "life", np.linspace(1, 9, 4000) ** 3, "lifetime")
-    drawn = next(one for one in pictures(Findings(asking(ds, outputs=["life"])), "results"))
-    assert drawn.of.name == "life" and not drawn.is_image and len(drawn.html) < 100_000
-
-
-def test_a_crowded_figure_becomes_an_image():
-    figure = Figure(figsize=(3.4, 2.0))
-    rng = np.random.default_rng(1)
-    figure.subplots().plot(*rng.normal(size=(2, 100_000)), ".")
-    drawn = picture(figure, 'a "cloud"')
-    assert drawn.is_image and len(drawn.html) < HEAVIEST_SVG
-    assert dict(Page(drawn.html).attributes)["alt"] == 'a "cloud"'
-
-
 @pytest.mark.parametrize(
     ("source", "known"),
     [
@@ -268,54 +181,3 @@ def test_a_crowded_figure_becomes_an_image():
 )
 def test_how_well_a_number_is_known_stands_in_its_source(source, known):
     assert mark(source) == known
-
-
-@pytest.mark.slow
-def test_a_large_study_makes_a_small_page():
-    assert len(page(linear(samples=100_000), "OUT.nc")) < 10e6
-
-
-def test_report_on_the_command_line(uq, folder, monkeypatch):
-    write_result(linear("morris", samples=8, replicates=2), folder / "out.nc")
-    ended = uq("report", "out.nc")
-    assert (ended.code, ended.out, ended.err) == (0, "out.html\n", "")
-    text = (folder / "out.html").read_text()
-    assert text.startswith("<!DOCTYPE html>") and text.endswith("</html>")
-    opened = []
-    monkeypatch.setattr("webbrowser.open", lambda address: bool(opened.append(address)))
-    ended = uq("report", "out.nc", "-o", "new/my report.html", "--open")
-    assert ended.code == 0 and "no browser found" in ended.err
-    assert opened == [(folder / "new" / "my report.html").as_uri()]
-    assert (folder / "new" / "my report.html").read_text() == text
-
-
-def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
-    path = folder / "out.nc"
-    write_result(linear(samples=8), path)
-    before = path.read_bytes()
-    for arguments, line in (
-        (
-            ("none.nc",),
-            "none.nc: no such file; did you mean 'out.nc'?; 'uq run STUDY' makes results\n",
-        ),
-        (
-            ("out.nc", "-o", "out.nc"),
-            "out.nc: is the result itself; give the report another name\n",
-        ),
-        (("out.nc", "-o", "."), ".: is a folder; give the name of a file in it\n"),
-        (
-            ("out.nc", "-o", "out.nc/a.html"),
-            "out.nc/a.html: {0}/out.nc is a file, not a folder; choose another place with -o\n",
-        ),
-    ):
-        ended = uq("report", *arguments)
-        assert (ended.code, ended.out, ended.err) == (2, "", line.format(folder))
-    assert [entry.name for entry in folder.iterdir()] == ["out.nc"] and path.read_bytes() == before
-    assert results.open_result(path).sizes["sample"] == 8
-
-
-def test_of_an_output_without_any_value_nothing_is_drawn():
-    ds = linear(samples=32, settings={"fail_above": -1.0})
-    found = read(ds)
-    assert "Failed rows: 32" in found.plain_words
-    assert found.tags.count("figure") == 1  # of the inputs

@@ -130,9 +130,7 @@ def test_progress_says_how_many_rows_are_under_way_before_the_first_returns(
     assert (seen[-1].done, seen[-1].under_way) == (40, 0)
 
 
-@settings(
-    max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(chunk_rows=st.integers(1, 200))
 def test_failures_do_not_depend_on_chunks(write_study, chunk_rows):
     path = write_study(

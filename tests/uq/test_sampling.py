@@ -82,7 +82,7 @@ def test_a_group_exchanges_one_input_at_a_time():
         np.testing.assert_array_equal(mixed, np.where(np.arange(3) == i, b, a))
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(
     method=st.sampled_from(DRAWN),
     replicates=st.integers(1, 3),

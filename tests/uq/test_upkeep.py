@@ -11,7 +11,7 @@ from wordings import sentence
 
 import uq as api
 from uq.contract import Status
-from uq.running import isolation
+from uq.running import child
 
 RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
 
@@ -103,7 +103,7 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
 
 @pytest.mark.slow
 def test_endless_rows_are_stopped_when_extending_and_running_again(uq, write_study, monkeypatch):
-    monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
+    monkeypatch.setattr(child, "FIRST_SECONDS", 0.5)
     more = '[settings]\nfail_above = 0.85\nfail_how = "hang"'
     path = write_study(model="linear", samples=12, uncertain=("x1",), more=more)
     assert uq("run", path, "-o", "out.nc", "--quiet").code == 0

@@ -110,8 +110,6 @@ def test_figures_and_report_show_weighted_rows(posterior, tmp_path):
     "verb",
     [
         "sensitivity posterior.nc",
-        "levels posterior.nc",
-        "fleet posterior.nc --size 2",
         "convergence posterior.nc",
         "summary posterior.nc --fits",
         "what-if posterior.nc --set uncertain.rate.sigma=0.4",

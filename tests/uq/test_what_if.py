@@ -16,8 +16,7 @@ from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
 from uq.population.functionals import Population
-from uq.population.means import weighted_moments, weighted_share
-from uq.population.smoothing import largest_shape, smoothed, tail_shape
+from uq.population.smoothing import largest_shape
 from uq.rows.element import Element
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
@@ -82,6 +81,8 @@ CHANGES = {
         {"a": lognormal(0.3), "z": NORMAL | {"sd": 0.8}},
     ),
 }
+
+
 RANKS = {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.4], [0.4, 1.0]]}
 
 
@@ -169,6 +170,8 @@ def test_where_no_row_can_be_is_refused(result):
         what_if(result, {"fixed.c": 1.0})
     with pytest.raises(InputError, match="times and level of 'a' cannot be changed"):
         what_if(result, {"uncertain.a.times": "z"})
+    with pytest.raises(InputError, match="^what if: which inputs are the same cannot be changed$"):
+        what_if(result, {"uncertain.a.equals": "z"})
     with pytest.raises(InputError, match="must be uncertain.NAME.KEY=VALUE"):
         read_changes(["uncertain.z.sd"])
     with pytest.raises(InputError, match="uncertain.z.sd is changed twice"):
@@ -202,62 +205,6 @@ def test_a_law_that_is_replaced_keeps_its_level():
     assert first.equals(second)
 
 
-def test_listed_values_are_no_tail():
-    """A few values that many rows have are no law of Pareto; rare ones are not trusted."""
-    few = np.repeat([1e-3, 0.01, 0.02, 0.05, 0.4, 1.0], 150) * (1 + 1e-13 * np.arange(900))
-    assert tail_shape(few) == -np.inf
-    assert tail_shape(np.append(few, [2.0, 3.0, 8.0])) > 0.7
-
-
-def test_a_tail_that_begins_amid_equal_weights_is_bounded_where_they_are():
-    normal = np.random.default_rng(0).standard_normal(2000)
-    in_steps = special.ndtr(np.round(-16 * (np.log(2) + 0.5 * normal) / 0.3) / 16)
-    assert tail_shape(in_steps) < 0.3
-
-
-def test_the_interval_of_a_weighted_mean_holds_the_truth():
-    """Weights times values are skewed, and samples without an outlier scatter too little."""
-    rng, held = np.random.default_rng(4), []
-    for _ in range(400):
-        z, rest = rng.standard_normal((2, 100))
-        by = smoothed(0.6 * z)
-        mean = weighted_moments(np.exp(0.5 * z + 0.25 * rest), by.weights)[0]
-        held += [mean.low < np.exp(0.3 + (0.5**2 + 0.25**2) / 2) < mean.high] * (not mean.reason)
-    assert len(held) > 200 and 0.9 < np.mean(held) < 0.98
-
-
-@pytest.mark.parametrize(
-    ("mean", "rows", "p"), [(0.6, 100, 0.95), (1.0, 300, 0.95), (0.6, 30, 0.8)]
-)
-def test_a_tail_that_few_rows_reach_has_an_interval_that_holds_the_truth(mean, rows, p):
-    """Rows that are missing there would have been heavier than those that are not."""
-    rng, held = np.random.default_rng(8), []
-    for _ in range(400):
-        z = rng.standard_normal(rows)
-        by = smoothed(mean * z)
-        if not by.refusal:
-            below = weighted_share((z < mean + special.ndtri(p)).astype(float), by.weights)
-            held.append(below.low <= p <= below.high)
-    assert len(held) > 150 and np.mean(held) > 0.93
-
-
-def test_a_standard_deviation_depends_on_the_weights_alone():
-    """Without an outlier values scatter too little: if they decided, those given would be wrong."""
-    rng = np.random.default_rng(5)
-    z = rng.standard_normal((2, 2000))
-    refused = weighted_moments(np.exp(z[0]), smoothed(1.5 * z[0]).weights)[1]
-    assert re.search(r"a sample carries \d+\.\d% of all weight, .* 1%: add \d+", refused.reason)
-    held = []
-    for _ in range(400):
-        z, rest = rng.standard_normal((2, 400))
-        by = smoothed(0.4 * z)
-        sd = weighted_moments(np.exp(0.5 * z + 0.25 * rest), by.weights)[1]
-        variance = 0.5**2 + 0.25**2
-        truth = np.exp(0.2 + variance / 2) * np.sqrt(np.expm1(variance))
-        held += [sd.low < truth < sd.high] * (not sd.reason)
-    assert len(held) > 360 and 0.92 < np.mean(held) < 0.98
-
-
 def test_a_single_row_says_why_a_number_is_missing():
     rows = computed(study(samples=1))
     for found in (summarised(rows), what_if_json(answer(rows, {"uncertain.a.sigma": 0.4}))):
@@ -276,16 +223,6 @@ def test_rows_that_all_failed_say_nothing():
     rows = computed(study(samples=20, settings={"fail_above": -99.0}))
     found = what_if_json(answer(rows, {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
     assert found["failed"] == 20 and found["thresholds"]["0.8"]["below"]["value"] is None
-
-
-def test_smoothed_weights_follow_the_published_algorithm():
-    """Numbers by arviz-stats 0.8."""
-    found = smoothed(np.log(np.arange(1, 101) / 100.0) * -1.5)
-    assert found.k == pytest.approx(0.92003811)
-    expected = [34.5552566, 12.21125704, 7.41715988]
-    assert found.weights[:3] == pytest.approx(expected)
-    assert found.weights.mean() == pytest.approx(1.0)
-    assert found.refusal.startswith("Pareto k")
 
 
 def test_on_the_command_line(result, tmp_path):

@@ -72,6 +72,7 @@ def shares_of(
     replicate: Any = None,
     known: Mapping[str, Floats] = MappingProxyType({}),
     design: str = "monte-carlo",
+    weights: Floats | None = None,
 ) -> LevelShares:
     """Estimate the shares of the variance of one number per row.
 
@@ -89,6 +90,8 @@ def shares_of(
         Level -> variance that each row adds to it, of independent terms at their means in `table`.
     design : str, optional
         By which samples were drawn, for advice.
+    weights : ndarray, shape (samples,), optional
+        Of samples.
 
     Returns
     -------
@@ -97,22 +100,26 @@ def shares_of(
     names = tuple(level for level in LEVELS if level in varying)
     places = _places(names, table.shape)
     places += tuple((level,) for level in LEVELS if level in known and level not in names)
-    if replicate is not None:
-        replicate = _reduced(np.broadcast_to(replicate[:, None, None], table.shape), names)
-        replicate = replicate[:, 0, 0]
+    of_each = (
+        None if one is None else _reduced(np.broadcast_to(one[:, None, None], table.shape), names)
+        for one in (replicate, weights)
+    )
+    replicate, weights = (None if one is None else one[:, 0, 0] for one in of_each)
     errors = None if errors is None else _reduced(errors, names)
+    empty = int(np.isnan(table).all(axis=(1, 2)).sum())
     table = _reduced(table, names)
     added = np.zeros((3, *table.shape))
     for place, levels in enumerate(places):
         for level in known.keys() & set(levels):
             added[place] += _reduced(known[level], names)
-    found = nested_shares(table, errors, replicate, added)
+    found = nested_shares(table, errors, replicate, added, weights)
     shares = {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
     if found.variance > 0:
         shares = dict.fromkeys(LEVELS, NONE)
         for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
             shares |= _of_levels(levels, share, design)
-    return LevelShares(shares | {SOLVER: found.error}, found.variance, found.left_out)
+    left_out = found.left_out if SHARED in names else empty
+    return LevelShares(shares | {SOLVER: found.error}, found.variance, left_out)
 
 
 def _reduced(table: Any, names: Collection[str]) -> Any:

@@ -11,7 +11,7 @@ from uq.analysis.life_fit import Fit
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import REGIME, Described, Shares, Summary, share_json
-from uq.population.smoothing import Smoothed
+from uq.population.smoothing import Smoothed, quality
 
 if TYPE_CHECKING:
     from uq.analysis.apportioned import LevelShares
@@ -55,9 +55,7 @@ def _labels(shares: Shares) -> dict[str, Any]:
 
 def quality_json(weights: Smoothed | None) -> dict[str, Any]:
     """Return how many rows of equal weight rows are worth, and the shape of their weights."""
-    if weights is None:
-        return {}
-    return {"effective_rows": weights.effective, "pareto_k": json_form.number(weights.k)}
+    return {name: json_form.number(one) for name, one in quality(weights).items()}
 
 
 def _described(one: Described) -> dict[str, Any]:
@@ -170,7 +168,7 @@ def _compared(one: "Compared") -> dict[str, Any]:
 
 def levels_json(found: "ByLevel") -> dict[str, Any]:
     """Return shares of the variance in plain data."""
-    whole: dict[str, Any] = {
+    whole: dict[str, Any] = quality_json(found.weights) | {
         "samples": found.samples,
         "units": found.units,
         "repeats": found.repeats,

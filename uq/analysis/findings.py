@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from uq.analysis.boundary import boundary
+from uq.analysis.earliest import ranks
 from uq.analysis.fleet import Fleet, fleet_of
 from uq.analysis.level_shares import ByLevel, by_level
 from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Summary, summarise
+from uq.contract import Floats
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
+from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import Sensitivities, TargetIndices, sensitivities
 from uq.rows.elements import (
     Element,
@@ -70,6 +73,11 @@ class Findings:
         names = output_names(self.rows)
         there = (one.output for one in elements_of(self.rows, names) if one.present.any())
         return frozenset(names) - frozenset(there)
+
+    @cached_property
+    def input_ranks(self) -> dict[str, Floats]:
+        """The rank of each input within the independent rows, from 0 to 1."""
+        return {name: ranks(column) for name, column in independent_inputs(self.rows).items()}
 
     @cached_property
     def summary(self) -> Summary:

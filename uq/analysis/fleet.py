@@ -15,6 +15,7 @@ from uq.errors import InputError, choices
 from uq.population.fleets import Units, units_of
 from uq.population.row_inputs import inputs_of
 from uq.population.scaling import without_effect
+from uq.population.smoothing import Smoothed, of_samples, quality, worth_in_words
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -26,7 +27,6 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import levels_that_vary, samples_have, size_in_words
 from uq.rows.variables import outputs_of
-from uq.rows.weights import refuse_weights
 from uq.units import beside
 
 if TYPE_CHECKING:
@@ -57,6 +57,8 @@ class Fleet:
         Whether the end of the life is wished for.
     units : str
         Of the life.
+    weights : Smoothed or None
+        Of samples, where inspections have weighted them.
     """
 
     output: str
@@ -70,6 +72,7 @@ class Fleet:
     notes: list[str]
     is_success: bool = False
     units: str = "s"
+    weights: Smoothed | None = None
 
     @property
     def ended(self) -> str:
@@ -80,7 +83,8 @@ class Fleet:
     def sentences(self) -> list[str]:
         """What is integrated, what is missing, and what is assumed."""
         exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
-        return [*exactly, *self.notes]
+        worth = [worth_in_words(self.weights)] if self.weights else []
+        return [*exactly, *worth, *self.notes]
 
 
 def fleet(
@@ -97,7 +101,8 @@ def fleet(
     Parameters
     ----------
     ds : xarray.Dataset
-        A result. Units of a fleet have the same shared inputs, and are those of a sample.
+        A result, or a posterior of `uq.update`, whose fleets are of units never inspected. Units
+        of a fleet have the same shared inputs, and are those of a sample.
     size : int
         Number of units: at most the ``units`` of the study, any number where all that differs
         between units only scales their lives.
@@ -142,6 +147,7 @@ def fleet(
 
     table = pd.DataFrame([_line(*line) for line in lines]).set_index("quantity")
     table.attrs = {"output": found.output, "size": size, "allow": allow, "samples": found.samples}
+    table.attrs.update(quality(found.weights))
     return table
 
 
@@ -172,7 +178,6 @@ def fleet_of(
     plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
-    refuse_weights(ds, "fleets", but_equal=True)
     if why := why_no_statistics(ds):
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:
@@ -210,7 +215,9 @@ def fleet_of(
     design = size_in_words(place.samples, place.units, place.repeats)
     names = units.integrated
     of_life = bool(element.declared.success), element.declared.unit
-    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes, *of_life)
+    weights = None if units.of_worlds is None else of_samples(units.of_worlds)
+    numbers = enough, design, names, first, ended
+    return Fleet(element.name, size, allow, *numbers, notes, *of_life, weights)
 
 
 def the_life(rows: xr.Dataset, output: str | None) -> Element:

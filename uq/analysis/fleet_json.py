@@ -3,13 +3,14 @@
 from typing import Any
 
 from uq import json_form
+from uq.analysis.as_json import quality_json
 from uq.analysis.fleet import Fleet
 from uq.analysis.fleet_numbers import Banded
 
 
 def fleet_json(found: Fleet) -> dict[str, Any]:
     """Return numbers of fleets in plain data."""
-    return {
+    return quality_json(found.weights) | {
         "output": found.output,
         "size": found.size,
         "allow": found.allow,

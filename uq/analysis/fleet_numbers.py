@@ -150,11 +150,13 @@ class FleetNumbers:
             why = f"{worlds.ONE_UNIT}; {several('units', units.design)}"
             return lambda probability: Estimate(reason=why)
         if not units.are_alike:
-            return worlds.Noisy(units.ended(time), units.weights, self._part)
-        part = replicates_of_some(self._part, world.present)
+            return worlds.Noisy(units.ended(time), units.weights, self._part, units.of_worlds)
+        kept = world.present
+        part = replicates_of_some(self._part, kept)
+        weights = None if units.of_worlds is None else units.of_worlds[kept]
         if units.end_together:
-            return worlds.certain(world.below(time)[world.present], part)
-        return worlds.known(units.ended(time)[world.present, 0], units.nodes, part)
+            return worlds.certain(world.below(time)[kept], part, weights)
+        return worlds.known(units.ended(time)[kept, 0], units.nodes, part, weights)
 
     def _unit_at(self, time: float, share: float) -> Estimate:
         """Return the point of P(a unit has ended) below which it is in a share of worlds."""

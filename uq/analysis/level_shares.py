@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from uq.indices.sensitivities import few_hits
 from uq.indices.targets import Target, lightened, split_name
 from uq.methods.indices import RefusedError
 from uq.population.by_level import Scales, scales_by_level
+from uq.population.smoothing import Smoothed, largest_share, of_samples, too_large
 from uq.rows.elements import (
     analysis_of,
     has_independent_samples,
@@ -34,7 +36,7 @@ from uq.rows.nesting import (
     size_in_words,
 )
 from uq.rows.variables import is_error
-from uq.rows.weights import refuse_weights
+from uq.rows.weights import sample_weights
 from uq.tails import lacks_variance
 
 SHARES_OF = "these are shares of the variance of its {form}"
@@ -57,6 +59,8 @@ class ByLevel:
         Probability that a repeat ends in another regime; None without regimes.
     switching : ndarray, shape (n,)
         The same of each row; NaN where it is not known.
+    weights : Smoothed or None
+        Of samples, where inspections have weighted them.
     """
 
     samples: int
@@ -66,6 +70,7 @@ class ByLevel:
     outputs: Mapping[str, LevelShares]
     another_regime: Estimate | None
     switching: Floats
+    weights: Smoothed | None = None
 
     @property
     def size(self) -> str:
@@ -83,7 +88,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     Parameters
     ----------
     ds : xarray.Dataset
-        A result.
+        A result, or a posterior of `uq.update`.
     output : str, optional
         Only this output, or this element of one; by default those that the study shows. Of a
         category, such as the regime, the targets are ``P(regime=label)``.
@@ -99,11 +104,12 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
-    refuse_weights(ds, "shares of levels", but_equal=True)
     if why := why_no_statistics(ds):
         raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)
     place, varying = nesting_of(rows), levels_that_vary(rows)
+    worth = sample_weights(rows, place, "shares of levels")
+    weights = None if worth is None else of_samples(worth)
     replicate = None if has_independent_samples(rows) else place.replicate
     known = output_names(rows)
     shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not is_error(one, known)]
@@ -112,10 +118,11 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
         for target in targets_of(rows, name):
             light = target if target.event else lightened(target, SHARES_OF)
             scales = Scales({}) if plain else _scales(rows, light)
-            found[light.name] = _shares(rows, light, place, scales, replicate)
+            found[light.name] = _shares(rows, light, place, scales, replicate, weights)
     switches = "regime" in known and output is None
-    mean, each = switching(rows, place, varying) if switches else (None, np.empty(0))
-    return ByLevel(place.samples, place.units, place.repeats, levels_of(rows), found, mean, each)
+    mean, each = switching(rows, place, varying, worth) if switches else (None, np.empty(0))
+    size = place.samples, place.units, place.repeats
+    return ByLevel(*size, levels_of(rows), found, mean, each, weights)
 
 
 def _scales(rows: xr.Dataset, target: Target) -> Scales:
@@ -132,9 +139,14 @@ def _scales(rows: xr.Dataset, target: Target) -> Scales:
 
 
 def _shares(
-    rows: xr.Dataset, target: Target, place: Nesting, scales: Scales, replicate: Any
+    rows: xr.Dataset,
+    target: Target,
+    place: Nesting,
+    scales: Scales,
+    replicate: Any,
+    weights: Smoothed | None,
 ) -> LevelShares:
-    reason = target.refused
+    reason = target.refused or _why_not_weighted(weights)
     values = scales.mean_logarithms(target.values)
     if not reason and not target.event and lacks_variance(values):
         reason = "the tail is too heavy for a variance to apportion"
@@ -146,11 +158,19 @@ def _shares(
     own = None if errors is None else place.table(errors)
     varying = levels_that_vary(rows, (*scales.inputs, *scales.idle))
     known = {level: place.table(variance) for level, variance in scales.variances.items()}
-    found = shares_of(table, varying, own, replicate, known, rows.attrs["design"])
+    worth = None if weights is None else weights.weights
+    found = shares_of(table, varying, own, replicate, known, rows.attrs["design"], worth)
     if errors is None:
         found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
     notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))
     return replace(found, notes=notes, integrated=scales.inputs)
+
+
+def _why_not_weighted(weights: Smoothed | None) -> str:
+    """Return why weights allow no shares, as they allow no standard deviation, or ""."""
+    if weights is None or weights.k == -inf:
+        return ""
+    return weights.refusal or too_large(largest_share(weights.weights), weights.rows)
 
 
 def _few(rows: xr.Dataset, event: Target) -> tuple[str, tuple[str, ...]]:

@@ -7,6 +7,7 @@ import xarray as xr
 
 from uq.analysis.apportioned import SOURCES
 from uq.analysis.level_shares import by_level
+from uq.population.smoothing import quality
 
 
 def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> xr.Dataset:
@@ -15,7 +16,7 @@ def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) ->
     Parameters
     ----------
     ds : xarray.Dataset
-        A result.
+        A result, or a posterior of `uq.update`, of units never inspected.
     output : str, optional
         Only this output, or this element of one; by default those that the study shows.
     plain : bool, optional
@@ -61,6 +62,7 @@ def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) ->
         for end, value in zip(("mean", "low", "high"), found.another_regime.numbers, strict=True):
             data["another_regime_mean" + f"_{end}" * (end != "mean")] = value
     attrs = {name: getattr(found, name) for name in ("samples", "units", "repeats")}
+    attrs |= quality(found.weights)
     coords = {"output": list(found.outputs), "level": list(SOURCES)}
     return xr.Dataset(data, coords, attrs)
 

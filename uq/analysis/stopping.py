@@ -7,7 +7,7 @@ it (`uq.interim_levels`).
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf, isfinite, isnan
+from math import inf, isnan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ import xarray as xr
 
 from uq import interim_levels, intervals
 from uq.analysis.life_quantiles import life_quantiles, quantile_estimate
+from uq.contract import Floats
 from uq.designs.layouts import PATHS
 from uq.designs.registry import DESIGNS
 from uq.element_names import is_whole
@@ -30,9 +31,7 @@ from uq.population.means import EXACT
 from uq.population.scaling import population
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.rows.nesting import first_samples
-from uq.units import Unit, beside, unit_of
-from uq.wording import brief, in_unit, threshold
-from uq.written import Written
+from uq.skewed_means import corrected_mean_interval
 
 if TYPE_CHECKING:
     from uq.study.file import DesignTable, Until
@@ -71,6 +70,11 @@ class InterimEstimate(NamedTuple):
             return 0.0
         half = (self.estimate.high - self.estimate.low) / 2
         return inf if isnan(half) else half
+
+    @property
+    def rows_factor(self) -> float:
+        """How many times the rows would be enough if intervals narrow as one over root n."""
+        return (self.half_width / self.required) ** 2
 
     @property
     def reached(self) -> bool:
@@ -187,7 +191,16 @@ def statistic(
     if not np.isfinite(values).all():
         return Estimate(reason="some rows never end, or are censored")
     within = intervals.replicates_of_some(replicate, element.present)
-    return moments(values, within, level).mean
+    return _mean(values, within, level)
+
+
+def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
+    """Estimate a mean: of few skewed rows the scatter is least where the mean is off most."""
+    found = moments(values, replicate, level).mean
+    if not found.has_interval:
+        return found
+    low, high = corrected_mean_interval(values, replicate, level)
+    return replace(found, low=low, high=high)
 
 
 def _probability(
@@ -235,55 +248,3 @@ def _targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
         yield next(wholes(elements))
     else:
         yield from (lightened(number_of(element)) for element in elements)
-
-
-def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
-    """State why a run ended, and the estimate at that point."""
-    until, samples = design.until, int(ds.attrs["samples"])
-    assert until is not None
-    size, seen = _stop(design, ds)
-    found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
-    if isnan(found.low) and isnan(found.high) and found.reason != EXACT:
-        why = f" ({found.reason})" * bool(found.reason)
-        return f"the budget of {samples} samples is spent, and {seen.what} has no interval{why}"
-    known = f"{seen.what} {_in_words(found, unit)}"
-    if seen.lost:
-        lost = "groups with failed rows" if until.index else "failed rows"
-        known += f" (without {seen.lost} {lost})"
-    wanted = f"required half-width of {_as_required(until.half_width, unit)}"
-    if not seen.reached:
-        return f"the budget of {samples} samples is spent: {known}; the {wanted} was not reached"
-    sizes = interim_sizes(design)
-    first = "" if size == samples else f" with the first {size} of {samples} samples"
-    return (
-        f"{known}: the {wanted} was reached at interim estimate {1 + sizes.index(size)} of at most"
-        f" {len(sizes)}{first}. The confidence of {confidence(design):.2%} at each makes this a"
-        " 95 % interval for a run that stops so; all other intervals assume a number of rows fixed"
-        " beforehand"
-    )
-
-
-def _stop(design: "DesignTable", ds: xr.Dataset) -> tuple[int, InterimEstimate]:
-    """Return the size at which the run may end, the last where it may not, and the estimate."""
-    sizes = [size for size in interim_sizes(design) if size <= ds.attrs["samples"]]
-    for size in sizes or [0]:
-        seen = interim_estimate(design, first_samples(ds, size))
-        if seen.reached:
-            break
-    return size, seen
-
-
-def _as_required(half_width: float, unit: Unit) -> str:
-    """Return a half-width as written, or in the unit of the estimate."""
-    if isinstance(half_width, Written):
-        return threshold(half_width, unit.name)
-    return in_unit(half_width, unit)
-
-
-def _in_words(found: Estimate, unit: Unit) -> str:
-    if isnan(found.value):
-        sides = {"at least": found.low, "at most": found.high}
-        ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]
-        return "".join(["is not known", *ends])
-    value, both = brief(found, unit.size)
-    return f"is {value}, {beside(both, unit.name)}" if both else f"is {value}"

@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
-from uq.analysis import stopping
+from uq.analysis import stopped
 from uq.analysis.estimators import in_categories, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
@@ -283,7 +283,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
     design = study_file_of(ds).design
     notes = []
     if design.until is not None and not has_weights(ds):
-        notes.append(stopping.sentence(design, ds))
+        notes.append(stopped.sentence(design, ds))
     if is_nested(ds):
         place = nesting_of(ds)
         size = size_in_words(place.samples, place.units, place.repeats)

@@ -12,6 +12,7 @@ from uq.designs.levels import CHANCE, OWN
 from uq.designs.registry import several
 from uq.estimate import Estimate
 from uq.intervals import by_replicate, scattered_share_interval
+from uq.population.means import weighted_share
 from uq.rows.elements import replicates_of
 from uq.rows.nesting import Nesting
 
@@ -19,7 +20,7 @@ ONE_REPEAT = "a single repeat does not show whether another ends in another regi
 
 
 def switching(
-    rows: xr.Dataset, place: Nesting, varying: Collection[str]
+    rows: xr.Dataset, place: Nesting, varying: Collection[str], weights: Floats | None = None
 ) -> tuple[Estimate, Floats]:
     """Estimate the probability that a repeat ends in another regime.
 
@@ -31,6 +32,8 @@ def switching(
         Theirs.
     varying : collection of str
         The levels on which something varies.
+    weights : ndarray, shape (samples,), optional
+        Of samples.
 
     Returns
     -------
@@ -49,6 +52,8 @@ def switching(
     if not known.any():
         return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.attrs["design"]))), each
     value, of = float(each[known].mean()), _clusters(rows, place)
+    if weights is not None:
+        return weighted_share(each[known], weights[place.sample[known]], of[known]), each
     means = by_replicate(each[known], of[known])
     low, high = scattered_share_interval(value, means, rows=int(known.sum()), samples=of.samples)
     return Estimate(value, float(low), float(high)), each

@@ -32,6 +32,8 @@ from uq.rows.weights import refuse_weights
 from uq.study.file import StudyFile
 from uq.study.reading import read_study_text
 
+SAME = "what if: which inputs are the same cannot be changed"
+
 
 @dataclass(frozen=True)
 class WhatIf:
@@ -170,6 +172,8 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         )
     if name not in known:
         raise InputError(f"what if: '{name}' is not uncertain in this study{nearest(name, known)}")
+    if argument == "equals":
+        raise InputError(SAME)
     kept = {k: v for k, v in known[name].items() if k in ("times", "level", "source")}
     if not argument:
         known[name] = kept | value if isinstance(value, dict) else value
@@ -198,7 +202,7 @@ def _refuse(ds: xr.Dataset, old: Inputs, new: Inputs) -> None:
     if DESIGNS[ds.attrs["design"]].imported:
         raise InputError("what if: the rows are imported, and their density is unknown")
     if new.tied != old.tied or list(new.laws) != list(old.laws):
-        raise InputError("what if: which inputs are the same cannot be changed")
+        raise InputError(SAME)
     for name, law in old.laws.items():
         other = new.laws[name]
         if (law.times, law.level) != (other.times, other.level):

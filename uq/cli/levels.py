@@ -11,6 +11,7 @@ from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.conclusions.targets import Target
 from uq.designs.levels import LEVELS
 from uq.methods.indices import S1
+from uq.population.smoothing import worth_in_words
 from uq.rows.results import open_result
 
 
@@ -34,6 +35,8 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
         grid([line], header=("", "probability", "95 % interval"))
         if another.reason:
             paragraph(another.reason, indent=2)
+    if found.weights is not None:
+        note(worth_in_words(found.weights))
     if any(isfinite(one.shares[SOLVER].value) for one in found.outputs.values()):
         note("the solver's share is contained in the others")
 

@@ -7,6 +7,7 @@ from uq.analysis.joint_bounds import Needed, rows_needed
 from uq.analysis.widths import Widths, expected_widths
 from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say, say_compiling
+from uq.outside.row_by_row import RowByRow
 from uq.rows.elements import has_independent_samples
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
@@ -61,12 +62,13 @@ def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed])
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
     pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
     sure = cost.seconds_high < _SURE * cost.seconds
+    compiled = "" if isinstance(study.model.batch, RowByRow) else ", once the model is compiled"
     band = "" if sure else f"; {_clock(cost.seconds_low)} to {_clock(cost.seconds_high)}"
     grid(
         [
             ("rows", str(cost.rows), pilot_rows),
             ("a row", f"{cost.row_seconds:.3g} s", "of one process"),
-            ("time", _clock(cost.seconds), f"with {processes}, once the model is compiled{band}"),
+            ("time", _clock(cost.seconds), f"with {processes}{compiled}{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
             *(
                 (name.replace("_", " "), f"{one.rows} rows", _why_needed(one, cost))

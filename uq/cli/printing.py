@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable, Sequence
 from math import isfinite
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from rich.cells import cell_len
@@ -58,8 +59,11 @@ def heading(text: str, more: str = "") -> None:
 
 
 def paragraph(text: str, indent: int = 4) -> None:
-    """Print text that stays indented where it wraps."""
-    console.print(Padding(plain(text), (0, 0, 0, indent), expand=False))
+    """Print text that stays indented where it wraps; a long path is not broken."""
+    width = max(console.width - indent, 1)
+    for line in plain(text).split("\n"):
+        lines = wrap(line, width, break_long_words=False, break_on_hyphens=False) or [""]
+        console.print(*(" " * indent + one for one in lines), sep="\n", soft_wrap=True)
 
 
 def note(text: str) -> None:

@@ -89,6 +89,9 @@ def show_answer(found: Answer) -> None:
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
                 paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    if lead is not None and lead.earliest is not None:
+        for line in lead.earliest.lines:
+            paragraph(line, indent=0)
     for advice in found.advice:
         paragraph(f"To do: {advice.text[:1].lower()}{advice.text[1:]}", indent=0)
     console.print()

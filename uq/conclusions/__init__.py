@@ -6,8 +6,10 @@ Reading order; a module imports only those above it:
     words           inputs and elements by their names, numbers in a person's units
     targets         what a number of a result is about, by the name that a person reads
     promises        what can be promised of an output, and its likely range
+    bounds          which bounds of an output are promised
     contributions   what inputs contribute, with direction and size
     remedies        what a tighter tolerance would change, and each piece of advice
+    earliest        which rows end first, and what distinguishes them
     parts           what the answer consists of; each part writes its sentence from its numbers
     rankings        which inputs contribute most, with direction and size
     quantities      what can be promised of an output, its range and its probabilities

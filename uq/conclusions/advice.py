@@ -1,6 +1,7 @@
 """What to do, by rules: mend, add rows, measure, tighten, or nothing."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isfinite, isinf
 
 import xarray as xr
@@ -17,8 +18,6 @@ from uq.conclusions.tightening import changes_of, tightened
 from uq.conclusions.words import (
     called,
     called_together,
-    grouped,
-    rows_in_words,
     sentence,
     share_text,
     twin_of,
@@ -29,6 +28,7 @@ from uq.rows.nesting import is_nested
 from uq.rows.results import failed
 from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
+from uq.wording import grouped, rows_in_words
 
 
 def advise(
@@ -189,7 +189,11 @@ def _open(findings: Findings, answered: Sequence[Quantity]) -> list[Unsettled]:
     """
     known = outputs_of(findings.ds)
     own = [one for one in answered if not is_error(one.output, known)] or answered
-    found = [one for quantity in own for one in unsettled(quantity)]
+    found = [
+        replace(one, what=f"{one.what} ({quantity.words})") if len(own) > 1 else one
+        for quantity in own
+        for one in unsettled(quantity)
+    ]
     found += bounds_unsettled(findings, own)
     return sorted(found, key=lambda one: -one.factor)
 

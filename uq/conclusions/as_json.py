@@ -6,6 +6,7 @@ from typing import Any
 from uq import json_form
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Change, Contribution, Ranking
+from uq.conclusions.earliest import Earliest
 from uq.conclusions.parts import Answer, Event, Quantity
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
@@ -18,12 +19,14 @@ def answer_json(found: Answer) -> dict[str, Any]:
     -------
     dict
         ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
-        ``range``, ``events`` (target -> event) and ``ranking``; ``regimes``: label -> event;
-        ``advice``: rule -> ``text``, ``inputs``, ``rows``. The numbers of a sentence stand side by
-        side, with the sentence, under a key of their own. An event has its ``share``, what it is
-        ``decided_by``, its probability in ``parts`` of the range of the input ``over``. A ranking
-        has ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the
-        input, in a ``unit`` or, where that is "", in that of the output.
+        ``range``, ``events`` (target -> event), ``earliest`` (of lives) and ``ranking``;
+        ``regimes``: label -> event; ``advice``: rule -> ``text``, ``inputs``, ``rows``. The numbers
+        of a sentence stand side by side, with the sentence, under a key of their own. An event has
+        its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
+        input ``over``. A ranking has ``contributions``: ``inputs`` -> index, ``effects`` -> change
+        with a ``step`` of the input, in a ``unit`` or, where that is "", in that of the output. The
+        earliest rows have ``lives`` (row -> life), and the ``inputs`` and ``regimes`` that
+        distinguish them.
     """
     return {
         "rows": found.rows,
@@ -39,7 +42,35 @@ def _quantity(one: Quantity) -> dict[str, Any]:
     found |= {} if one.promise is None else {"promise": _promise(one.promise)}
     found |= {} if one.range is None else {"range": _range(one.range)}
     found["events"] = {event.name: _event(event) for event in one.events}
+    found |= {} if one.earliest is None else {"earliest": _earliest(one.earliest)}
     return found | _of_ranking(one.ranking)
+
+
+def _earliest(one: Earliest) -> dict[str, Any]:
+    return {
+        "sentence": one.sentence,
+        "first": one.first,
+        "command": one.command,
+        "lives": {str(row): life for row, life in zip(one.rows, one.lives, strict=True)},
+        "size": one.size,
+        "of": one.of,
+        "inputs": {
+            each.name: {
+                "direction": each.direction,
+                "outwards": each.outwards,
+                "median": each.median,
+                "median_of_others": each.others,
+                "rank": each.rank.value,
+                "rank_low": json_form.number(each.rank.low),
+                "rank_high": json_form.number(each.rank.high),
+            }
+            for each in one.inputs or ()
+        },
+        "regimes": {
+            each.label: json_form.numbers(each.share) | {"overall": each.overall}
+            for each in one.regimes
+        },
+    }
 
 
 def _promise(one: Promise) -> dict[str, Any]:
@@ -55,7 +86,8 @@ def _promise(one: Promise) -> dict[str, Any]:
         "upper_quantile_high": high.high,
     }
     plain = {name: json_form.number(value) for name, value in numbers.items()}
-    return {"sentence": one.sentence, "reason": one.reason} | plain
+    joint = {"joint": list(one.joint)} if one.joint else {}
+    return {"sentence": one.sentence, "reason": one.reason} | plain | joint
 
 
 def _range(one: Range) -> dict[str, Any]:

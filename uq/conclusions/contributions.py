@@ -42,8 +42,10 @@ class Change:
         if not self.step or not self.by.has_interval:
             return f"more{of} {verb}"
         low, high = sorted(map(abs, (self.by.low, self.by.high)))
-        by = self.unit.text(abs(self.by.value))
-        return f"{self.step} more{of} {verb} by {by} ({self.unit.bare_between(low, high)})"
+        text = f"{self.step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
+        if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
+            return text
+        return f"{text} ({self.unit.bare_between(low, high)})"
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,8 @@ class Ranking:
         Why there is no ranking: no index, or nothing settled; "" where there is one.
     rows_factor : float
         How many times the rows would settle it; NaN where that does not apply.
+    is_flat : bool
+        Whether it is settled that no input contributes measurably.
     """
 
     target: str
@@ -130,6 +134,7 @@ class Ranking:
     contributions: tuple[Contribution, ...] = ()
     reason: str = ""
     rows_factor: float = float("nan")
+    is_flat: bool = False
 
     @property
     def leader(self) -> Contribution | None:
@@ -141,6 +146,11 @@ class Ranking:
         """Whether what contributes most contributes much."""
         one = self.leader
         return one is not None and not (one.share_of_variance and one.value < SMALL)
+
+    @property
+    def denies_a_leader(self) -> bool:
+        """Whether it is settled that no single input contributes much."""
+        return self.is_flat or (self.leader is not None and not self.leads)
 
     @property
     def sentence(self) -> str:

@@ -1,5 +1,7 @@
 """Sentences of the answer as HTML, each with the keys of its numbers for ``uq trace``."""
 
+from collections.abc import Iterator
+
 from markupsafe import Markup, escape
 
 from uq.conclusions.contributions import Contribution
@@ -92,6 +94,19 @@ def leader(one: Quantity) -> Markup:
         text = sentence(ranking.leader.effect)
         known.append(keyed(text, *_keys(one, 0, "effects", ranking.leader)))
     return Markup(" ").join(known)
+
+
+def earliest(one: Quantity) -> Iterator[Markup]:
+    """Yield what distinguishes the rows that end first, and which these are."""
+    if (said := one.earliest) is None:
+        return
+    if said.sentence:
+        apart = [("inputs", each.name) for each in said.inputs or ()]
+        apart += [("regimes", each.label) for each in said.regimes]
+        yield keyed(said.sentence, *(_key(one, "earliest", *each) for each in [("size",), *apart]))
+    command = Markup("<code>{}</code>").format(plain(said.command))
+    first = keyed(said.first, _key(one, "earliest", "lives"))
+    yield Markup("{} To see the first: {}").format(first, command)
 
 
 def size(one: Quantity, number: int, of: Contribution) -> Markup:

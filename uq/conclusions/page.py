@@ -71,7 +71,7 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     for one in quantities:
         why = "" if one.promise is None else plain(printed(one.promise.why))
         lines = [keyed.promise(one), why, keyed.likely(one)]
-        lines += [*keyed.events(one), keyed.leader(one)]
+        lines += [*keyed.events(one), keyed.leader(one), *keyed.earliest(one)]
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
         title = capitalized(one.words)
         found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
@@ -120,13 +120,20 @@ def _ranking(answer: Answer) -> Markup:
         return Markup()
     ranking = lead.ranking
     title = Markup("<h3>What it depends on</h3>")
+    first = _first(lead)
     if ranking.leader is None:
-        return _block("ranking", [title, _line(keyed.leader(lead))])
+        return _block("ranking", [title, _line(keyed.leader(lead)), first])
     note = _small(sentence(ranking.what))
     largest = ranking.contributions[0].value
     seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
     shown = enumerate(seen[:_MOST_BARS])
-    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note])
+    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note, first])
+
+
+def _first(lead: Quantity) -> Markup:
+    """Return which rows of a life end first, and why."""
+    found = Markup("").join(map(_line, keyed.earliest(lead)))
+    return Markup("<h3>What ends first</h3>{}").format(found) if found else found
 
 
 def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:

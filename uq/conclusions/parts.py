@@ -5,6 +5,7 @@ from math import isnan
 
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Ranking
+from uq.conclusions.earliest import Earliest
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
 from uq.conclusions.words import Unit, called_together, sentence, share_text
@@ -113,6 +114,8 @@ class Quantity:
     ranking : Ranking or None
     wanted : {"above", "below", ""}
         The side of its values that is wanted; "" where that is not known, and for lives.
+    earliest : Earliest or None
+        Of a life that does not end with a success: which rows end first, and why.
     """
 
     name: str
@@ -123,6 +126,7 @@ class Quantity:
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
     wanted: str = ""
+    earliest: Earliest | None = None
 
     @property
     def is_life(self) -> bool:
@@ -251,6 +255,8 @@ class Answer:
         events = [*([] if lead is None else lead.others), *self.main_regimes]
         found += [one.with_cause for one in events]
         found += [] if lead is None else [lead.ranking_sentence]
+        if lead is not None and lead.earliest is not None:
+            found += lead.earliest.lines
         return [*filter(None, found), *(one.text for one in self.advice)]
 
     def __repr__(self) -> str:

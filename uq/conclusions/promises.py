@@ -5,6 +5,7 @@ from math import inf, isfinite
 
 from uq.conclusions.words import Unit, sentence
 from uq.estimate import NOTHING, Estimate
+from uq.wording import listed
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,8 @@ class Promise:
         Whether it is a life that ends; whether it is the magnitude of an angle.
     ends : str
         What a life does at its end.
+    joint : tuple of str
+        Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
     """
 
     coverage: float
@@ -39,6 +42,7 @@ class Promise:
     is_life: bool = False
     of_magnitude: bool = False
     ends: str = "end"
+    joint: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -51,6 +55,8 @@ class Promise:
         ]
         if bounds:
             sure = f"With {100 * self.confidence:g} % confidence"
+            if self.joint:
+                return f"{sure}, at least {share} {' and '.join(bounds)}{self._others}."
             each = " each" if len(bounds) > 1 else ""
             return f"{sure}{each}, at least {share} {f', and at least {share} '.join(bounds)}."
         cautious = []
@@ -70,7 +76,15 @@ class Promise:
         if not self.reason:
             return ""
         end = " Cautiously: the end of the 95 % interval." if self._is_cautious else ""
-        return f"No tolerance bound: {self.reason}.{end}"
+        bound = "joint bound" if self.joint else "tolerance bound"
+        return f"No {bound}: {self.reason}.{end}"
+
+    @property
+    def _others(self) -> str:
+        """With which other outputs the bounds hold at once."""
+        if len(self.joint) == 1:
+            return ""
+        return f", within the joint bounds of {listed(self.joint)}"
 
     @property
     def _is_cautious(self) -> bool:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf, isfinite, isnan, nan
+from math import isfinite, nan
 
 import numpy as np
 import xarray as xr
@@ -13,13 +13,21 @@ from uq.analysis.statistics.quantiles import quantiles
 from uq.analysis.statistics.statistic import Context, Statistic
 from uq.analysis.statistics.tolerance import tolerance
 from uq.analysis.summary import Described, summarise
+from uq.conclusions.bounds import (
+    CONFIDENCE,
+    COVERAGE,
+    MIDDLE,
+    end_of,
+    promise_of,
+    quantile_of,
+)
 from uq.conclusions.contributions import Ranking
+from uq.conclusions.earliest import earliest
 from uq.conclusions.parts import Event, Quantity
-from uq.conclusions.promises import Promise, Range
+from uq.conclusions.promises import Range
 from uq.conclusions.rankings import method_for, ranking_of
 from uq.conclusions.words import Unit, element_called, unit_for
 from uq.errors import InputError
-from uq.estimate import NOTHING, Estimate
 from uq.greek import readable
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
@@ -34,18 +42,13 @@ from uq.rows.elements import (
     replicates_of,
     shown_outputs,
 )
-from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
-from uq.wording import percent, threshold
+from uq.wording import threshold
 
-COVERAGE = 0.95
-CONFIDENCE = 0.95
-"""Of a bound where the study does not ask for others."""
-
-LOW, MIDDLE, HIGH = 0.05, 0.5, 0.95
-"""Probabilities of the likely range."""
+LOW, HIGH = 0.05, 0.95
+"""Probabilities of the ends of the likely range."""
 
 
 def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
@@ -123,122 +126,36 @@ def _quantity(
                 "tolerance": tuple(tolerance(folded, context)),
             },
         )
-    middle = _quantile(described, MIDDLE)
+    middle = quantile_of(described, MIDDLE)
     wanted = context.analysis.wanted.get(element.output, "below" if element.is_angle else "")
-    others = (_quantile(described, p).value for p in (LOW, HIGH))
+    others = (quantile_of(described, p).value for p in (LOW, HIGH))
     typical = next(filter(isfinite, (middle.value, *others)), nan)
     unit = unit_for(element.units, abs(typical))
     return Quantity(
         element.name,
         element_called(findings.ds, element),
         readable(element.meaning),
-        _promise(findings.ds, described, element, context.analysis, wanted, unit),
+        promise_of(findings.ds, described, element, context.analysis, wanted, unit),
         Range(
-            _quantile(described, LOW),
+            quantile_of(described, LOW),
             middle,
-            _quantile(described, HIGH),
+            quantile_of(described, HIGH),
             unit,
             element.is_angle,
-            _end_of(element),
+            end_of(element),
         ),
         tuple(_events(findings, described, element, unit)),
         _as_computed(_ranking(findings, element, unit), described),
         wanted,
+        earliest(findings, element, unit, context.replicate)
+        if _may_end_badly(findings.ds, element)
+        else None,
     )
 
 
-def _quantile(described: Described, p: float) -> Estimate:
-    found = described.find("quantiles", repr(p))
-    return found.best.estimate if found else NOTHING
-
-
-def _promise(
-    ds: xr.Dataset,
-    described: Described,
-    element: Element,
-    analysis: AnalysisTable,
-    wanted: str,
-    unit: Unit,
-) -> Promise:
-    asked = analysis.tolerance
-    coverage, confidence = asked or (COVERAGE, CONFIDENCE)
-    asked_at = analysis.thresholds.get(element.output, ())
-    lower, upper = _sides(element, described, asked_at, wanted)
-    both = [described.find("tolerance", name) for name in ("lower", "upper")]
-    bounds = [
-        one.estimate.value if matters and one else nan
-        for one, matters in zip(both, (lower, upper), strict=True)
-    ]
-    ends = [
-        _quantile(described, p) if matters else NOTHING
-        for p, matters in ((round(1 - coverage, 12), lower), (coverage, upper))
-    ]
-    reason = ""
-    if not any(map(isfinite, bounds)):
-        reason = _why_no_bound(ds, element, both, bounds)
-    elif isfinite(wrong := _contradicted(bounds, ends)):
-        reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
-        bounds = [nan, nan]
-    return Promise(
-        coverage,
-        confidence,
-        bounds[0],
-        bounds[1],
-        unit,
-        (ends[0], ends[1]),
-        reason,
-        element.is_lifetime,
-        element.is_angle,
-        _end_of(element),
-    )
-
-
-def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
-    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
-
-    By chance few rows give one, where the quantile is better known since lives are integrated.
-    """
-    lower, upper = bounds
-    if lower > ends[0].value:
-        return lower
-    return upper if upper < ends[1].value else nan
-
-
-def _end_of(element: Element) -> str:
-    """Return what a life does at its end, in words."""
-    return "succeed" if element.declared.success else "end"
-
-
-def _sides(
-    element: Element, described: Described, thresholds: tuple[float, ...], wanted: str
-) -> tuple[bool, bool]:
-    """Return whether a lower and an upper bound are what matters."""
-    if element.is_lifetime:
-        early = bool(element.declared.success)  # the latest time of a success is what matters
-        return not early, early
-    if wanted:
-        return wanted == "above", wanted == "below"
-    middle = _quantile(described, MIDDLE).value
-    if thresholds and isfinite(middle):
-        return any(t < middle for t in thresholds), any(t >= middle for t in thresholds)
-    return True, True
-
-
-def _why_no_bound(
-    ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
-) -> str:
-    needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
-    if needed == inf:
-        return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
-    if needed:
-        return f"it needs {needed:.0f} rows"
-    if any(not isnan(one) for one in bounds):
-        return f"too few {_end_of(element)}"
-    if has_weights(ds):
-        return "inspections have weighted the rows"
-    if is_nested(ds):
-        return "the rows of one sample are not independent"
-    return f"the rows of a '{ds.attrs['design']}' design are not independent"
+def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:
+    """Return whether the rows that end first are of interest, and stand for themselves."""
+    return element.is_lifetime and not element.declared.success and not has_weights(ds)
 
 
 def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None:
@@ -248,6 +165,8 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
     target = number_of(element)
     name = (target if METHODS[method].scale_free else lightened(target)).name
     verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
+    if element.is_angle:  # all else that is said is of its magnitude
+        verb = ("lowers its signed value", "raises its signed value")
     try:
         found = ranking_of(findings, name, method, verb)
     except InputError as refused:
@@ -278,7 +197,7 @@ def _events(
         if one.key[-1] != side or one.at is None:
             continue
         at = threshold(one.at, element.units)
-        said = f"{_end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
+        said = f"{end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
         undefined = one.facts.get("undefined") or 0.0

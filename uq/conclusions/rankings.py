@@ -10,7 +10,7 @@ import xarray as xr
 from uq.analysis.effects import Effect, effects
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Change, Contribution, Ranking
-from uq.conclusions.words import Unit, called, rows_in_words, twin_of
+from uq.conclusions.words import Unit, called, twin_of
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import choices
@@ -23,11 +23,13 @@ from uq.indices.targets import FORMS, Target, split_name
 from uq.intervals import scatter_interval
 from uq.methods.given_data import MIN_ROWS
 from uq.methods.indices import IndexKind, Null, RefusedError
+from uq.methods.method import Method
 from uq.methods.registry import METHODS, fed_by
 from uq.rows.elements import has_independent_samples, replicates_of, study_file_of
 from uq.rows.nesting import one_of_each_sample
 from uq.rows.weights import has_weights
 from uq.study.file import Tied
+from uq.wording import rows_in_words
 
 GOAL = 0.1
 """Half-width of the interval of an index at which it counts as known."""
@@ -68,16 +70,22 @@ class Measured:
 def method_for(ds: xr.Dataset, event: bool) -> str | None:
     """Return the method that ranks: the first that the study asks for, or that its design feeds.
 
-    None for rows with weights.
+    Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
+    probability of a rare one. None for rows with weights.
     """
     if has_weights(ds):
         return None
     fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
-    for name in (*(one for one in methods(ds) if one in fed), *fed):
-        own = METHODS[name]
-        if not own.conditional and (own.takes_events if event else own.takes_numbers):
-            return name
-    return None
+    found = [name for name in (*methods(ds), *fed) if name in fed]
+    known = [name for name in found if not METHODS[name].conditional]
+    if not event:
+        return next((name for name in known if METHODS[name].takes_numbers), None)
+    of_events = [name for name in known if METHODS[name].takes_events]
+    return min(of_events, key=lambda name: not _has_scale(METHODS[name]), default=None)
+
+
+def _has_scale(method: Method) -> bool:
+    return method.of_variance or not method.takes_numbers
 
 
 def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
@@ -116,9 +124,9 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     of = f" of the {form}" if form else ""
     share = f"share of the variance{of}, " if kind.unit == "variance" else ""
     what = f"{share}{kind.words}{'' if share else of}, by {method}"
-    reason, factor = _unsettled(measured, kind)
-    if reason:
-        return Ranking(name, method, kind.key, what, reason=reason, rows_factor=factor)
+    if not measured[0].counts:
+        reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
+        return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
     # What does not exceed inputs without effect may yet contribute as much as the first.
     weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
     groups = list(_groups(findings.ds, weighed))
@@ -138,19 +146,18 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     return Ranking(name, method, kind.key, what, contributions)
 
 
-def _unsettled(measured: Sequence[Measured], kind: IndexKind) -> tuple[str, float]:
-    """Return why no index counts, and how many times the rows would settle it."""
-    first = measured[0]
-    if first.counts:
-        return "", nan
+def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
+    """Return why no index counts, how many times the rows would settle it, and if none is large."""
     text = f"{kind.key} of {called(first.name)} is {first.index.value:.2f}"
+    which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
     if not isfinite(first.half):
-        return f"which inputs matter is not settled: {text}, without an interval", nan
+        return f"{which}: {text}, without an interval", nan, False
     if first.half > GOAL:
         ends = f"{first.index.low:.2f} to {first.index.high:.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
-        return f"which inputs matter is not settled: {text}{interval}", (first.half / GOAL) ** 2
-    return f"no single input contributes measurably: {text} at most", nan
+        return f"{which}: {text}{interval}", (first.half / GOAL) ** 2, False
+    verb = "decides that" if of_event else "contributes"
+    return f"no single input {verb} measurably: {text} at most", nan, True
 
 
 def _measured(

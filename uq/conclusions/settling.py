@@ -54,10 +54,13 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
         yield from _of_share(event)
     if quantity.promise is not None:
         yield from _of_promise(quantity.promise, quantity)
-    rankings = [quantity.ranking, *(event.ranking for event in quantity.events)]
-    for ranking in rankings:
-        if ranking is not None and isfinite(ranking.rows_factor):
-            yield Unsettled(ranking.reason, ranking.rows_factor)
+    ranking = quantity.ranking
+    if ranking is not None and isfinite(ranking.rows_factor):
+        yield Unsettled(ranking.reason, ranking.rows_factor)
+    for event in quantity.events:
+        if event.ranking is not None and isfinite(event.ranking.rows_factor):
+            what = f"what decides how many {event.said} is not settled"
+            yield Unsettled(what, event.ranking.rows_factor)
 
 
 def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
@@ -103,6 +106,5 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
             text = promise.unit.text(reached, outwards)
             best = promise.unit.text(estimate.value)
-            bound_is = f"the cautious bound, {text}, is far from the estimate, {best}"
-            what = f"{bound_is} ({quantity.words})"
+            what = f"the cautious bound, {text}, is far from the estimate, {best}"
             yield Unsettled(what, (away / (BOUND * scale)) ** 2)

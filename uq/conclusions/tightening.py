@@ -99,8 +99,13 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
 def _promised(
     quantity: Quantity,
 ) -> Iterator[tuple[tuple[str, ...], str, Estimate, Unit, bool | None]]:
-    """Yield the numbers that matter: key, words, number, unit, and whether more is better."""
+    """Yield the numbers that matter: key, words, number, unit, and whether more is better.
+
+    No input is said to move the probability of an event that no single input decides.
+    """
     for event in quantity.events:
+        if event.ranking is not None and event.ranking.denies_a_leader:
+            continue
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
         words = f"the share of rows that {event.said}"

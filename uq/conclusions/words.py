@@ -133,17 +133,6 @@ def sentence(text: str) -> str:
     return f"{capitalized(text)}."
 
 
-def rows_in_words(rows: float) -> str:
-    """Return a number of rows, rounded up to two digits."""
-    digit = 10 ** max(floor(log10(rows)) - 1, 0)
-    return grouped(ceil(rows / digit) * digit)
-
-
-def grouped(rows: int) -> str:
-    """Return a number of rows with its thousands apart."""
-    return f"{rows:,}".replace(",", " ")
-
-
 def share_text(one: Estimate) -> str:
     """Return a share in per cent, with its interval."""
     interval = f" ({percent_interval(one.low, one.high)})" if one.has_interval else ""

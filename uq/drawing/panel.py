@@ -21,6 +21,7 @@ from uq.printed import minus
 from uq.rows.elements import Floats
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
+_BELOW = 0.5  # from given axes to the legend below them, where their label is one line [inch]
 _SHORT = 30  # characters of labels that fit side by side
 
 _CHARACTERS = 6
@@ -186,7 +187,8 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
                 handle.set(markersize=6, alpha=1)  # small, transparent points hide their colour
     elif labels:
         columns = len(labels) if len("".join(labels)) < _SHORT else 1
-        below_label = axes.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
+        down = _BELOW + _ENTRY * axes.get_xlabel().count("\n")
+        below_label = axes.transAxes + ScaledTranslation(0, -down, figure.dpi_scale_trans)
         place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
         axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
     return figure

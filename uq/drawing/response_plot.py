@@ -20,6 +20,7 @@ from uq.units import Unit
 from uq.wording import in_unit, percent
 
 _MOST_CHANGES = 12  # of regime that are marked along a curve
+_WIDE, _NARROW = 60, 36  # characters of a line of the legend, of a figure and of a panel
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 
@@ -149,7 +150,8 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     if attractor.ndim != 2:
         raise InputError(f"basins are drawn over two parameters, not {attractor.ndim}")
     across, up = (ds[dim] for dim in attractor.dims)
-    texts = [_basin(ds.isel(basin=i), outputs) for i in range(ds.sizes["basin"])]
+    width = _WIDE if axes is None else _NARROW
+    texts = [_basin(ds.isel(basin=i), outputs, width) for i in range(ds.sizes["basin"])]
     (axes,) = column(axes, 2.6)
     scales = label_axes(axes, across, up)
     # If there are more attractors than colours, the rare ones share the last.
@@ -179,8 +181,11 @@ def _first_dimension(ds: xr.Dataset, output: str) -> str:
     return str(next(iter(find(ds, output).dims), output))
 
 
-def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
-    """Describe an attractor: its categories, the chosen outputs and its share of the grid."""
+def _basin(one: xr.Dataset, outputs: Sequence[str], width: int) -> str:
+    """Describe an attractor: its categories, the chosen outputs and its share of the grid.
+
+    Within a width [characters].
+    """
     known = []
     for name, value in one.data_vars.items():
         output = str(name).removeprefix("representative_")
@@ -193,4 +198,4 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
         rounded = float(f"{value.item():.3g}")
         text = powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor)))
         known.append(minus(text))
-    return as_label(", ".join([*known, percent(float(one["share"]))]), width=60)
+    return as_label(", ".join([*known, percent(float(one["share"]))]), width=width)

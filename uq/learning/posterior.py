@@ -95,7 +95,7 @@ class Posterior:
 def posterior(
     rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float = 0.0
 ) -> Posterior:
-    """Return what inspections leave of a result.
+    """Return what inspections leave of a result [1]_.
 
     Parameters
     ----------
@@ -113,6 +113,11 @@ def posterior(
     ------
     InputError
         When an inspection does not fit the result, or more units are inspected than samples have.
+
+    References
+    ----------
+    .. [1] C. Andrieu, G. O. Roberts, "The pseudo-marginal approach for efficient Monte Carlo
+       computations", Ann. Stat. 37, 697-725 (2009).
     """
     looks = _looks(rows, inspections)
     place = nesting_of(rows)
@@ -176,7 +181,7 @@ def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspecti
         try:
             found[one] = known(one)
         except InputError as error:
-            faults += [f"unit {one.unit}: {line}" for line in error.lines]
+            faults += [f"{one.where}: unit {one.unit}: {line}" for line in error.lines]
     if faults:
         raise InputError(*faults)
     return found
@@ -218,12 +223,21 @@ def _uninspected(
     Rows of a sample with the same law of the integrated input have the same value of it.
     """
     rows = np.arange(len(log_rows))
-    weights = smoothed(special.logsumexp(log_rows, axis=1), part)
+    weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     worth = np.exp(log_rows - log_rows.max())
     at = in_order(place.samples)[place.sample]
     return Weighted(rows, weights, drawn_scale(found.grids[0], worth, scale, at))
+
+
+def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
+    """Return smoothed weights: those of a sample whose rows count alike stay alike."""
+    _, first = np.unique(place.sample, return_index=True)
+    if not np.array_equal(log_rows, log_rows[first][place.sample]):
+        return smoothed(log_rows, part)
+    found = smoothed(log_rows[first])
+    return found._replace(weights=found.weights[place.sample])
 
 
 def _inspected(

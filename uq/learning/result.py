@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
 from hashlib import sha256
 
 import numpy as np
@@ -10,14 +9,14 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError, choices, nearest
-from uq.learning.inspections import Inspection, read_tables
+from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
 from uq.population.row_inputs import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
-from uq.rows.weights import MOST, ONLY_INSPECTED, WEIGHT, has_weights
+from uq.rows.weights import MOST, OF_UNIT, ONLY_INSPECTED, WEIGHT, has_weights
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
@@ -154,17 +153,19 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
         rows = rows.drop_vars(_NESTING, errors="ignore")
     weight = ds.variables[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
     weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
-    return rows.assign({WEIGHT: weight}).assign_attrs(title=f"{_prior_title(ds)}, unit {label}")
+    attrs = {"title": f"{_prior_title(ds)}, unit {label}", OF_UNIT: label}
+    return rows.assign({WEIGHT: weight}).assign_attrs(attrs)
 
 
 def inspections_of(ds: xr.Dataset) -> list[Inspection]:
     """Return the inspections that a posterior rests on."""
-    return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")), "inspection")
+    return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
 
 
 def as_table(one: Inspection) -> dict[str, object]:
     """Return what is known of an inspection: column -> value."""
-    return {name: value for name, value in asdict(one).items() if value is not None}
+    values = {name: getattr(one, name) for name in COLUMNS}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def digest(one: Inspection) -> str:

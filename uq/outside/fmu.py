@@ -64,7 +64,7 @@ def fmu_of(path: Path) -> Model:
     inputs = {name: one.variable or name for name, one in parameters.items()}
     folders = Folders(path.absolute().parent / f"{machine.name}.rows", _UNPACKED)
     runner = _Fmu(fmu, stamp_of(fmu), inputs, outputs, returned, times, folders)
-    batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep)
+    batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep, False)
     title = machine.title or said.description or said.modelName
     return model_from(machine.name, title, machine.version, fields, returned, batch, False)
 

@@ -11,6 +11,8 @@ from functools import cache
 from math import inf
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import iterparse
+from zipfile import ZipFile
 
 from uq.errors import InputError, described
 from uq.outside.machine_tables import file_there
@@ -44,18 +46,28 @@ def _read(path: Path, stamp: tuple[int, int]) -> Any:
     except ImportError:
         raise InputError(f"{path}: an FMU needs FMPy: pip install 'vibrolife[fmu]'") from None
     try:
+        version = _version_of(path)  # FMPy reads others too, and complains of what is in them
+        if version != _VERSION:
+            raise InputError(f"{path}: is of FMI {version}, not {_VERSION}; export it as such")
         said = fmpy.read_model_description(str(path), validate=False)
         platforms = fmpy.supported_platforms(str(path))
+    except InputError:
+        raise
     except Exception as error:
         raise InputError(f"{path}: is no FMU: {described(error)}") from None
-    if said.fmiVersion != _VERSION:
-        raise InputError(f"{path}: is of FMI {said.fmiVersion}, not {_VERSION}")
     if said.coSimulation is None and said.modelExchange is None:
         raise InputError(f"{path}: is neither for co-simulation nor for model exchange")
     if fmpy.platform not in platforms:
         there = ", ".join(sorted(platforms)) or "none"
         raise InputError(f"{path}: has no binary for {fmpy.platform} (there: {there})")
     return said
+
+
+def _version_of(path: Path) -> str:
+    """Return the version of FMI that an FMU is written for."""
+    with ZipFile(path) as archive, archive.open("modelDescription.xml") as file:
+        _, root = next(iterparse(file, ["start"]))
+    return root.attrib["fmiVersion"]
 
 
 def variables_of(said: Any, causality: str = "") -> dict[str, Any]:

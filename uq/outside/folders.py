@@ -8,22 +8,44 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from stat import S_ISREG
 
 import psutil
 
 from uq.outside.descendants import judge
 
 _RUNNING = "running"
-_LARGEST_KEPT = 10_000_000  # bytes of a file of a row that failed
+_BLOCK = 512  # bytes, in which the room that a file takes is counted
+_MOST_KEPT = 10_000_000  # bytes of a row that failed
+_SHARE_KEPT = 100  # of the room on the disk, if that is less: many rows may fail
+
+
+def size_of(folder: Path) -> int:
+    """Return the size of the files in a folder [bytes]."""
+    return sum(_sizes(folder).values())
+
+
+def _sizes(folder: Path) -> dict[Path, int]:
+    found = {}
+    for one in folder.rglob("*"):
+        with suppress(OSError):  # it has just been removed
+            status = one.lstat()
+            if S_ISREG(status.st_mode):
+                found[one] = min(status.st_size, _BLOCK * status.st_blocks)
+    return found
 
 
 def _lighten(folder: Path, passing: str) -> None:
-    """Remove what would fill the disk of a row that failed: large files, and a folder."""
+    """Remove what would fill the disk of a row that failed: a folder, and the largest files."""
     if passing:
         shutil.rmtree(folder / passing, ignore_errors=True)
-    for file in folder.rglob("*"):
-        if not file.is_symlink() and file.is_file() and file.stat().st_size > _LARGEST_KEPT:
+    sizes = _sizes(folder)
+    left = sum(sizes.values())
+    most = min(_MOST_KEPT, (shutil.disk_usage(folder).free + left) // _SHARE_KEPT)
+    for file in sorted(sizes, key=lambda one: sizes[one], reverse=True):
+        if left > most:
             file.unlink()
+            left -= sizes[file]
 
 
 class Folders:
@@ -59,6 +81,8 @@ class Folders:
         except Exception:
             self._keep(folder, numbers)
             raise
+        else:
+            shutil.rmtree(self.kept(numbers), ignore_errors=True)  # of an earlier run
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 

@@ -15,6 +15,12 @@ from uq.outside.row_by_row import SEED, Fields, RowByRow, model_from
 
 _MARK = "_uq_machine"
 
+_UNFIT = (
+    (inspect.iscoroutinefunction, "is written with 'async def'; write it with 'def'"),
+    (inspect.isasyncgenfunction, "is written with 'async def'; write it with 'def'"),
+    (inspect.isgeneratorfunction, "has a 'yield'; it must return its outputs"),
+)
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -82,6 +88,8 @@ def machine(
             raise InputError(
                 f"@uq.machine: {function!r} is not a function with a name; write one with 'def'"
             )
+        if kind := next((word for test, word in _UNFIT if test(function)), ""):
+            raise InputError(f"machine '{plain.__name__}': {kind}")
         setattr(function, _MARK, Declared(returns, title, version))
         return function
 
@@ -138,7 +146,7 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]
         if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
             faults.append(f"{label}: argument '{argument}': only named floats can be parameters")
             continue
-        if not isinstance(argument.default, int | float):
+        if not isinstance(argument.default, Real):
             was = "no default" if argument.default is argument.empty else f"{argument.default!r}"
             faults.append(f"{label}: argument '{name}' has {was}; its nominal value is needed")
             continue

@@ -6,16 +6,17 @@ import os
 import shutil
 import signal
 import subprocess
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from math import inf
 from pathlib import Path
-from threading import Event, Timer
 from typing import Any, Self
 
 from uq.contract import Model, Parameter
-from uq.outside.descendants import bound_files, end_descendants
-from uq.outside.folders import Folders
+from uq.outside.descendants import bound_files, end_descendants, ended_within
+from uq.outside.folders import Folders, size_of
 from uq.outside.machine_file import (
     FOLDER,
     MachineFile,
@@ -29,6 +30,7 @@ from uq.outside.returned import Returned, checked
 from uq.outside.row_by_row import SEED, OverdueError, RowByRow, model_from
 
 _LAST = 300  # characters of what a failed program said
+_LOOK_SECONDS = 1.0  # between looks at the size of a folder
 _TRIES = 3  # of a program that is killed, before it is blamed
 _KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
 _REMEDIES = {
@@ -106,7 +108,7 @@ class _Program:
     returned: Mapping[str, Returned]
     folder: Path
     folders: Folders
-    limit: float | None = None  # time for a row [s]
+    limit: float = inf  # time for a row [s]
     template: str = field(init=False)
 
     def __post_init__(self) -> None:
@@ -148,7 +150,7 @@ class _Program:
         if machine.template:
             (folder / machine.input).write_bytes(filled(self.template, places).encode())
         program, *arguments = (filled(part, places) for part in machine.command)
-        environment = dict(os.environ) | machine.environment
+        added = machine.environment
         path = _found(program, self.folder) or program
         largest = bound_files(folder)
         with (
@@ -159,7 +161,7 @@ class _Program:
                 process = subprocess.Popen(
                     [path, *arguments],
                     cwd=folder,
-                    env=environment,
+                    env=dict(os.environ) | added if added else None,
                     stdin=subprocess.DEVNULL,
                     stdout=out,
                     stderr=err,
@@ -168,31 +170,32 @@ class _Program:
                 remedy = _REMEDIES.get(error.errno or 0, "")
                 said = f"'{program}' cannot be started: {error.strerror}{remedy}"
                 raise ProgramError(said) from None
-            code = self._ended(process)
+            code = self._ended(process, folder, largest)
         if code == -signal.SIGXFSZ:
             raise ProgramError(f"was ended, as it wrote a file larger than {largest:.2g} bytes")
         if code:
             kind = _KilledError if code in _KILLED else ProgramError
             raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
 
-    def _ended(self, process: subprocess.Popen[bytes]) -> int:
+    def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
         """Return the exit code of a program, once it and all that descends from it has ended."""
-        late = Event()
-
-        def stop() -> None:
-            late.set()
-            process.kill()
-
-        timer = Timer(self.limit or 0.0, stop)
-        if self.limit:
-            timer.start()
+        fault: Exception | None = None
+        until = time.monotonic() + self.limit
         try:
+            while not ended_within(process, min(until - time.monotonic(), _LOOK_SECONDS)):
+                if time.monotonic() >= until:
+                    fault = OverdueError(f"did not end within {self.limit:g} s")
+                elif size_of(folder) > largest:
+                    said = f"was ended, as it wrote files of more than {largest:.2g} bytes"
+                    fault = ProgramError(said)
+                if fault:
+                    process.kill()
+                    break
             code = process.wait()
         finally:
-            timer.cancel()
             end_descendants()
-        if late.is_set():
-            raise OverdueError(f"did not end within {self.limit:g} s")
+        if fault:
+            raise fault
         return code
 
 

@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 
 from uq.errors import one_line
+from uq.literals import read_number
 from uq.outside.machine_file import STDOUT, OutputTable
 from uq.outside.returned import WrongReturnError
 
 LONGEST = 100_000_000
 """Bytes of a text that is searched for a result."""
+
+_SHOWN = 60  # characters of what is no number
 
 STDOUT_FILE, STDERR_FILE = "stdout.txt", "stderr.txt"
 """Names, in the folder of a row, of what its program printed."""
@@ -39,18 +42,18 @@ def value_in(folder: Path, name: str, output: OutputTable) -> Any:
             raise WrongReturnError(
                 f"wrote {path.stat().st_size} bytes to {where}; too many to read"
             )
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = path.read_text(encoding="utf-8-sig", errors="replace")
         if output.json_path:
             return _in_json(text, output.json_path)
         if output.csv:
             return _in_csv(text, output.csv)
         return _matched(text, output.pattern)
-    except (KeyError, IndexError, ValueError, TypeError, OSError, RecursionError) as error:
+    except (LookupError, ValueError, TypeError, OverflowError, OSError, RecursionError) as error:
         raise WrongReturnError(f"has no '{name}' in {where}: {one_line(error)}") from None
 
 
 def _in_json(text: str, path: str) -> Any:
-    found = json.loads(text)
+    found = json.loads(text, parse_float=read_number)
     for part in path.split("."):
         if isinstance(found, dict):
             if part not in found:
@@ -67,17 +70,21 @@ def _number(found: Any) -> Any:
     """Return numbers, which may be written as text: ``"inf"``, as JSON has no infinity."""
     if isinstance(found, list):
         return [_number(one) for one in found]
+    if not isinstance(found, str | int | float):
+        raise ValueError(f"no number: {json.dumps(found)[:_SHOWN]}")
     return _real(found) if isinstance(found, str) else float(found)
 
 
 def _real(text: str) -> float:
     """Return a number written as text, also as Fortran does: ``1.5D+03``."""
+    if "_" in text:  # in numbers only Python reads it
+        raise ValueError(f"no number: '{text[:_SHOWN]}'")
+    if re.fullmatch(r"\s*[-+.\d]+[dD][-+]?\d+\s*", text):
+        text = re.sub("[dD]", "e", text)
     try:
-        return float(text)
+        return read_number(text)
     except ValueError:
-        if re.fullmatch(r"\s*[-+.\d]+[dD][-+]?\d+\s*", text):
-            return float(re.sub("[dD]", "e", text))
-        raise
+        raise ValueError(f"no number: '{text[:_SHOWN]}'") from None
 
 
 def _in_csv(text: str, column: str) -> float:
@@ -86,13 +93,13 @@ def _in_csv(text: str, column: str) -> float:
         raise ValueError("no row below the first line")
     if column not in rows[0]:
         raise ValueError(f"no column '{column}'")
-    return _real(rows[-1][column])
+    return _real(rows[-1][column] or "")
 
 
 def _matched(text: str, pattern: str) -> float:
     found = re.findall(pattern, text, re.MULTILINE)
     if not found:
-        raise ValueError("no match of its pattern")
+        raise ValueError(f"no match of its pattern {pattern}")
     return _real(found[-1])
 
 

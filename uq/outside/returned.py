@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from numbers import Number
 from typing import Any
 
 import numpy as np
@@ -88,14 +89,31 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
     """
     if returns is None:
         return {}
+    if not isinstance(returns, Mapping):
+        raise InputError(f"{label}: returns: must be a dict of outputs, not {returns!r}")
     wrong = [
         f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {one!r}"
         for name, one in returns.items()
         if not (isinstance(one, str | Returned) and isinstance(name, str) and name.isidentifier())
     ]
+    wrong += [
+        f"{label}: returns: shape of '{name}' must be a tuple of numbers above 0, not {one.shape!r}"
+        for name, one in returns.items()
+        if isinstance(one, Returned) and not _is_shape(one.shape)
+    ]
+    wrong += [
+        f"{label}: returns: unit and meaning of '{name}' must be text"
+        for name, one in returns.items()
+        if isinstance(one, Returned)
+        and not (isinstance(one.unit, str) and isinstance(one.meaning, str))
+    ]
     if wrong or not returns:
         raise InputError(*(wrong or [f"{label}: returns: name at least one output"]))
     return {n: Returned(one) if isinstance(one, str) else one for n, one in returns.items()}
+
+
+def _is_shape(shape: Any) -> bool:
+    return isinstance(shape, tuple) and all(isinstance(n, int) and n > 0 for n in shape)
 
 
 class WrongReturnError(Exception):
@@ -118,14 +136,25 @@ def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.b
         cut = np.zeros(given.shape, dtype=bool)
         if given.dtype == object:
             cut = np.asarray([isinstance(one, Censored) for one in given.flat]).reshape(given.shape)
-            plain = [one.time if isinstance(one, Censored) else one for one in given.flat]
-            given = np.asarray(plain).reshape(given.shape)
+            given = np.asarray([_plain(one) for one in given.flat]).reshape(given.shape)
         if given.dtype.kind not in "fiub":
             raise TypeError
+        if not given.size:
+            raise WrongReturnError(f"returned '{name}' as an empty array")
         return given.astype(float), cut
+    except OverflowError:
+        raise WrongReturnError(f"returned '{name}' with an integer too large for a float") from None
     except (TypeError, ValueError):
         kind = type(value).__name__
         raise WrongReturnError(f"returned '{name}' as {kind}, not as a number or array") from None
+
+
+def _plain(one: Any) -> Any:
+    """Return a number as a float, such as an integer of many digits or the time of a `Censored`."""
+    if isinstance(one, Censored):
+        return one.time
+    number: Any = one
+    return float(number) if isinstance(one, Number) else one
 
 
 def seen_in(row: Any) -> dict[str, Returned]:

@@ -149,6 +149,8 @@ class RowByRow:
     keep : callable
         Called with the numbers of a row that was lost with its process: its parameters, then its
         seed if it is wanted; returns the folder in which its files are kept, or None.
+    loads_first : bool
+        Whether its first row may take longer than others, as it imports or compiles something.
     """
 
     function: Callable[..., Any]
@@ -157,6 +159,7 @@ class RowByRow:
     wants_seed: bool
     leave: Callable[[], object] = lambda: None
     keep: Callable[[list[float | int]], Path | None] = lambda numbers: None
+    loads_first: bool = True
 
     @property
     def stops_rows(self) -> bool:
@@ -191,7 +194,7 @@ class RowByRow:
                 status[i], messages[i] = Status.NON_FINITE, str(error)
             except OverdueError as error:
                 status[i], messages[i] = Status.TIMED_OUT, str(error)
-            except (Exception, SystemExit) as error:
+            except BaseException as error:  # Ctrl-C reaches another thread or process
                 status[i], messages[i] = Status.RAISED, described(error)
         self.leave()
         return columns, status, messages

@@ -8,13 +8,17 @@ References
 
 import http.client
 import json
+import socket
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
 from math import inf, isfinite
+from threading import Timer
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
 from uq.errors import InputError, one_line
+from uq.literals import read_number
 from uq.outside.row_by_row import OverdueError
 
 VERSION = 1.0
@@ -24,7 +28,7 @@ DESCRIBED = "described"
 """Entry of a server's model information with names, units and bounds, which UM-Bridge lacks."""
 
 _LONGEST = 100_000_000  # bytes of an answer
-_PART = 1_000_000  # of it, between looks at the clock
+_PART = 1_000_000  # of it, read at once
 _PATIENCE = 60.0  # seconds for which a server that does not answer is asked again
 _PAUSES = (0.1, 0.3, 1.0, 3.0)
 
@@ -116,22 +120,41 @@ def _answer(server: str, what: str, body: Any, until: float) -> Any:
     secure = parts.scheme == "https"
     kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
     connection = kind(parts.hostname or "", parts.port, timeout=_left(until))
-    try:
-        data = None if body is None else json.dumps(body)
-        headers = {"Content-Type": "application/json", "Connection": "close"}
-        connection.request("GET" if body is None else "POST", f"/{what}", data, headers)
-        response = connection.getresponse()
-        text = bytearray()
-        while part := response.read1(_PART):
-            text += part
-            if len(text) > _LONGEST:
-                raise ServerError(f"{server} answers {what} with more than {_LONGEST:.0e} bytes")
-            _left(until)
+    with closing(connection):
+        connection.connect()
+        with _cut(connection.sock, _left(until)):
+            data = None if body is None else json.dumps(body)
+            headers = {"Content-Type": "application/json", "Connection": "close"}
+            connection.request("GET" if body is None else "POST", f"/{what}", data, headers)
+            response = connection.getresponse()
+            text = bytearray()
+            while part := response.read1(_PART):
+                text += part
+                if len(text) > _LONGEST:
+                    most = f"{_LONGEST:.0e} bytes"
+                    raise ServerError(f"{server} answers {what} with more than {most}")
+        _left(until)
         if response.length:
             raise http.client.IncompleteRead(bytes(text), response.length)
-    finally:
-        connection.close()
     return _read(server, what, response.status, bytes(text))
+
+
+@contextmanager
+def _cut(connection: socket.socket, seconds: float | None) -> Iterator[None]:
+    """Cut a connection after some seconds, however little comes through it at a time."""
+
+    def cut() -> None:
+        with suppress(OSError):
+            connection.shutdown(socket.SHUT_RDWR)
+
+    timer = Timer(seconds or 0.0, cut)
+    timer.daemon = True
+    if seconds:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def _left(until: float) -> float | None:
@@ -150,7 +173,9 @@ def _left(until: float) -> float | None:
 def _read(server: str, what: str, status: int, text: bytes) -> Any:
     """Return what an answer says."""
     try:
-        answer = json.loads(text)
+        answer = json.loads(text, parse_float=read_number)
+    except OverflowError as large:
+        raise ServerError(f"{server} answers {what}: {large}") from None
     except (ValueError, RecursionError):
         said = " ".join(text[:80].decode(errors="replace").split())
         raise ServerError(

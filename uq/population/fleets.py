@@ -23,6 +23,7 @@ from uq.population.scale_laws import Scale
 from uq.population.scaling import integrated, not_integrated, why_not_integrated, without_effect
 from uq.rows.element import Element
 from uq.rows.nesting import Nesting, levels_of, nesting_of
+from uq.rows.weights import sample_weights
 
 _NODES = 120
 """Steps between standard normal quantiles of -6 and 6, of what is integrated once per world and
@@ -56,6 +57,8 @@ class Units:
         Whether what worlds share, but for what is integrated, is the same in some of them.
     design : str
         By which they were drawn.
+    of_worlds : ndarray, shape (samples,), or None
+        Their weights, where inspections have weighted them.
     """
 
     element: Element
@@ -65,6 +68,7 @@ class Units:
     why_not_more: str = ""
     worlds_repeat: bool = False
     design: str = "monte-carlo"
+    of_worlds: Floats | None = None
 
     @property
     def integrated(self) -> tuple[str, ...]:
@@ -139,6 +143,7 @@ class Units:
             np.zeros(len(first), dtype=bool),
             np.isnan(first),
             _MoreThan(self, size, allow),
+            self.of_worlds,
         )
         return Population(worlds, part)
 
@@ -216,7 +221,8 @@ def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Unit
     known = idle if shared is None else (*shared.inputs, *idle)
     repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
     design = rows.attrs["design"]
-    return Units(replace(element, law=own), place, shared, varying, why, repeats, design)
+    weights = sample_weights(rows, place, "fleets")
+    return Units(replace(element, law=own), place, shared, varying, why, repeats, design, weights)
 
 
 def _repeats(

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from uq.contract import Output
+from uq.designs.levels import SHARED
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import support
 from uq.inputs.dependence import normal_correlations
@@ -18,7 +19,7 @@ from uq.population.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.element import Element
 from uq.rows.elements import elements_of
-from uq.rows.weights import has_weights
+from uq.rows.weights import has_weights, stand_for_any_unit
 
 NOT_POSITIVE = "it is not always positive"
 
@@ -67,7 +68,9 @@ def integrated(
     if DESIGNS[rows.attrs["design"]].imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
     if has_weights(rows):
-        return Integrated(None, dict.fromkeys(exponents, "inspections have changed its law") | kept)
+        own = stand_for_any_unit(rows)
+        learnt = {name for name in exponents if not own or inputs.laws[name].level == SHARED}
+        kept |= dict.fromkeys(learnt, "inspections have changed its law")
     for name in exponents:
         if problem := _problem(name, inputs) or _sign_problem(name, inputs):
             kept[name] = problem

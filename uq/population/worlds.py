@@ -9,8 +9,9 @@ from scipy import special
 
 from uq.contract import Floats
 from uq.estimate import Estimate
-from uq.intervals import Replicates, share_interval
+from uq.intervals import ROUNDING, Replicates, share_interval
 from uq.population.means import EXACT, weighted_share
+from uq.population.smoothing import effective_rows
 
 FEWEST_WORLDS = 20
 """Fewer do not show 5 and 95 % points."""
@@ -35,7 +36,7 @@ Exceeding = Callable[[float], Estimate]
 """Probability -> the share of worlds in which that of a unit is larger."""
 
 
-def known(ended: Floats, nodes: Floats, part: Replicates) -> Exceeding:
+def known(ended: Floats, nodes: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
     """Return the share of worlds with larger probabilities, where these are known.
 
     Parameters
@@ -45,6 +46,7 @@ def known(ended: Floats, nodes: Floats, part: Replicates) -> Exceeding:
     nodes : ndarray, shape (nodes,)
         Standard normal quantiles of what worlds share; a single one if nothing is integrated.
     part : ndarray of int, shape (samples,), or None
+    weights : ndarray, shape (samples,), or None
 
     Returns
     -------
@@ -53,6 +55,8 @@ def known(ended: Floats, nodes: Floats, part: Replicates) -> Exceeding:
 
     def of_one_node(probability: float) -> Estimate:
         hits = ended[:, 0] > probability
+        if weights is not None:
+            return _mean(hits.astype(float), part, weights)
         low, high = share_interval(hits, part)
         if isnan(low) and part is not None and np.ptp(part) > 0:  # replicates agree
             low, high = share_interval(hits)
@@ -67,12 +71,12 @@ def known(ended: Floats, nodes: Floats, part: Replicates) -> Exceeding:
         gap = np.where(above > below, above - below, 1.0)
         at = nodes[after - 1] + np.clip((above - level) / gap, 0, 1) * (nodes[1] - nodes[0])
         share = np.where(count == 0, 0.0, np.where(count == len(nodes), 1.0, special.ndtr(at)))
-        return _mean(share, part)
+        return _mean(share, part, weights)
 
     return of_one_node if len(nodes) == 1 else exceeding
 
 
-def certain(ended: Floats, part: Replicates) -> Exceeding:
+def certain(ended: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
     """Return the share of worlds with larger probabilities, where all units end together.
 
     Parameters
@@ -80,17 +84,18 @@ def certain(ended: Floats, part: Replicates) -> Exceeding:
     ended : ndarray, shape (samples,)
         Probability that the units of a sample have ended, over what they share and is integrated.
     part : ndarray of int, shape (samples,), or None
+    weights : ndarray, shape (samples,), or None
 
     Returns
     -------
     callable
     """
-    share = _mean(ended, part)
+    share = _mean(ended, part, weights)
     return lambda probability: share
 
 
-def _mean(share: Floats, part: Replicates) -> Estimate:
-    found = weighted_share(share, part=part)
+def _mean(share: Floats, part: Replicates, weights: Floats | None) -> Estimate:
+    found = weighted_share(share, weights, part)
     alike = found.reason == EXACT
     return Estimate(found.value, found.value, found.value) if alike else found
 
@@ -109,6 +114,8 @@ class Noisy:
         NaN for units that do not take part.
     weights : ndarray, shape (nodes,)
     part : ndarray of int, shape (samples,), or None
+    of_worlds : ndarray, shape (samples,), or None
+        Their weights.
 
     References
     ----------
@@ -117,25 +124,30 @@ class Noisy:
        by roughening", Comput. Stat. Data Anal. 12, 27-37 (1991).
     """
 
-    def __init__(self, ended: Floats, weights: Floats, part: Replicates):
+    def __init__(
+        self, ended: Floats, weights: Floats, part: Replicates, of_worlds: Floats | None = None
+    ):
         some = slice(None, None, -(-len(weights) // _MOST_NODES))  # the likelihood is smooth
         ended, weights = ended[..., some], weights[some] / weights[some].sum()
         units = np.isfinite(ended).sum(axis=1)
-        kept = (units > 1).all(axis=1)
-        self.refusal = "" if kept.sum() >= FEWEST_WORLDS else FEW
+        worth = np.ones(len(ended)) if of_worlds is None else of_worlds
+        kept = (units > 1).all(axis=1) & (worth > 0)
+        effective = effective_rows(worth[kept])
+        self.refusal = "" if effective >= FEWEST_WORLDS * (1 - ROUNDING) else FEW
         if ended.shape[1] == 1:
             self.refusal = ONE_UNIT
         if self.refusal:
             return
         self._part = None if part is None else part[kept]
         ended, units = ended[kept], units[kept].astype(float)
+        self._worth = worth = worth[kept] / worth[kept].mean()
         self._weights = weights
         mean = np.nanmean(ended, axis=1)
         within = np.nanvar(ended, axis=1, ddof=1)
-        binomial = np.average((mean - mean**2 + within / units).mean(axis=0), weights=weights)
-        noise = np.average(within.mean(axis=0), weights=weights)
-        hits = (mean * units) @ weights
-        if min(hits.sum(), (units @ weights).sum() - hits.sum()) < FEWEST_WORLDS:
+        binomial = worth @ (mean - mean**2 + within / units) @ weights / len(worth)
+        noise = worth @ within @ weights / len(worth)
+        hits, of = worth @ (mean * units) @ weights, worth @ units @ weights
+        if min(hits, of - hits) * effective / len(worth) < FEWEST_WORLDS:
             self.refusal = FEW_ENDED
             return
         size = units * (binomial / max(noise, 1e-12) if binomial > 0 else 1.0)
@@ -148,7 +160,7 @@ class Noisy:
         counts = np.stack([(mean * size).ravel(), ((1 - mean) * size).ravel()], axis=1)
         counts, place = np.unique(counts, axis=0, return_inverse=True)
         self._place = place.reshape(mean.shape)
-        self._share = np.bincount(place.ravel(), np.tile(weights, len(mean))) / len(mean)
+        self._share = np.bincount(place.ravel(), np.outer(worth, weights).ravel()) / len(mean)
         logs = counts @ special.log_ndtr([self._z, -self._z])
         self._likelihood = np.exp(logs - logs.max(axis=1, keepdims=True))
         spread = np.sqrt(max(float(seen.var()) - _NARROWEST / float(size.mean()), 0.01))
@@ -163,7 +175,7 @@ class Noisy:
         each = self._posterior @ above
         slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
         pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
-        found = weighted_share(pulls, part=self._part, hits_of=inf)
+        found = weighted_share(pulls, self._worth, self._part, hits_of=inf)
         found = replace(found, assumes=ASSUMES)
         return found if isfinite(found.low) else replace(found, low=found.value, high=found.value)
 

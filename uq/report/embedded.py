@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.clusters import Clusters
+from uq.conclusions.words import called
 from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
 from uq.drawing.quantities import scale_of
@@ -20,6 +21,7 @@ from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
+from uq.population.scaling import population
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
 from uq.report.tolerances import tolerances
@@ -72,17 +74,18 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
         return None
     inputs = independent_inputs(whole)
     rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
-    elements = list(elements_of(rows, outputs))
+    elements = list(population(rows, outputs))
     columns = [_input(rows, name) for name in inputs]
     columns += [_output(rows, one, analysis) for one in elements]
     drawn = _drawn(elements, analysis)
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
     design = _design(rows)
     laws = tolerances(rows, elements)
-    if laws is not None and laws["lives"]:
-        design["intervals"] += (
-            " Shares here are those of lives as computed; tables above, and other tolerances below,"
-            " integrate what only scales a life."
+    if integrated := dict.fromkeys(one for each in elements for one in _integrated(each)):
+        names = " and ".join(map(called, integrated))
+        design["intervals"] = (
+            f"Counted: each row is one life, as computed; the answer, the tables and other"
+            f" tolerances integrate {names} exactly instead. {design['intervals']}"
         )
     return {
         "file": shlex.quote(plain(file)),
@@ -150,6 +153,7 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
         "life": element.is_lifetime,
         "success": bool(element.declared.success),
         "angle": element.is_angle,
+        "counted": bool(_integrated(element)),
         "neverKnownAtOnce": element.declared.never_known_at_once,
         "censored": encoded(element.censored, "u1") if element.censored.any() else None,
         "thresholds": [
@@ -157,6 +161,11 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
             for value in analysis.thresholds.get(element.output, ())
         ],
     }
+
+
+def _integrated(element: Element) -> tuple[str, ...]:
+    """Return the inputs over which the answer and the tables integrate a life."""
+    return () if element.law is None else element.law.inputs
 
 
 def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:

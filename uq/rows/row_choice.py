@@ -61,6 +61,27 @@ def lowest_row(ds: xr.Dataset, name: str) -> Choice:
     return Choice(int(ds["sample"].values[place]), words)
 
 
+def lowest_rows(ds: xr.Dataset, name: str, most: int) -> list[tuple[int, float]]:
+    """Return the rows in which one element is lowest, each with its value: those that ended only.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+        Of an element.
+    most : int
+
+    Raises
+    ------
+    InputError
+        When there is no such element, or no row has a value.
+    """
+    element, order = next(_ordered(ds, name))
+    ended = [i for i in order[:most] if not (element.censored[i] or element.never[i])]
+    return [(int(ds["sample"].values[i]), float(element.values[i])) for i in ended]
+
+
 def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
     """Return the row that is closest to a quantile of an output or of one element.
 

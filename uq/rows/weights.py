@@ -5,12 +5,16 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError
+from uq.rows.nesting import Nesting
 
 WEIGHT = "weight"
 """The variable with the weight of each row."""
 
 ONLY_INSPECTED = "only_inspected"
 """Attribute of a result: why no row stands for a unit that was not inspected."""
+
+OF_UNIT = "of_unit"
+"""Attribute of a result: the inspected unit that all its rows stand for."""
 
 MOST = "largest_possible"
 """Its attribute: the largest weight that a row can have, where that is known."""
@@ -20,6 +24,9 @@ IMPORTANCE, ROUND = "importance", "round"
 """Variables of each row, if a sampler has added rows to those of a design: how much it counts
 before any inspection, of mean 1 in expectation; and the round in which it was drawn, 0 by the
 design."""
+
+
+_SAME = 1e-9  # relative difference of weights that only rounding tells apart
 
 
 def has_weights(ds: xr.Dataset) -> bool:
@@ -53,7 +60,52 @@ def largest_weight(ds: xr.Dataset) -> float:
     return float(ds[WEIGHT].attrs.get(MOST, np.inf)) if has_weights(ds) else np.inf
 
 
-def refuse_weights(ds: xr.Dataset, what: str, *, but_equal: bool = False) -> None:
+def stand_for_any_unit(ds: xr.Dataset) -> bool:
+    """Whether no inspection is of the units of a result: inputs of their own have their laws."""
+    return not has_weights(ds) or not (ds.attrs.keys() & {OF_UNIT, ONLY_INSPECTED})
+
+
+def sample_weights(rows: xr.Dataset, place: Nesting, what: str) -> Floats | None:
+    """Return the weights of samples whose units were not inspected; None where rows have none.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    place : Nesting
+        Theirs.
+    what : str
+        The question that needs them, such as ``fleets``.
+
+    Returns
+    -------
+    ndarray, shape (samples,), or None
+        Of mean 1.
+
+    Raises
+    ------
+    InputError
+        When rows stand for inspected units, or units of a sample have different weights.
+    """
+    weights = row_weights(rows)
+    if weights is None:
+        return None
+    if unit := rows.attrs.get(OF_UNIT, ""):
+        raise InputError(f"no {what}: these rows stand for unit '{unit}'; use the whole posterior")
+    if why := rows.attrs.get(ONLY_INSPECTED, ""):
+        raise InputError(f"no {what}: {why}")
+    table = place.table(weights).reshape(place.samples, -1)
+    least, most = np.nanmin(table, axis=1), np.nanmax(table, axis=1)
+    if (most - least > _SAME * most).any():
+        raise InputError(
+            f"no {what}: the inspections weight each unit of a sample separately, since units"
+            " differ in more than an integrated input; use 'uq summary' for a single unit, or the"
+            " result before 'uq update'"
+        )
+    return np.asarray(most / most.mean())
+
+
+def refuse_weights(ds: xr.Dataset, what: str) -> None:
     """Refuse a question that weighted rows cannot answer.
 
     Parameters
@@ -61,16 +113,14 @@ def refuse_weights(ds: xr.Dataset, what: str, *, but_equal: bool = False) -> Non
     ds : xarray.Dataset
         A result.
     what : str
-        The question, such as ``uq levels``.
-    but_equal : bool
-        Whether equal weights will do: those of units that share only what is integrated.
+        The question, such as ``uq twin``.
 
     Raises
     ------
     InputError
         When rows have weights.
     """
-    if has_weights(ds) and not (but_equal and np.ptp(ds[WEIGHT].values) == 0):
+    if has_weights(ds):
         raise InputError(
             f"{what}: not with rows that inspections have weighted; ask it of the result before"
             " 'uq update'"

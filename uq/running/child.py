@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from uq.compilation import compilation
@@ -71,10 +72,25 @@ class ModelSpec(NamedTuple):
 
 
 READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
-"""Messages of a child; the last two come with a chunk or an exception, the first says whether it
-stops rows itself when their time is over."""
+"""Messages of a child; the last two come with a chunk or an exception, the first with `Ready`."""
 
 Action = Callable[[], object]
+
+
+class Ready(NamedTuple):
+    """How a process keeps to the time limit of a row.
+
+    Attributes
+    ----------
+    stops_rows : bool
+        Whether it stops rows itself when their time is over.
+    loads_first : bool
+        Whether its first call may take longer.
+    """
+
+    stops_rows: bool = False
+    loads_first: bool = True
+
 
 FIRST_SECONDS = 5.0
 """Beyond its limit for a first call, which loads compiled code: 1 s, more on a busy computer."""
@@ -151,6 +167,7 @@ def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.T
         cleanup()
         os._exit(0)
 
+    sys.stdin = Path(os.devnull).open()  # for a model that asks something
     thread = threading.Thread(target=wait, daemon=True)
     thread.start()
     return thread
@@ -160,6 +177,7 @@ def main(handle: str) -> None:
     """Answer requests, each the arguments of `evaluate`, until the connection closes."""
     adopt()
     end_with_parent(end_descendants)
+    os.dup2(1, 2)  # warnings of the model go where its prints go
     connection = Connection(int(handle))
     spec: ModelSpec
     limit: float | None
@@ -170,11 +188,12 @@ def main(handle: str) -> None:
         connection.send((REFUSED, error))
         return
     batch = model.batch
-    stops_rows = False
-    if limit is not None and isinstance(batch, RowByRow) and batch.stops_rows:
-        stops_rows = True
-        model = replace(model, batch=batch.limited(limit))
-    connection.send((READY, stops_rows))
+    ready = Ready()
+    if isinstance(batch, RowByRow):
+        ready = Ready(batch.stops_rows, batch.loads_first)
+        if limit is not None and batch.stops_rows:
+            model = replace(model, batch=batch.limited(limit))
+    connection.send((READY, tuple(ready)))  # plain: this module is __main__
     with telling_of_compilation(connection):
         while True:
             rows = connection.recv()

@@ -93,8 +93,7 @@ class Isolated:
         self._prints = prints
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._ready = self._stops_rows = False
-        self._grace = 0.0
+        self._ready: child.Ready | None = None
         self._closed = threading.Event()
 
     def evaluate(self, x: Floats, seed: NDArray[np.uint64], start: int = 0) -> Chunk:
@@ -143,7 +142,8 @@ class Isolated:
             answer = self._answer(connection, self._patience(len(x)))
         except (EOFError, OSError):
             return Fault(Status.CRASHED, f"killed its process ({self._end()})")
-        self._grace = 0.0
+        if self._ready:
+            self._ready = self._ready._replace(loads_first=False)
         if answer is None:
             self._end(at_once=True)
             return Fault(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
@@ -154,11 +154,11 @@ class Isolated:
 
     def _patience(self, rows: int) -> float | None:
         """Return how long rows that are computed together may take [s]."""
-        if self.limit is None:
+        if self.limit is None or self._ready is None:
             return None
-        if self._stops_rows:
+        if self._ready.stops_rows:
             return rows * self.limit + _STUCK_SECONDS
-        return self.limit + self._grace
+        return self.limit + (child.FIRST_SECONDS if self._ready.loads_first else 0.0)
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
         """Return the answer of the process, or None when its time is over."""
@@ -201,7 +201,7 @@ class Isolated:
             if kind == child.REFUSED:
                 self._end()
                 raise value
-            self._grace, self._ready, self._stops_rows = child.FIRST_SECONDS, True, value
+            self._ready = child.Ready(*value)
             return connection
         raise RunError(f"a process for the rows could not start: {reason}")
 
@@ -209,7 +209,7 @@ class Isolated:
         """End the process, unless it is already dying; return how it ended."""
         process, connection = self._process, self._connection
         self._process = self._connection = None
-        self._ready = False
+        self._ready = None
         if connection:
             connection.close()
         if not process:

@@ -76,7 +76,7 @@ class RunOptions:
     progress : callable
         Called with a `Progress` as rows arrive, and when compilation of the model starts.
     say : callable
-        Called with a line for the user: what was found on disk.
+        Called with a line for the user: what was found on disk, or that a goal is out of reach.
     """
 
     workers: int | None = None

@@ -1,5 +1,6 @@
 """A process that runs a few rows of a function to see what it returns: ``... HANDLE``."""
 
+import os
 import sys
 from multiprocessing.connection import Connection
 from typing import Any
@@ -16,6 +17,7 @@ RETURNED, RAISED = "returned", "raised"
 def main(handle: str) -> None:
     """Run rows as they come, each with its seed, until the connection closes."""
     end_with_parent()
+    os.dup2(1, 2)  # warnings of the function go where its prints go
     connection = Connection(int(handle))
     reference = connection.recv()
     try:
@@ -31,7 +33,7 @@ def main(handle: str) -> None:
                 answer: tuple[str, Any] = RETURNED, as_plain(seen_in(batch.row(row, seed)))
             except WrongReturnError as error:
                 answer = RAISED, str(error)
-            except (Exception, SystemExit) as error:
+            except BaseException as error:
                 answer = RAISED, f"raised {described(error)}"
             connection.send(answer)
 

@@ -13,6 +13,7 @@ import xarray as xr
 
 from uq import store
 from uq.analysis import stopping
+from uq.analysis.stopped import out_of_reach
 from uq.errors import InputError
 from uq.rows import results
 from uq.rows.sampling import rows
@@ -189,6 +190,7 @@ def carry_out(
         counts = there.done, there.total, there.failed, there.found
         options.progress(Progress(*counts, compiling=True))
 
+    warned = False
     with Executor(workload, options, compiling) as executor:
         for part in (*_interim_studies(study, kept), None):
             stop = rows(part) if part else workload.total
@@ -198,10 +200,14 @@ def carry_out(
             executor.finish(dispatcher)
             if not (study and kept and part):
                 break
-            if stopping.interim_estimate(study.design, kept.first(part)).reached:
+            seen = stopping.interim_estimate(study.design, kept.first(part))
+            if seen.reached:
                 kept.cut(part)
                 dispatcher.report_progress()
                 break
+            if not warned and (line := out_of_reach(study.design, seen, part.design.samples)):
+                options.say(line)
+                warned = True
     return there.dataset()
 
 

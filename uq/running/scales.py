@@ -1,7 +1,7 @@
 """The scales that a machine from outside declares, held to what it returns.
 
-Of two rows, the parameters that should only scale a life are changed and nothing else. Machines of
-an installed package are held to it by their tests.
+Of some rows, the parameters that should only scale a life are changed and nothing else, from end to
+end of their laws. Machines of an installed package are held to it by their tests.
 """
 
 import hashlib
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model, Output, Status, censored_name
 from uq.errors import InputError
+from uq.inputs.conditioning import ppf_within
 from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import row_block
@@ -26,9 +27,12 @@ from uq.study.sources import DISTRIBUTION
 if TYPE_CHECKING:
     from uq.study.definition import Study
 
-_FAR = 4.0  # times the value of a parameter, where a bound is farther
+_ENDS = np.array([1e-6, 1 - 1e-6])
+"""Probabilities at which the law of an input is taken to end."""
+
+_FAR = 4.0  # times the value of a parameter without a law, where a bound is farther
 _SAME = 1e-9  # relative difference
-_EACH = 3  # rows that differ in scale alone
+_EACH = 4  # rows that differ in scale alone
 
 
 def check_scales(study: "Study", row_limit: float | None = None) -> None:
@@ -50,10 +54,10 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
     if not scaled or not isinstance(model.batch, RowByRow):
         return
     first = row_block(study, 0, 1)
-    nominal = model.nominal | dict(study.fixed)
-    bases = np.array([list(nominal.values()), first.x[0]])
-    seed = np.repeat(np.append(np.uint64(0), first.seed), _EACH)
-    x = np.concatenate([_scaled_anew(base, model, scaled) for base in bases])
+    nominal = np.array(list((model.nominal | dict(study.fixed)).values()))
+    bases = [nominal, first.x[0], *_at_ends(study, first.x[0])]
+    seed = np.repeat(np.append(np.zeros(1, np.uint64), np.repeat(first.seed, 3)), _EACH)
+    x = np.concatenate([_scaled_anew(base, study, scaled) for base in bases])
     kept = _kept(study, x, seed)
     if kept.exists():
         return
@@ -69,16 +73,37 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
         kept.touch()
 
 
-def _scaled_anew(base: Floats, model: Model, scaled: dict[str, Output]) -> Floats:
-    """Return a row, and some with other values of what scales; shape (3, d)."""
+def _at_ends(study: "Study", row: Floats) -> Floats:
+    """Return a row with all inputs at the lower, and at the upper ends of their laws; (2, d)."""
+    rows = np.tile(row, (2, 1))
+    for place, name in enumerate(study.model.parameter_names):
+        if (ends := _ends_of_law(study, name)) is not None:
+            rows[:, place] = ends
+    return rows
+
+
+def _ends_of_law(study: "Study", name: str) -> Floats | None:
+    """Return the ends of the law of a parameter, shape (2,); None without a law of its own."""
+    law = study.uncertain.get(study.tied[name].equals if name in study.tied else name)
+    if law is None or law.times is not None:
+        return None
+    return ppf_within(law, _ENDS, study.bounds(name))
+
+
+def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Floats:
+    """Return a row, and some with other values of what scales, both ends of it; shape (4, d)."""
     rng, rows = np.random.default_rng(1), np.tile(base, (_EACH, 1))
+    model = study.model
     for name in dict.fromkeys(name for one in scaled.values() for name in one.scales):
         place = model.parameter_names.index(name)
         least, most = model.parameter(name).bounds
         value = base[place] if base[place] > 0 else model.nominal[name]
         low = least if 0 < least and value / _FAR < least else value / _FAR
         high = min(most, value * _FAR)
-        rows[1:, place] = low ** (1 - (share := rng.random(_EACH - 1))) * high**share
+        if (ends := _ends_of_law(study, name)) is not None and ends[0] > 0:
+            low, high = ends
+        inside = low * (high / low) ** rng.random(_EACH - 3)
+        rows[1:, place] = [low, *inside, high]
     return rows
 
 

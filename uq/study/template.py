@@ -22,7 +22,7 @@ _UNCERTAIN = 3
 _SOURCE = "example: replace by what you know"
 
 
-def template(model: Model) -> str:
+def template(model: Model, reference: str = "") -> str:
     """Return a commented study file that runs as it is.
 
     A line that starts with ``#`` and a key is an entry with its default: remove the ``#`` to
@@ -31,12 +31,15 @@ def template(model: Model) -> str:
     Parameters
     ----------
     model : Model
+    reference : str
+        How the model is named on the command line, which a study does not do.
 
     Returns
     -------
     str
         TOML.
     """
+    own = reference not in ("", model.name)
     suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
     laws = dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
     outputs = model.given(model.settings()).outputs
@@ -49,6 +52,7 @@ def template(model: Model) -> str:
             "",
             "[study]",
             f"name = {toml(re.sub(r'[^A-Za-z0-9_-]', '-', model.name) + '-study')}",
+            *([f"# run with --model {_line(reference)}"] if own else []),
             f"model = {toml(model.name)}",
             f"description = {toml(_line(model.title))}",
             "",

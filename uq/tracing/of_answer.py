@@ -5,9 +5,11 @@ from typing import Any
 
 import xarray as xr
 
+from uq.analysis.earliest import inputs_apart
 from uq.analysis.effects import effects
 from uq.analysis.event_curve import event_curve
 from uq.analysis.findings import Findings
+from uq.analysis.joint_bounds import SIDES
 from uq.analysis.summary import status_counts, summarise
 from uq.conclusions.answer import conclude, regimes_of
 from uq.conclusions.as_json import answer_json
@@ -50,6 +52,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         ranking = value_at(said, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
         return Origin((cited(effects) if "effects" in names else index,), ds)
+    if "earliest" in names:
+        return Origin((cited(inputs_apart),), ds)
     if "parts" in names or "decided_by" in names:
         return Origin((cited(event_curve), cited(share_interval)), ds)
     rows = independent_rows(ds)
@@ -66,7 +70,9 @@ def _estimators(ds: xr.Dataset, name: str, part: str, *rest: str) -> Iterator[Ci
     found = summarise(ds, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]
     if part == "promise":
-        keys = [("tolerance", "lower")] * ("quantile" not in "".join(rest)) + keys
+        joint = asked.joint_bounds.get(name.partition("[")[0])
+        bound = ("joint_bounds", SIDES[joint][0]) if joint else ("tolerance", "lower")
+        keys = [bound] * ("quantile" not in "".join(rest)) + keys
     elif part == "events":
         side = "below" if "<" in rest[0] else "above"
         keys = [("thresholds", split_name(rest[0])[2], side)]

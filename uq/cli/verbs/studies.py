@@ -76,7 +76,7 @@ def init(
     from uq.running.loading import load_model
     from uq.study.template import template
 
-    print(template(load_model(model)), end="")
+    print(template(load_model(model), model), end="")
 
 
 def check(study: given.StudyFile, model: given.ModelReference = None) -> None:

@@ -21,7 +21,7 @@ class Found {
 
   asked() {
     return this.rows.columns.flatMap(column => column.thresholds.map(({value, words}) => ({
-      key: `${column.name}/${value}`, words, column, value, hits: column.hits(value),
+      key: `${column.name}/${value}`, words: countedOf(column, words), column, value, hits: column.hits(value),
     })));
   }
 
@@ -60,7 +60,7 @@ class Found {
     const everything = this.everything(column);
     const some = isAll ? everything : {curve: outliving(column, mask), quantiles: this.quantiles(column, mask)};
     PROBABILITIES.forEach((probability, i) => lines.push(make("tr", {"data-key": `quantile/${probability}`},
-      make("th", {scope: "row"}, `${column.quantileName(probability)} of ${column.label}`),
+      make("th", {scope: "row"}, countedOf(column, `${column.quantileName(probability)} of ${column.label}`)),
       ...(isAll ? [] : [quantileCell(column, some.quantiles[i])]), quantileCell(column, everything.quantiles[i]))));
     this.table.replaceChildren(make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...lines));
     this.drawCurves(column, everything.curve, some.curve, isAll);
@@ -100,6 +100,11 @@ class Found {
     for (band of bandOfShares(this.rows, column, some, mask)) yield;
     if (band?.low.some(isFinite)) this.drawCurves(column, everything, some, isAll, band);
   }
+}
+
+// Of lives whose rows the answer integrates: this is not the same number.
+function countedOf(column, words) {
+  return column.counted ? `${words}, counted` : words;
 }
 
 function cellOf({share, low, high, more}) {

@@ -1,0 +1,35 @@
+"""Studies of lives of which some inputs are only a scale."""
+
+from computed import study_of
+
+from uq.population.functionals import Population
+from uq.population.scaling import population, why_not_integrated
+from uq.rows.elements import independent_rows, replicates_of
+
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+
+
+def lognormal(sigma, median=1.0, **more):
+    return {"distribution": "lognormal", "median": median, "sigma": sigma, **more}
+
+
+def scaled_study(uncertain, design=None, samples=400, **tables):
+    return study_of(
+        {
+            "study": {"name": "scaled", "model": "scaled"},
+            "design": {"method": "monte-carlo", "samples": samples, "seed": 3} | (design or {}),
+            "uncertain": uncertain,
+            "analysis": {"outputs": ["life"], "thresholds": {"life": [1.0]}},
+            **tables,
+        },
+        "sample_models:SCALED",
+    )
+
+
+def populated(ds):
+    rows = independent_rows(ds)
+    element = next(population(rows, ["life"]))
+    return Population(element, replicates_of(rows)), why_not_integrated(rows, element)
+
+
+WHOLE = {"a": lognormal(0.5), "z": NORMAL}

@@ -1,0 +1,153 @@
+"""What to do: each piece of advice against the numbers under it."""
+
+import re
+from dataclasses import replace
+
+import answered
+import numpy as np
+import pytest
+from answered import DAY, numbers
+from computed import (
+    as_text,
+    asking,
+    kinds,
+    linear,
+    with_output,
+)
+
+import uq
+from uq.conclusions.answer import answer
+from uq.conclusions.remedies import Tightened
+from uq.conclusions.tightening import halved
+from uq.estimate import Estimate
+from uq.study.reading import read_study_text
+
+
+@pytest.fixture(scope="module")
+def lifetime():
+    return answered.lifetime()
+
+
+def test_an_assumed_law_that_matters_is_measured_first(lifetime):
+    ds, found = lifetime
+    assert [one.rule for one in found.advice] == ["measure", "tighten"]
+    assert found.advice[0].text == (
+        "Measure rate first: it matters most to how many end within 10 days, and its law is"
+        " assumed."
+    )
+    known = ds.copy()
+    known["rate"].attrs["source"] = "measured"
+    assert [one.rule for one in answer(known).advice] == ["tighten", "nothing"]
+
+
+def test_half_the_scatter_is_what_the_weighted_rows_say(lifetime):
+    ds, found = lifetime
+    one = next(one.tightened for one in found.advice if one.rule == "tighten")
+    _, now, then, low, high = numbers(
+        r"Half the scatter of rate would move the share of rows that end within # days"
+        r" from # % to # % \(# to # %\)\.",
+        one.sentence,
+    )
+    column = f"P(<{10 * DAY!r})"
+    weighted = uq.what_if(ds, {"uncertain.rate.sigma": 0.25}).loc["life"]
+    known = [100 * weighted[f"{column}{end}"] for end in ("", "_low", "_high")]
+    assert [then, low, high] == pytest.approx(known, abs=0.05)
+    assert now == pytest.approx(100 * uq.summary(ds).loc["life", column], abs=0.05)
+    assert one.effective_rows < 1000
+
+
+def test_half_the_scatter_of_a_law():
+    laws = {
+        "uniform": ({"lower": 1.0, "upper": 3.0}, {"lower": 1.5, "upper": 2.5}),
+        "loguniform": ({"lower": 1.0, "upper": 16.0}, {"lower": 2.0, "upper": 8.0}),
+        "triangular": (
+            {"lower": 0.0, "mode": 1.0, "upper": 4.0},
+            {"lower": 0.5, "upper": 2.5},
+        ),
+        "lognormal": ({"mean": 2.0, "cv": 0.2}, {"cv": 0.1}),
+        "weibull": ({"shape": 2.0, "scale": 1.0}, {}),
+    }
+    for name, (arguments, expected) in laws.items():
+        uncertain = {"x1": {"distribution": name, **arguments}}
+        tables = {
+            "study": {"name": "laws", "model": "ishigami"},
+            "design": {"method": "monte-carlo", "samples": 8},
+            "uncertain": uncertain,
+        }
+        law = read_study_text(as_text(tables), "study").uncertain["x1"]
+        assert halved(law) == pytest.approx(expected)
+
+
+def test_a_rare_event_asks_for_more_rows():
+    ds = linear(samples=200)
+    ds = with_output(ds, "rare", np.r_[np.ones(8), np.zeros(192)] + 1e-6 * ds["x1"].values)
+    found = answer(asking(ds, outputs=["rare"], thresholds={"rare": 0.5}))
+    share = found.lead.events[0].share
+    half = (share.high - share.low) / 2
+    (rows,) = [one for one in found.advice if one.rule == "rows"]
+    assert rows.rows == pytest.approx(200 * (half / 0.01) ** 2, rel=0.01)
+
+
+def with_valley(samples=400):
+    """Return a result in which a wanted y is high where x4 is far from its middle."""
+    ds = linear(samples=samples)
+    far = (ds["x4"].values - 0.5) ** 2 + 1e-4 * ds["x1"].values
+    asked = {"outputs": ["far"], "thresholds": {"far": 0.01}, "wanted": {"far": "above"}}
+    return asking(with_output(ds, "far", far), **asked)
+
+
+def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_input():
+    ds = with_valley()
+    found = answer(ds)
+    assert [one.rule for one in found.advice][:1] == ["keep"]
+    event = found.lead.events[0]
+    assert event.share.value > 0.5
+    share, low, high = numbers(
+        r"So that more exceed 10 mm, keep x4 [^:]*: # % \(# to # %\) do there\.",
+        found.advice[0].text,
+    )
+    most = event.curve.shares[event.curve.most]
+    assert [share, low, high] == pytest.approx([100 * one for one in most.numbers], abs=0.05)
+    assert most.low > event.share.high
+
+
+@pytest.mark.parametrize(("wanted", "side"), [("above", "stay above"), ("below", "stay below")])
+def test_the_side_that_is_wanted_is_promised_and_advised(wanted, side):
+    asked = {"outputs": ["y"], "thresholds": {"y": 5.0}, "wanted": {"y": wanted}}
+    found = answer(asking(linear(samples=400), **asked))
+    bound = rf"With 95 % confidence, at least 95 % {side} [\d.]+\."
+    assert re.fullmatch(bound, found.lead.promise.sentence)
+    (one,) = (each for each in found.advice if each.rule in ("tighten", "keep"))
+    if one.rule == "tighten":
+        before, after = one.tightened.before.value, one.tightened.after.value
+        assert after > before if wanted == "above" else after < before
+    else:
+        assert one.text.startswith(f"So that {'more' if wanted == 'above' else 'fewer'} exceed 5")
+
+
+def test_what_nobody_wants_is_not_called_better():
+    ds = with_valley()
+    found = answer(asking(ds, outputs=["far"], thresholds={"far": 0.01}, wanted={}))
+    assert found.lead.wants_more is None
+    assert not any(one.rule == "keep" for one in found.advice)
+
+
+def test_a_large_angle_may_be_wanted():
+    asked = {"outputs": ["angle"], "thresholds": {"angle": 1.0}}
+    assert answer(kinds(samples=100, analysis=asked)).lead.wants_more is False
+    lead = answer(kinds(samples=100, analysis=asked | {"wanted": {"angle": "above"}})).lead
+    assert lead.wants_more and "at least 95 % exceed" in lead.promise.sentence
+
+
+def test_more_successes_and_fewer_other_ends_are_better():
+    lives = np.random.default_rng(0).uniform(1, 9, 64)
+    ds = with_output(linear(samples=64), "life", lives, "lifetime")
+    asked = {"outputs": ["life"], "thresholds": {"life": 8.0}}
+    lead = answer(asking(ds, **asked)).lead
+    assert not lead.wants_more
+    ds["life"].attrs["success"] = "the lock has closed"
+    lead = answer(asking(ds, **asked)).lead
+    assert lead.wants_more
+    better = Tightened(("x",), "", Estimate(0.5), Estimate(0.6), wants_more=True)
+    assert better.helps and not replace(better, wants_more=False).helps
+    assert replace(better, wants_more=None).helps

@@ -1,0 +1,154 @@
+"""Sentences of the answer against the rows and against each other, on studies of several kinds."""
+
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from math import isfinite
+
+import answered
+import numpy as np
+import pytest
+from answer_checks import Checker, denied_by_each_other
+from computed import asking, computed, kinds, linear, study_of, with_output
+
+from uq.conclusions.answer import answer
+from uq.conclusions.contributions import Ranking
+from uq.conclusions.parts import Answer
+
+MOVED = 1.9
+"""By what a number is multiplied: no interval is as wide."""
+
+
+def life_of_known_law():
+    return answered.lifetime()[0]
+
+
+def values_below_a_threshold():
+    return asking(linear(samples=1000), outputs=["y"], thresholds={"y": 7.0}, wanted={"y": "below"})
+
+
+def rows_of_a_crossed_design():
+    ds = linear("saltelli", samples=64, replicates=8)
+    return asking(ds, outputs=["y"], thresholds={"y": 6.0})
+
+
+def regimes_and_angles():
+    return kinds(samples=400, analysis={"outputs": ["angle"], "thresholds": {"angle": 0.5}})
+
+
+def some_never_succeed():
+    ds = linear(samples=400)
+    x = ds["x4"].values
+    ds = with_output(ds, "locking", np.where(x > 0.3, 9 - 5 * x, np.inf), "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    return asking(ds, outputs=["locking"], thresholds={"locking": 20.0})
+
+
+def nothing_to_find():
+    ds = linear(samples=400)
+    ds = with_output(ds, "noise", np.random.default_rng(2).normal(10, 1, 400))
+    return asking(ds, outputs=["noise"], thresholds={"noise": 11.0})
+
+
+def a_rare_event_by_pawn():
+    """As of the feed of the vibrator: few hits, and a method whose index of them is small."""
+    names = {name: {"distribution": "normal", "mean": 0.5, "sd": 0.05} for name in ("x1", "x4")}
+    tables = {
+        "study": {"name": "rare", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 400, "seed": 4},
+        "uncertain": names,
+        "analysis": {"thresholds": {"y": 5.4}, "sensitivity": ["delta", "pawn"]},
+    }
+    return computed(study_of(tables))
+
+
+def few_rows():
+    return asking(linear(samples=5), outputs=["y"], thresholds={"y": 5.0})
+
+
+STUDIES = [
+    life_of_known_law,
+    values_below_a_threshold,
+    rows_of_a_crossed_design,
+    regimes_and_angles,
+    some_never_succeed,
+    nothing_to_find,
+    a_rare_event_by_pawn,
+    few_rows,
+]
+
+
+@cache
+def checked(study):
+    ds = study()
+    return Checker(ds), answer(ds)
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_no_sentence_is_denied_by_the_rows_or_by_another(study):
+    checker, found = checked(study)
+    assert list(checker.wrong(found)) == []
+
+
+def mutants(one, path=()):
+    """Yield copies of an answer, each with one number changed, and where."""
+    for field in fields(one):
+        value, here = getattr(one, field.name), (*path, field.name)
+        for changed, where in changes(value, here):
+            yield replace(one, **{field.name: changed}), where
+
+
+def changes(value, path):
+    if isinstance(value, float) and isfinite(value) and value:
+        yield value * MOVED, path
+    elif is_dataclass(value) and not isinstance(value, type):
+        yield from mutants(value, path)
+    elif type(value) is tuple:
+        for i, each in enumerate(value):
+            for changed, where in changes(each, (*path, i)):
+                yield (*value[:i], changed, *value[i + 1 :]), where
+
+
+def sentences(found: Answer):
+    """Return all that an answer says."""
+    said = [*found.lines, *(event.with_cause for event in found.events)]
+    for one in found.quantities:
+        said += [*one.head, *(event.with_cause for event in one.events), one.ranking_sentence]
+        said += [each.effect for each in one.ranking.contributions] if one.ranking else []
+        said += one.earliest.lines if one.earliest else []
+    return said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("study", STUDIES[:7])
+def test_a_changed_number_under_a_sentence_is_noticed(study):
+    checker, found = checked(study)
+    said, missed, count = sentences(found), [], 0
+    for mutant, path in mutants(found):
+        try:
+            shown = sentences(mutant)
+        except (ValueError, OverflowError):
+            continue
+        if shown != said:
+            count += 1
+            if not list(checker.wrong(mutant)):
+                missed.append((path, [new for new, old in zip(shown, said) if new != old]))  # noqa: B905
+    assert count >= 5 and missed == []
+
+
+def test_contradictions_are_noticed():
+    checker, found = checked(life_of_known_law)
+    lead = found.lead
+    event = replace(lead.events[0], ranking=Ranking("", "", reason="no", is_flat=True))
+    flat = replace(found, quantities=(replace(lead, events=(event,)),))
+    assert any("Half the scatter" in text for text in denied_by_each_other(flat))
+    assert list(denied_by_each_other(found)) == []
+
+
+def test_no_input_moves_an_event_that_no_single_input_decides():
+    for study in STUDIES:
+        found = checked(study)[1]
+        for event in found.lead.events if found.lead else ():
+            if event.ranking is not None and event.ranking.denies_a_leader:
+                assert not any(
+                    event.said in one.text for one in found.advice if one.rule == "tighten"
+                )

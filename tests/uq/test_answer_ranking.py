@@ -1,0 +1,66 @@
+"""What inputs contribute: each sentence of the answer against its numbers."""
+
+import re
+
+import answered
+import numpy as np
+import pytest
+from answered import numbers
+from computed import (
+    asking,
+    linear,
+    with_output,
+)
+
+from uq.analysis import findings
+from uq.conclusions.answer import answer
+from uq.conclusions.contributions import Change
+from uq.estimate import Estimate
+
+
+@pytest.fixture(scope="module")
+def lifetime():
+    return answered.lifetime()
+
+
+def test_a_contribution_has_size_and_direction(lifetime):
+    _, found = lifetime
+    first = found.lead.ranking.contributions[0]
+    assert first.inputs == ("rate",) and first.indices[0].low < 25 / 26 < first.indices[0].high
+    (by,) = numbers("10 % more shortens it by # %", first.effect)  # exactly: depth over rate
+    assert by == pytest.approx(100 - 100 / 1.1, abs=0.01)
+    assert found.lead.ranking.sentence.startswith("Rate contributes most: 9")
+
+
+def test_inputs_that_indices_do_not_tell_apart_are_named_together():
+    ds = linear("saltelli", samples=64, replicates=4)
+    ds = with_output(ds, "even", ds["x1"].values + ds["x2"].values)
+    ranking = answer(asking(ds, outputs=["even"])).lead.ranking
+    assert set(ranking.contributions[0].inputs) == {"x1", "x2"}
+    assert ranking.sentence.startswith(("x1 and x2 contribute most", "x2 and x1 contribute most"))
+
+
+def test_an_effect_without_a_direction_has_no_size():
+    assert Change(0, "10 %", Estimate(1.0, -1.0, 3.0)).sentence() == "no clear direction"
+    assert Change(1).sentence("rate") == "more rate raises it"
+
+
+def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):
+    ds = linear(samples=400)
+    monkeypatch.setattr(findings, "RANKED", 300)
+    few = answer(ds).lead.ranking
+    alone = answer(findings.first_samples(ds, 300)).lead.ranking
+    assert few.contributions == alone.contributions
+    assert few.what == f"{alone.what}, by the first 300 rows"
+
+
+def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_it():
+    rng = np.random.default_rng(0)
+    ds = linear("saltelli", samples=8, replicates=4)
+    ds = with_output(ds, "wild", rng.standard_cauchy(ds.sizes["sample"]).clip(-50, 50))
+    found = answer(asking(ds, outputs=["wild"]))
+    assert found.lead.ranking.leader is None and found.lead.ranking.rows_factor > 1
+    assert "not settled" in found.lead.ranking.sentence
+    (rows,) = [one for one in found.advice if one.rule == "rows"]
+    said = re.match(r"Compute (?:about|more than) ([\d ]+) rows instead of (\d+): ", rows.text)
+    assert int(said[1].replace(" ", "")) >= rows.rows - 1 > int(said[2])

@@ -1,0 +1,161 @@
+"""Which rows end first, and what distinguishes them."""
+
+import re
+
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output
+
+from uq.analysis.earliest import earliest_rows, ranks
+from uq.analysis.findings import Findings
+from uq.conclusions.answer import answer, conclude
+from uq.conclusions.as_json import answer_json
+from uq.conclusions.page import fragment
+from uq.rows.elements import independent_rows, named_elements
+from uq.rows.row_choice import lowest_row
+
+
+def with_lives(lives, flags=None, **design):
+    """Return a result of the linear model with these lives."""
+    ds = linear(samples=len(lives), **design)
+    return asking(with_output(ds, "life", np.asarray(lives), "lifetime", flags), outputs=["life"])
+
+
+def lived(law, samples=400, design="monte-carlo", **more):
+    """Return a result whose lives are a function of its inputs x1 and x4."""
+    ds = linear(design, samples=samples, **more)
+    lives = law(ds["x1"].values, ds["x4"].values)
+    return asking(with_output(ds, "life", lives, "lifetime"), outputs=["life"])
+
+
+def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
+    ds = lived(lambda x1, x4: 3600 * np.exp(-x4 - 0.3 * x1))
+    found = answer(ds).lead.earliest
+    order = np.argsort(ds["life"].values)[:3]
+    assert found.rows == tuple(ds["sample"].values[order])
+    named = re.findall(r"(\d+) \(([\d.e+]+)", found.first)
+    assert [int(number) for number, _ in named] == list(found.rows)
+    shown = [float(life) * found.unit.per for _, life in named]
+    assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
+    assert found.command == "uq row OUT --lowest life"
+    assert lowest_row(ds, "life").number == found.rows[0]
+
+
+def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():
+    ds = lived(lambda x1, x4: np.exp(-4 * x4 + 2 * x1), samples=1000)
+    found = answer(ds).lead.earliest
+    assert [(one.name, one.direction) for one in found.inputs] == [("x4", 1), ("x1", -1)]
+    first = np.argsort(ds["life"].values)[:50]
+    others = np.setdiff1d(np.arange(1000), first)
+    medians = [
+        np.median(ds[name].values[rows]) for name in ("x4", "x1") for rows in (first, others)
+    ]
+    numbers = re.search(
+        r"The earliest 5 % \(50 rows\) have a higher x4 \(median ([\d.]+) against ([\d.]+) of the"
+        r" others\) and a lower x1 \(median ([\d.]+) against ([\d.]+)\)\.",
+        found.sentence,
+    )
+    assert [float(one) for one in numbers.groups()] == pytest.approx(medians, abs=5e-3)
+    rank = found.inputs[0].rank
+    own = np.argsort(np.argsort(ds["x4"].values))[first] + 0.5
+    assert rank.value == pytest.approx(own.mean() / 1000) and rank.low < rank.value < rank.high
+
+
+def test_values_at_both_ends_have_no_direction():
+    ds = lived(lambda x1, x4: np.exp(-np.abs(x4 - 0.5) + 1e-3 * x1), samples=1000)
+    found = answer(ds).lead.earliest
+    assert found.inputs[0].direction == 0 and found.inputs[0].outwards == 1
+    assert "values of x4 away from the middle of its range" in found.sentence
+    ds = lived(lambda x1, x4: np.exp(np.abs(x4 - 0.5) + 1e-3 * x1), samples=1000)
+    assert "values of x4 near the middle of its range" in answer(ds).lead.earliest.sentence
+
+
+def test_where_no_input_differs_the_answer_says_so():
+    lives = np.random.default_rng(5).uniform(1, 9, 400)
+    found = answer(with_lives(lives)).lead.earliest
+    assert found.sentence == (
+        "No input distinguishes the earliest 5 % (20 rows) measurably from the others."
+    )
+
+
+def test_inputs_without_effect_are_seldom_named():
+    rng, named, inputs = np.random.default_rng(1), 0, linear(samples=400)
+    for _ in range(100):
+        ds = with_output(inputs, "life", rng.uniform(1, 9, 400), "lifetime")
+        found = answer(asking(ds, outputs=["life"], sensitivity=["pawn"])).lead.earliest
+        named += bool(found.inputs)
+    assert named <= 12  # 5 % of the time, all four inputs together
+
+
+def test_a_row_censored_before_may_be_earlier():
+    lives, flags = np.linspace(1, 9, 400), np.zeros(400, dtype=bool)
+    flags[14] = True
+    found = answer(with_lives(lives, flags)).lead.earliest
+    assert found.size == 14
+    flags[2] = True
+    found = answer(with_lives(lives, flags)).lead.earliest
+    assert found.sentence == "" and len(found.rows) == 3
+
+
+def test_where_fewer_than_five_per_cent_end_these_are_the_earliest():
+    lives = np.full(1000, np.inf)
+    lives[::50] = np.linspace(1, 2, 20)
+    found = answer(with_lives(lives)).lead.earliest
+    assert (found.size, found.of) == (20, 1000) and "2 % (20 rows)" in found.sentence
+    nothing = answer(with_lives(np.full(100, np.inf))).lead
+    assert nothing.earliest is None
+
+
+def test_replicates_show_what_differs_and_one_design_alone_does_not():
+    law = lambda x1, x4: np.exp(-4 * x4)  # noqa: E731
+    ds = lived(law, 64, "saltelli", replicates=8)
+    found = answer(ds).lead.earliest
+    assert found.inputs[0].name == "x4"
+    rows = independent_rows(ds)
+    assert found.of == rows.sizes["sample"]
+    assert answer(lived(law, 512, "sobol")).lead.earliest.sentence == ""
+
+
+def test_the_regime_of_the_earliest_rows_is_named():
+    ds = kinds(samples=400)
+    fast = ds["regime"].values == 1
+    rng = np.random.default_rng(3)
+    ds = asking(
+        with_output(ds, "end", np.where(fast, 1.0, 5.0) + rng.uniform(0, 1, 400), "lifetime"),
+        outputs=["end"],
+    )
+    found = answer(ds).lead.earliest
+    assert found.sentence.endswith(
+        f"100 % (83.2 to 100 %) of them are fast, of all rows {100 * fast.mean():.1f} %."
+    )
+
+
+def test_equal_values_share_their_rank():
+    assert ranks(np.array([3.0, 1.0, 1.0, 2.0])).tolist() == [0.875, 0.25, 0.25, 0.625]
+
+
+def test_successes_have_no_earliest_rows():
+    ds = with_lives(np.linspace(1, 9, 400))
+    ds["life"].attrs["success"] = "the lock has closed"
+    assert answer(ds).lead.earliest is None
+
+
+def test_page_terminal_and_json_say_the_same():
+    ds = lived(lambda x1, x4: np.exp(-4 * x4))
+    found = answer(ds)
+    said = found.lead.earliest
+    html = str(fragment(found))
+    assert "What ends first" in html and said.command in html
+    assert said.sentence in repr(found) and said.first in repr(found)
+    plain = answer_json(conclude(Findings(ds)))["quantities"]["life"]["earliest"]
+    assert (
+        plain["lives"] == dict(zip(map(str, said.rows), said.lives, strict=True))
+        and plain["sentence"] == said.sentence
+    )
+    assert plain["inputs"]["x4"]["rank"] == said.inputs[0].rank.value
+
+
+def test_never_more_than_five_per_cent():
+    ds = lived(lambda x1, x4: np.exp(-x4), samples=1001)
+    (element,) = named_elements(ds, "life")
+    assert len(earliest_rows(element)) == 51

@@ -1,0 +1,114 @@
+"""Intervals of populations of laws: few rows, replicates, samples of several rows, outliers."""
+
+import numpy as np
+import pytest
+from computed import computed, summarised, with_seed
+from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
+from scipy import special, stats
+
+from uq.analysis.comparison import compare
+from uq.clusters import Clusters
+from uq.population.means import EXACT, FEW, effective_rows, share_to_compare, weighted_share
+from uq.population.scaling import population
+from uq.two_samples import difference
+
+
+def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice():
+    """Both are skewed to the same side; each alone has a wider interval."""
+    rare = {"analysis": {"outputs": ["life"], "thresholds": {"life": [0.2]}}}
+    first, second = (computed(with_seed(scaled_study(WHOLE, **rare), seed)) for seed in (1, 2))
+    key = ("life", "P(<0.2)")
+    found = compare(first, second).loc[key]
+    numbers = [next(population(ds, ["life"])).below(0.2) for ds in (first, second)]
+    expected = difference(*map(share_to_compare, numbers), 0.0)
+    assert (found["low"], found["high"]) == pytest.approx((expected.low, expected.high))
+    alone = difference(*map(weighted_share, numbers), 0.0)
+    assert found["high"] - found["low"] < 0.95 * (alone.high - alone.low)
+
+
+def test_failed_rows_still_give_bounds():
+    ds = computed(scaled_study(WHOLE, settings={"fail_above": 1.5}))
+    below = summarised(ds)["outputs"]["life"]["thresholds"]["1.0"]["below"]
+    assert below["failed_low"] < below["low"] < below["high"] < below["failed_high"]
+
+
+def test_few_replicates_of_nested_samples_are_not_few_rows():
+    design = {"method": "sobol", "replicates": 4, "units": 2}
+    found = populated(computed(scaled_study(WHOLE, design, samples=32)))[0].below(1.0)
+    assert found.low < 0.5 < found.high and found.high - found.low < 0.2
+
+
+def test_rows_that_all_failed_have_no_worth():
+    ds = computed(scaled_study(WHOLE, samples=10, settings={"fail_above": -99.0}))
+    assert summarised(ds)["outputs"]["life"]["failed"] == 10
+
+
+def test_probabilities_of_one_but_for_rounding_are_not_exact():
+    """Rows that all end show no more than that a longer life is rare."""
+    found = weighted_share(np.full(16, 1 - 2.0**-53))
+    assert found.value == found.high == 1.0 and 0.7 < found.low < 0.85 and not found.reason
+    assert weighted_share(np.full(16, 1e-9)).reason == EXACT
+
+
+def test_replicates_give_the_interval_of_other_designs():
+    design = {"method": "sobol", "replicates": 8}
+    rows, _ = populated(computed(scaled_study(WHOLE, design, samples=64)))
+    found = rows.below(1.0)
+    assert found.low < 0.5 < found.high and found.high - found.low < 0.02
+    alone, _ = populated(computed(scaled_study(WHOLE, {"method": "sobol"}, samples=64)))
+    assert np.isnan(alone.below(1.0).low)
+
+
+def test_rows_that_differ_in_nothing_else_are_exact():
+    rows, _ = populated(computed(scaled_study({"a": lognormal(0.5)})))
+    found = rows.quantile(0.1)
+    assert found.value == pytest.approx(np.exp(0.5 * stats.norm.ppf(0.1)), rel=1e-9)
+    assert found.reason == EXACT
+
+
+def test_a_mean_that_few_rows_carry_is_not_trusted():
+    """Where no row is likely to end, the interval is that of no hit in so many rows."""
+    numbers = np.full(50, 1e-12)
+    numbers[0] = 1e-6
+    assert effective_rows(numbers) < FEW
+    found = weighted_share(numbers)
+    assert found.low < 1e-300 and found.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("probability", "end", "needed"), [(0.05, "lower", 72), (0.99, "upper", 368)]
+)
+def test_a_quantile_with_one_end_says_how_many_rows_give_the_other(probability, end, needed):
+    def of(samples):
+        study = scaled_study({"a": lognormal(0.5), "z": NORMAL}, samples=samples)
+        return populated(computed(study))[0].quantile(probability)
+
+    few = of(30)
+    assert few.reason == f"no {end} end: 30 effective rows, and it needs {needed}"
+    assert np.isnan(few.low) == (end == "lower") and np.isnan(few.high) == (end == "upper")
+    assert of(needed).has_interval and not of(needed).reason
+
+
+def test_samples_of_several_rows_count_once():
+    rng = np.random.default_rng(1)
+    shared = np.repeat(rng.random(60), 20)
+    numbers = np.clip(shared + 0.01 * rng.random(1200), 0, 1)
+    of = Clusters(np.repeat(np.arange(60), 20), 60)
+    wide, narrow = (weighted_share(numbers, part=part) for part in (of, None))
+    assert wide.high - wide.low > 4 * (narrow.high - narrow.low)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("spread", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("rows", [30, 300])
+def test_intervals_hold_the_truth(spread, rows):
+    """Each end misses in at most 5 % of samples, whatever share of the scatter is integrated."""
+    rng = np.random.default_rng(2)
+    for p in (1e-4, 0.01, 0.1, 0.5, 0.99):
+        y = np.hypot(1, spread) * stats.norm.ppf(p)
+        misses = np.zeros(2)
+        for _ in range(400):
+            rest = spread * rng.standard_normal(rows)
+            found = weighted_share(special.ndtr(y - rest))
+            misses += found.low > p, found.high < p
+        assert (misses <= 0.05 * 400 + 8).all(), (p, misses)

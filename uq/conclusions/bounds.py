@@ -1,0 +1,141 @@
+"""Which bounds of an output are promised: joint ones where a study asks for them, else its own."""
+
+from math import inf, isfinite, isnan, nan
+
+import xarray as xr
+
+from uq.analysis.joint_bounds import SIDES
+from uq.analysis.statistics.statistic import Statistic
+from uq.analysis.summary import Described
+from uq.conclusions.promises import Promise
+from uq.conclusions.words import Unit
+from uq.estimate import NOTHING, Estimate
+from uq.rows.elements import Element
+from uq.rows.nesting import is_nested
+from uq.rows.weights import has_weights
+from uq.study.file import AnalysisTable
+from uq.wording import percent
+
+COVERAGE = 0.95
+CONFIDENCE = 0.95
+"""Of a bound where the study does not ask for others."""
+
+MIDDLE = 0.5
+
+
+def promise_of(
+    ds: xr.Dataset,
+    described: Described,
+    element: Element,
+    analysis: AnalysisTable,
+    wanted: str,
+    unit: Unit,
+) -> Promise:
+    """Return what can be promised of an element.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    described : Described
+        With the quantiles and bounds that the answer needs.
+    element : Element
+    analysis : AnalysisTable
+        What the study asks for.
+    wanted : {"", "above", "below"}
+        The good side of a limit.
+    unit : Unit
+
+    Returns
+    -------
+    Promise
+    """
+    coverage, confidence = analysis.tolerance or (COVERAGE, CONFIDENCE)
+    joint = SIDES.get(analysis.joint_bounds.get(element.output, ""), ())
+    sides = _sides(element, described, analysis.thresholds.get(element.output, ()), wanted)
+    if joint:
+        sides = "lower" in joint, "upper" in joint
+    part = "joint_bounds" if joint else "tolerance"
+    both = [described.find(part, name) for name in ("lower", "upper")]
+    bounds = [
+        one.estimate.value if matters and one else nan
+        for one, matters in zip(both, sides, strict=True)
+    ]
+    # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
+    signed = bool(joint) and element.is_angle
+    ends = [
+        quantile_of(described, p) if matters and not signed else NOTHING
+        for p, matters in zip((round(1 - coverage, 12), coverage), sides, strict=True)
+    ]
+    reason = ""
+    if not any(map(isfinite, bounds)):
+        reason = _why_no_bound(ds, element, both, bounds)
+    elif isfinite(wrong := _contradicted(bounds, ends)):
+        reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
+        bounds = [nan, nan]
+    return Promise(
+        coverage,
+        confidence,
+        bounds[0],
+        bounds[1],
+        unit,
+        (ends[0], ends[1]),
+        reason,
+        element.is_lifetime,
+        element.is_angle and not joint,
+        end_of(element),
+        tuple(analysis.joint_bounds) if joint else (),
+    )
+
+
+def quantile_of(described: Described, p: float) -> Estimate:
+    """Return a quantile that was asked for, else nothing."""
+    found = described.find("quantiles", repr(p))
+    return found.best.estimate if found else NOTHING
+
+
+def end_of(element: Element) -> str:
+    """Return what a life does at its end, in words."""
+    return "succeed" if element.declared.success else "end"
+
+
+def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
+    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+
+    By chance few rows give one, where the quantile is better known since lives are integrated.
+    """
+    lower, upper = bounds
+    if lower > ends[0].value:
+        return lower
+    return upper if upper < ends[1].value else nan
+
+
+def _sides(
+    element: Element, described: Described, thresholds: tuple[float, ...], wanted: str
+) -> tuple[bool, bool]:
+    """Return whether a lower and an upper bound are what matters."""
+    if element.is_lifetime:
+        early = bool(element.declared.success)  # the latest time of a success is what matters
+        return not early, early
+    if wanted:
+        return wanted == "above", wanted == "below"
+    middle = quantile_of(described, MIDDLE).value
+    if thresholds and isfinite(middle):
+        return any(t < middle for t in thresholds), any(t >= middle for t in thresholds)
+    return True, True
+
+
+def _why_no_bound(
+    ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
+) -> str:
+    needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    if needed == inf:
+        return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
+    if needed:
+        return f"it needs {needed:.0f} rows"
+    if any(not isnan(one) for one in bounds):
+        return f"too few {end_of(element)}"
+    if has_weights(ds):
+        return "inspections have weighted the rows"
+    if is_nested(ds):
+        return "the rows of one sample are not independent"
+    return f"the rows of a '{ds.attrs['design']}' design are not independent"

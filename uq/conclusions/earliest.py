@@ -1,0 +1,161 @@
+"""Which rows end first, and what distinguishes them."""
+
+import shlex
+from dataclasses import dataclass, replace
+
+import xarray as xr
+
+from uq.analysis.earliest import (
+    FEWEST,
+    Apart,
+    RegimeApart,
+    earliest_rows,
+    inputs_apart,
+    regimes_apart,
+)
+from uq.analysis.findings import Findings
+from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
+from uq.errors import InputError
+from uq.intervals import Replicates
+from uq.rows.elements import Element
+from uq.rows.row_choice import lowest_rows
+from uq.wording import grouped, percent
+
+_MOST_ROWS = 3
+_MOST_INPUTS = 3
+
+
+@dataclass(frozen=True)
+class Earliest:
+    """The rows that end first, and what distinguishes them from the others.
+
+    Attributes
+    ----------
+    element : str
+    rows : tuple of int
+        The numbers of the first, of all rows of the result.
+    lives : tuple of float
+        Theirs.
+    size, of : int
+        How many rows count as the earliest, and of how many.
+    inputs : tuple of Apart, or None
+        Those whose values differ, the most different first; None where that cannot be known.
+    units : tuple of Unit
+        Theirs.
+    regimes : tuple of RegimeApart
+        Those that the earliest are in more often than all.
+    unit : Unit
+        Of the lives.
+    """
+
+    element: str
+    rows: tuple[int, ...]
+    lives: tuple[float, ...]
+    unit: Unit
+    size: int = 0
+    of: int = 0
+    inputs: tuple[Apart, ...] | None = None
+    units: tuple[Unit, ...] = ()
+    regimes: tuple[RegimeApart, ...] = ()
+
+    @property
+    def first(self) -> str:
+        """The rows that end first."""
+        named = [
+            f"{number} ({self.unit.text(life)})"
+            for number, life in zip(self.rows, self.lives, strict=True)
+        ]
+        rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
+        return sentence(f"{rows} {_and(named)} {verb} first")
+
+    @property
+    def command(self) -> str:
+        """What shows the first of them."""
+        return f"uq row OUT --lowest {shlex.quote(self.element)}"
+
+    @property
+    def why(self) -> str:
+        """What distinguishes the earliest rows; "" where that cannot be known."""
+        if self.inputs is None:
+            return ""
+        share = f"{100 * self.size / self.of:.2g} %"
+        who = f"the earliest {share} ({grouped(self.size)} rows)"
+        if not self.inputs:
+            return f"No input distinguishes {who} measurably from the others."
+        pairs = list(zip(self.inputs, self.units, strict=True))[:_MOST_INPUTS]
+        text = f"{who} have {_and([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
+        return sentence(text)
+
+    @property
+    def where(self) -> str:
+        """The regime that is most frequent among the earliest, if it is less so among all."""
+        if not self.regimes:
+            return ""
+        one = self.regimes[0]
+        return (
+            f"{share_text(one.share)} of them are {one.label}, of all rows {percent(one.overall)}."
+        )
+
+    @property
+    def sentence(self) -> str:
+        """What distinguishes the earliest rows, and their regime."""
+        return " ".join(filter(None, (self.why, self.where)))
+
+    @property
+    def lines(self) -> list[str]:
+        """All of it."""
+        return [*filter(None, (self.sentence, f"{self.first} To see the first: {self.command}"))]
+
+
+def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates) -> Earliest | None:
+    """Return which rows end first, and what distinguishes them; None where no row ends.
+
+    Parameters
+    ----------
+    findings : Findings
+    element : Element
+        A life, in the independent rows.
+    unit : Unit
+        Of its lives.
+    part : ndarray of int, shape (n,), or None
+        The replicate of each independent row.
+    """
+    try:
+        chosen = lowest_rows(findings.ds, element.name, _MOST_ROWS)
+    except InputError:
+        return None
+    rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
+    if not rows:
+        return None
+    found = Earliest(element.name, rows, lives, unit)
+    places = earliest_rows(element)
+    if len(places) < FEWEST:
+        return found
+    inputs = inputs_apart(findings.rows, places, findings.input_ranks, part)
+    return replace(
+        found,
+        size=len(places),
+        of=int(element.present.sum()),
+        inputs=None if inputs is None else tuple(inputs),
+        units=tuple(_unit_of(findings.ds, one) for one in inputs or ()),
+        regimes=tuple(regimes_apart(findings.rows, places, part)),
+    )
+
+
+def _unit_of(ds: xr.Dataset, one: Apart) -> Unit:
+    return unit_for(str(ds[one.name].attrs["units"]), abs(one.others))
+
+
+def _in_words(one: Apart, unit: Unit, is_first: bool) -> str:
+    name = called(one.name)
+    if one.direction == 0:
+        place = "away from" if one.outwards > 0 else "near"
+        return f"values of {name} {place} the middle of its range"
+    side = "higher" if one.direction > 0 else "lower"
+    of_others = " of the others" if is_first else ""
+    against = f"{unit.number(one.median)} against {unit.text(one.others)}"
+    return f"a {side} {name} (median {against}{of_others})"
+
+
+def _and(words: list[str]) -> str:
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
