@@ -54,7 +54,7 @@ FIGURES: dict[str, Entry] = {
     "scatter": Entry(
         scatter,
         of.outputs,
-        "{name} against its most influential inputs",
+        "{name} against the inputs with which it varies most",
         applies=(of.has_plain_rows,),
     ),
     "convergence": Entry(

@@ -20,6 +20,14 @@ MISTAKES = {
     "import uq\n@uq.machine\ndef wear(load=1.0): 1 / 0\n": "raised ZeroDivisionError",
     "import os, uq\n@uq.machine\ndef wear(load=1.0): os._exit(3)\n": "killed its process",
     "import uq\n@uq.machine(returns={'y': 3})\ndef wear(load=1.0): ...\n": "must be a unit or",
+    "import uq\n@uq.machine(returns=['y'])\ndef wear(load=1.0): ...\n": "must be a dict of outputs",
+    "import uq\n@uq.machine(returns={'y': uq.Returned(shape=3)})\ndef wear(load=1.0): ...\n": (
+        "shape of 'y' must be a tuple of numbers above 0, not 3"
+    ),
+    "import uq\n@uq.machine(returns={'y': uq.Returned(3)})\ndef wear(load=1.0): ...\n": (
+        "unit and meaning of 'y' must be text"
+    ),
+    "import uq\n@uq.machine\ndef wear(load=1.0): input('how? ')\n": "raised EOFError",
     "import uq\n@uq.machine(returns={})\ndef wear(load=1.0): ...\n": "name at least one output",
     "import uq\nuq.machine(\n": "SyntaxError",
     "import uq\n@uq.machine\ndef wear(load=1.0, /): ...\n": "only named floats can be parameters",

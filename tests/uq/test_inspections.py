@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 from uq.errors import InputError
 from uq.learning import ledger
@@ -78,8 +79,14 @@ def test_columns_in_any_order_and_names_with_commas():
         "A,,life,survived,,,,,": "time is missing: a life has survived by a time [s]",
         "A,1,life,ended,3,,,,": "value = 3: leave it out where a unit has ended",
         "A,-1,life,ended,,,,,": "time = -1: must not be negative",
-        "A,soon,life,ended,,,,,": "time = soon: must be a finite number",
-        "A,inf,life,ended,,,,,": "time = inf: must be a finite number",
+        "A,soon,life,ended,,,,,": (
+            "time = soon: must be a finite number of seconds since the unit's life began"
+        ),
+        "A,2026-03-01,life,ended,,,,,": (
+            "time = 2026-03-01: must be a finite number of seconds since the unit's life began"
+        ),
+        "A,1,depth,below,80 um,,,,": "value = 80 um: must be a finite number",
+        "A\x07,1,life,ended,,,,,": "unit = 'A\\x07': must consist of printable characters",
         ",1,life,ended,,,,,": "unit is missing",
     }.items(),
 )
@@ -101,10 +108,14 @@ def test_every_mistake_is_named_at_once():
 @pytest.mark.parametrize(
     ("head", "said"),
     [
-        ("unit,output,kind,valeu\n", "found.csv: no such column 'valeu'; did you mean 'value'?"),
-        ("unit,output\n", "found.csv: has no column 'kind'"),
-        ("unit,unit,output,kind\n", "found.csv: has several columns 'unit'"),
-        ("unit;output;kind\n", "found.csv: separate cells by commas"),
+        (
+            "unit,output,kind,valeu\n",
+            "found.csv, line 1: no such column 'valeu'; did you mean 'value'?",
+        ),
+        ("unit,output\n", "found.csv, line 1: has no column 'kind'"),
+        ("unit,unit,output,kind\n", "found.csv, line 1: has several columns 'unit'"),
+        ("unit,output,kind,\n", "found.csv, line 1: has a column without a name"),
+        ("unit;output;kind\n", "found.csv, line 1: separate cells by commas"),
     ],
 )
 def test_columns_that_do_not_fit(head, said):
@@ -118,8 +129,10 @@ def test_files_that_are_none():
         read_inspections(Path("nothing.csv"))
     with pytest.raises(InputError, match=r"found.csv: has no inspection below its first line"):
         read()
-    with pytest.raises(InputError, match=r"line 2: has 3 cells, the first line 9; write numbers"):
+    with pytest.raises(InputError, match=r"line 2: 3 of 9 cells; separate cells by commas"):
         read("A,1,life")
+    with pytest.raises(InputError, match=r"found.csv, line 2: not CSV: unexpected end of data"):
+        read('"A,1,life')
     FILE.write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match=r"found.csv: not CSV in UTF-8"):
         read_inspections(FILE)
@@ -133,10 +146,27 @@ def test_tables_of_a_toml_file():
     FILE.with_suffix(".toml").write_text('[[inspection]]\nunit = "A"\nkind = "lived"\n')
     with pytest.raises(InputError) as refused:
         ledger.read("found.toml")
-    assert refused.value.lines[0].startswith("found.toml: [[inspection]] 1: output is missing")
+    assert refused.value.lines[0] == "found.toml, line 1: output is missing"
+    FILE.with_suffix(".toml").write_text('inspection = [{unit = "A", output = "life"}]')
+    with pytest.raises(InputError, match="^found.toml: inspection 1: kind is missing"):
+        ledger.read("found.toml")
     for text, why in (("x = 1", "must consist of tables"), ("x = ", "not TOML")):
         FILE.with_suffix(".toml").write_text(text)
         with pytest.raises(InputError, match=f"^found.toml: {why}"):
             ledger.read("found.toml")
     with pytest.raises(InputError, match="^lost.toml: cannot be read"):
         ledger.read("lost.toml")
+
+
+def test_each_measurement_counts_once_and_none_contradicts_another():
+    read("A,2,life,survived,,,,,", "A,2,life,survived,,,,,", "A,1,life,ended,,,,,")
+    with pytest.raises(InputError) as refused:
+        ledger.all_of(xr.Dataset(), ledger.read(FILE))
+    again, *contradictions = refused.value.lines
+    assert again == (
+        "found.csv, line 3 (unit A, life, survived): already used by found.csv, line 2; a"
+        " measurement counts once"
+    )
+    assert contradictions[0] == (
+        "found.csv, line 2 (unit A, life): survived until 2, but had ended by 1 (found.csv, line 4)"
+    )

@@ -41,7 +41,7 @@ def test_it_finds_the_worse_bearing():
             }
             for output, sd in ERRORS.items()
         ]
-        found = posterior(rows, read_tables(seen, "test"))
+        found = posterior(rows, read_tables(seen))
         if distrust(found):
             continue
         weights = found.units["A"].weights.weights

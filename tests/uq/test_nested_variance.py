@@ -153,3 +153,10 @@ def test_values_that_agree_have_no_shares():
     same = nested_shares(np.tile(np.random.default_rng(0).random((20, 1, 1)), (1, 3, 1)))
     assert same.middle.value == 0.0 and not same.middle.has_interval
     assert same.middle.reason == "no two samples show different shares"
+
+
+def test_where_nothing_is_shared_a_sample_without_some_of_its_rows_is_not_left_out():
+    table = effects((0.0, 1.0, 0.0), (20, 3, 1))
+    table[4, 1] = table[7] = np.nan
+    found = shares_of(table, {OWN})
+    assert found.left_out == 1 and found.shares[OWN].numbers == ALL

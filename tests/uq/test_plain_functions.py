@@ -88,6 +88,14 @@ def test_a_row_that_leaves_the_program_or_its_folder_costs_that_row_only(
     assert (ds["y"].values[~heavy] == 1).all()
 
 
+def test_what_a_file_prints_is_no_part_of_an_answer(uq, write_function):
+    file = write_function(
+        "import numpy as np, uq\nprint('noise')\n@uq.machine(returns={'y': '1'})\n"
+        "def wear(load=np.float32(1.5)): return {'y': load}\n"
+    )
+    assert json.loads(uq("simulate", file, "--json").out)["outputs"] == {"y": 1.5}
+
+
 def test_an_interrupt_raised_by_a_row_is_its_status(write_function, capfd):
     file = write_function(
         "import sys, warnings, uq\n@uq.machine\ndef wear(load: float = 1.0):\n"

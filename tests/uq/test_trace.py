@@ -96,6 +96,7 @@ def test_options_are_part_of_a_key():
     check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
     check(crossed(), "inputs", every=5)
+    check(update(wear(400), measured(5e5)), "update", {"by": "600000.0"}, every=11)
 
 
 def keys_in(text):

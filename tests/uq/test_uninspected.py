@@ -95,13 +95,13 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     share = by_level(ds).outputs["log(life)"].shares["shared"]
     truth = spread**2 / (spread**2 + own**2)
     assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + own**2)
-    with pytest.raises(InputError, match="not of unit 'A' alone"):
+    with pytest.raises(InputError, match="no fleets: these rows stand for unit 'A'"):
         fleet_of(as_unit(ds, "A"), 3)
 
 
 @pytest.mark.parametrize(
     ("units", "why"),
-    [(2, "set .design. units = 3 or more"), (4, "each unit of a sample by itself")],
+    [(2, "set .design. units = 3 or more"), (4, "each unit of a sample separately")],
 )
 @pytest.mark.parametrize("question", [lambda ds: fleet_of(ds, 2), by_level])
 def test_units_that_are_weighted_one_by_one_have_no_fleet(units, why, question):

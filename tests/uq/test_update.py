@@ -54,6 +54,16 @@ def test_one_unit_agrees_with_the_closed_form(result):
         assert_close(found[name]["posterior"], mean[i], cov[i, i] ** 0.5)
 
 
+def test_moments_that_rest_on_a_few_rows_are_refused(three_units):
+    """Pareto k of weight times value, not of the weights alone."""
+    ds = update(three_units, measured(6e5))
+    heavy = (ds["rate"] / 2.5e-10) ** 20
+    found = inputs_of(ds.assign(rate=heavy.assign_attrs(ds["rate"].attrs)))["rate"]["posterior"]
+    assert found["mean"] is None and found["sd"] is None and found["quantiles"]["0.5"] > 0
+    assert found["mean_reason"].startswith("Pareto k = ")
+    assert "mean_reason" not in inputs_of(ds)["rate"]["posterior"]
+
+
 def test_what_is_shared_is_learnt_from_all_units(three_units):
     lives = [6e5, 1e6, 1.2e6]
     found = inputs_of(update(three_units, measured(*lives)))
@@ -100,7 +110,7 @@ def test_a_measurement_counts_once(result):
     once = update(result, measured(5e5))
     with pytest.raises(InputError, match=r"^inspection 1 \(unit A, life, measured\): already used"):
         update(once, measured(5e5))
-    with pytest.raises(InputError, match="in these inspections; a measurement counts once"):
+    with pytest.raises(InputError, match="already used by inspection 1; a measurement counts once"):
         update(result, measured(5e5) * 2)
 
 

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from computed import asking
 from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
@@ -103,7 +104,15 @@ def test_a_weight_of_zero_is_no_sample():
         assert one.numbers == pytest.approx(other.numbers)
 
 
+def test_an_event_that_the_inspections_make_rare_has_no_shares(posterior):
+    """Rows have hits, but hardly any weight."""
+    early = asking(posterior, outputs=["life"], thresholds={"life": [2e5]})
+    hits = (posterior["life"].values < 2e5).sum()
+    shares = by_level(early).outputs["P(life<200000.0)"].shares
+    assert hits > 10 and "hits of equal weight, and 5 are needed" in shares["shared"].reason
+
+
 @pytest.mark.parametrize("question", [lambda ds: fleet_of(ds, 1), by_level])
 def test_an_inspected_unit_is_no_fleet(posterior, question):
-    with pytest.raises(InputError, match="not of unit 'A' alone; ask it of the whole posterior"):
+    with pytest.raises(InputError, match="these rows stand for unit 'A'; use the whole posterior"):
         question(as_unit(posterior, "A"))

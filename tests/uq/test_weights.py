@@ -4,10 +4,12 @@ import re
 
 import numpy as np
 import pytest
+from learnt_studies import wear
 from scipy import special
 
 from uq.population.means import weighted_moments, weighted_share
-from uq.population.smoothing import smoothed, tail_shape
+from uq.population.smoothing import per_sample, smoothed, tail_shape
+from uq.rows.elements import replicates_of
 
 
 def test_listed_values_are_no_tail():
@@ -15,6 +17,17 @@ def test_listed_values_are_no_tail():
     few = np.repeat([1e-3, 0.01, 0.02, 0.05, 0.4, 1.0], 150) * (1 + 1e-13 * np.arange(900))
     assert tail_shape(few) == -np.inf
     assert tail_shape(np.append(few, [2.0, 3.0, 8.0])) > 0.7
+
+
+def test_samples_of_several_rows_are_smoothed_as_one():
+    """Rows of a sample keep their proportions, and the shape stays that which was judged."""
+    ds = wear(samples=1000, units=3)
+    rng, part = np.random.default_rng(1), replicates_of(ds)
+    logs = 1.2 * rng.standard_normal((1000, 1)) + 2 * rng.standard_normal((1000, 3))
+    found = smoothed(logs.ravel(), part)
+    changed = (np.log(found.weights) - logs.ravel()).reshape(1000, 3)
+    assert np.abs(np.ptp(changed, axis=1)).max() < 1e-9 and np.ptp(changed[:, 0]) > 0
+    assert tail_shape(per_sample(found.weights, part)) == pytest.approx(found.k, abs=0.1)
 
 
 def test_a_tail_that_begins_amid_equal_weights_is_bounded_where_they_are():

@@ -106,6 +106,7 @@ def shares_of(
     )
     replicate, weights = (None if one is None else one[:, 0, 0] for one in of_each)
     errors = None if errors is None else _reduced(errors, names)
+    empty = int(np.isnan(table).all(axis=(1, 2)).sum())
     table = _reduced(table, names)
     added = np.zeros((3, *table.shape))
     for place, levels in enumerate(places):
@@ -117,7 +118,8 @@ def shares_of(
         shares = dict.fromkeys(LEVELS, NONE)
         for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
             shares |= _of_levels(levels, share, design)
-    return LevelShares(shares | {SOLVER: found.error}, found.variance, found.left_out)
+    left_out = found.left_out if SHARED in names else empty
+    return LevelShares(shares | {SOLVER: found.error}, found.variance, left_out)
 
 
 def _reduced(table: Any, names: Collection[str]) -> Any:

@@ -78,6 +78,11 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
         if not unit or len(of_unit) <= MOST_UNITS:
             heading(f"\nInputs of unit {unit}" if unit else "\nInputs that units share")
             grid(_inputs(inputs), header=("", "before", "sd", "after", "error", "sd", ""))
+            for one in inputs:
+                after = one.posterior
+                for what, of in (("mean", after.mean), ("sd", after.sd)):
+                    if of.reason:
+                        note(f"{one.name}: no {what} after: {of.reason}.")
     if found.confounded:
         heading("\nConfounded by the inspections", "rank correlation")
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])

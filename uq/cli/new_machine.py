@@ -82,7 +82,7 @@ thresholds = { life = "150 days" }
     uq simulate $name.py                       # one row, at the nominal values
     uq run $name.toml --model $name.py         # 1,000 rows, and the answer
     uq report results/$name.nc --open          # figures and tables
-    python -m pytest                           # the machine's own tests
+    python -m pytest                           # the machine's own tests, with pytest installed
 
 `$name.py` is the machine: replace its arguments and what it returns by yours. `$name.toml` is the
 study: which arguments are uncertain, and how many rows.

@@ -109,9 +109,11 @@ def enlarged(
     all that is read from the rows. Each begins with its part of the rows (`repetitions_of`) and
     draws its part of each round from a mixture of Student laws around its own rows so far, weighted
     with as much of the likelihood as they bear. A row of any round counts by the density of the
-    laws over that of the mixture of all that its repetition has drawn [1]_. The likelihood may
-    jump. An integrated input keeps its law. Of several units, the mixture is that around the rows
-    of each.
+    laws over that of the mixture of all that its repetition has drawn [1]_. Once these rows
+    represent what the inspections leave, they are dropped: further rounds come from a last mixture
+    around them, and count by the density over that of this mixture and the laws. The likelihood
+    may jump. An integrated input keeps its law. Of several units, the mixture is that around the
+    rows of each.
 
     References
     ----------
@@ -125,39 +127,92 @@ def enlarged(
     each = -(-max(n // _SHARE, _FEWEST) // step) * step
     if budget.rows < each:
         raise InputError(f"rows = {budget.rows}: a round of new rows takes {each}")
-    name = _digest(own, inspections, model_cv)
     scores = special.ndtri(unit_block(study, 0, n))
-    repetitions = [Repetition(scores[of == r], each // count) for r in range(count)]
-    rows, rounds, kept = own, list[xr.Dataset](), list[Path]()
-    why = distrust(found)
-    while why or min(one.effective for one in found.weights) < ENOUGH:
-        if (len(rounds) + 1) * each > budget.rows:
-            if not why:
-                break
-            raise RunError(f"after {len(rounds) * each} new rows: {why}")
-        likelihoods, columns = _log_likelihoods(found), _columns(study, found)
-        new = [
-            one.drawn([log[of == r] for log in likelihoods], columns, _rng(study, len(rounds), r))
+    rounds = _Rounds(study, own, inspections, model_cv, budget, each)
+    seeking = [Repetition(scores[of == r], each // count) for r in range(count)]
+    settled = rounds.settled(seeking, *rounds.until_enough(seeking, own, found))
+    return Enlarged(*rounds.until_enough(settled, own, found), rounds.kept)
+
+
+class _Rounds:
+    """Rounds of new rows of a study, within a budget."""
+
+    def __init__(
+        self,
+        study: Study,
+        own: xr.Dataset,
+        inspections: Sequence[Inspection],
+        model_cv: float,
+        budget: Budget,
+        each: int,
+    ):
+        self._study, self._own, self._budget, self._each = study, own, budget, each
+        self._inspections, self._cv = inspections, model_cv
+        self._name = _digest(own, inspections, model_cv)
+        self._number = 0
+        self.kept: list[Path] = []
+
+    def until_enough(
+        self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
+    ) -> tuple[xr.Dataset, Posterior]:
+        """Add rounds to the rows of the study until they represent what the inspections leave."""
+        rounds, of, why = list[xr.Dataset](), repetitions_of(rows), distrust(found)
+        while why or min(one.effective for one in found.weights) < ENOUGH:
+            if (self._number + 1) * self._each > self._budget.rows:
+                if not why:
+                    break
+                raise RunError(f"after {self._number * self._each} new rows: {_short(rounds, why)}")
+            rounds.append(self._computed(self._drawn(repetitions, found, of)))
+            count = len(repetitions)
+            of = np.append(of, np.repeat(np.arange(count, dtype=of.dtype), self._each // count))
+            log_importance = np.empty(len(of))
+            for r, one in enumerate(repetitions):
+                log_importance[of == r] = one.log_importance
+            rows = with_rounds(self._own, rounds, log_importance, of)
+            found = posterior(rows, self._inspections, self._cv)
+            if censored := censoring(found):
+                raise RunError(censored)
+            why = distrust(found)
+        return rows, found
+
+    def settled(
+        self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
+    ) -> list[Repetition]:
+        """Return repetitions that draw around the rows of these, and drop them."""
+        of, likelihoods = rows["replicate"].values, _log_likelihoods(found)
+        each = [[log[of == r] for log in likelihoods] for r in range(len(repetitions))]
+        return Repetition.settled(
+            repetitions, each, _columns(self._study, found), self._rng(len(repetitions))
+        )
+
+    def _drawn(
+        self, repetitions: Sequence[Repetition], found: Posterior, of: NDArray[np.integer]
+    ) -> list[Floats]:
+        """Return the part of a round that each repetition draws."""
+        likelihoods, columns = _log_likelihoods(found), _columns(self._study, found)
+        return [
+            one.drawn([log[of == r] for log in likelihoods], columns, self._rng(r))
             for r, one in enumerate(repetitions)
         ]
-        number = len(rounds) + 1
-        path = budget.output and budget.output.with_name(
-            f"{budget.output.stem}-{name}-round-{number}.nc"
+
+    def _rng(self, part: int) -> np.random.Generator:
+        return np.random.default_rng((self._study.design.seed, _SEED, self._number, part))
+
+    def _computed(self, scores: Sequence[Floats]) -> xr.Dataset:
+        """Return the next round, kept beside the result until that is complete."""
+        self._number += 1
+        number, output = self._number, self._budget.output
+        path = output and output.with_name(f"{output.stem}-{self._name}-round-{number}.nc")
+        seed = np.random.SeedSequence((self._study.design.seed, _SEED, number)).generate_state(1)
+        given = with_given_rows(
+            self._study, np.concatenate(scores), f"round {number}", int(seed[0])
         )
-        seed = int(np.random.SeedSequence((study.design.seed, _SEED, number)).generate_state(1)[0])
-        given = with_given_rows(study, np.concatenate(new), f"round {number}", seed)
-        rounds.append(computed(given, path, budget.options))
-        kept += [path] if path else []
-        of = np.append(of, np.repeat(np.arange(count, dtype=of.dtype), each // count))
-        log_importance = np.empty(len(of))
-        for r, one in enumerate(repetitions):
-            log_importance[of == r] = one.log_importance
-        rows = with_rounds(own, rounds, log_importance, of)
-        found = posterior(rows, inspections, model_cv)
-        if censored := censoring(found):
-            raise RunError(censored)
-        why = distrust(found)
-    return Enlarged(rows, found, kept)
+        self.kept += [path] if path else []
+        return computed(given, path, self._budget.options)
+
+
+def _short(rounds: Sequence[xr.Dataset], why: str) -> str:
+    return why if rounds else "all were needed to find where to draw; allow more"
 
 
 def why_no_new_rows(own: xr.Dataset, found: Posterior) -> str:
@@ -212,10 +267,6 @@ def _log_likelihoods(found: Posterior) -> list[Floats]:
         known = np.isfinite(log_before)
         likelihoods.append(np.where(known, counted - np.where(known, log_before, 0.0), -np.inf))
     return likelihoods
-
-
-def _rng(study: Study, number: int, repetition: int) -> np.random.Generator:
-    return np.random.default_rng((study.design.seed, _SEED, number, repetition))
 
 
 def _digest(own: xr.Dataset, inspections: Sequence[Inspection], model_cv: float) -> str:

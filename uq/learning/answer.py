@@ -111,9 +111,9 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
     -------
     dict
         ``effective_rows``, ``pareto_k``; ``inputs``: name -> ``prior`` and ``posterior``, each with
-        ``mean``, ``sd`` (of the posterior with intervals, ``mean_low``, ...) and ``quantiles``; of
-        a unit as ``NAME[unit=LABEL]``; ``confounded``: pairs with their rank correlation;
-        ``taught``: of each inspection the ``bits`` that it adds
+        ``mean``, ``sd`` (of the posterior with intervals, ``mean_low``, ..., and ``mean_reason``
+        where it is missing) and ``quantiles``; of a unit as ``NAME[unit=LABEL]``; ``confounded``:
+        pairs with their rank correlation; ``taught``: of each inspection the ``bits`` that it adds
         to all others; ``strangeness``: the probability, before them, of inspections at least as
         strange; ``notes``; ``units``: label -> life -> ``seen`` (when it was last
         seen running), ``runs``, ``remaining`` (quantiles from then on), ``by`` (probability to have
@@ -153,6 +153,7 @@ def _spread(one: Spread) -> dict[str, Any]:
     for name, of in (("mean", one.mean), ("sd", one.sd)):
         found[name] = json_form.number(of.value)
         found |= {f"{name}_{end}": value for end, value in json_form.ends(of).items()}
+        found |= {f"{name}_reason": of.reason} if of.reason else {}
     return found | {"quantiles": quantiles}
 
 

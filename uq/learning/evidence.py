@@ -6,7 +6,7 @@ the means of their likelihoods estimates the evidence of a world without bias.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +25,12 @@ FINEST = 1e-9
 """Share of the posterior that the grid of the integrated input may leave out on each side."""
 
 _NODES = 64
+_MOST_NODES = 512
+_FINE = 8.0
+"""Nodes that share the law of the integrated input in a row, at least."""
+
 _FAR = 7.5
-_PASSES = 6
+_PASSES = 8
 
 
 class Grid(NamedTuple):
@@ -71,12 +75,15 @@ class Evidence:
         Logarithm of the probability of all inspections.
     grids : tuple of Grid
         Of each inspected unit.
+    nodes : float
+        How many values share the law of an integrated input in a row, in the unit of the fewest.
     """
 
     log_worlds: Floats
     rest: tuple[Floats, ...]
     log_evidence: float
     grids: tuple[Grid, ...]
+    nodes: float = np.inf
 
 
 def weigh(
@@ -104,7 +111,8 @@ def weigh(
     -------
     Evidence
     """
-    grids = [_grid(0.0, 1.0, quantiles)] * len(likelihoods)
+    grids = [_grid(0.0, 1.0, quantiles, _NODES)] * len(likelihoods)
+    nodes = _NODES
     for _ in range(_PASSES):
         units, found = weigh_on(grids, likelihoods, world_of, worlds, own)
         if quantiles is None or not np.isfinite(found.log_evidence):
@@ -113,8 +121,10 @@ def weigh(
         if not own:
             narrower = narrower[:1] * len(grids)
         if not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
-            break
-        grids = [_grid(low, high, quantiles) for low, high in narrower]
+            if nodes == _MOST_NODES or found.nodes >= _FINE:
+                break
+            nodes *= 2
+        grids = [_grid(low, high, quantiles, nodes) for low, high in narrower]
     return found
 
 
@@ -126,19 +136,28 @@ def weigh_on(
     own: bool,
 ) -> tuple[list[Floats], Evidence]:
     """Return the mean likelihoods of units on given grids, and what they say; see `weigh`."""
-    units = [
-        _mean_likelihood(one(grid.values), world, worlds)
-        for one, world, grid in zip(likelihoods, world_of, grids, strict=True)
-    ]
-    return units, (_own if own else _shared)(units, grids, worlds)
+    units, nodes = [], []
+    for one, world, grid in zip(likelihoods, world_of, grids, strict=True):
+        mean, of_world = _mean_likelihood(one(grid.values), world, worlds, grid.log_share)
+        units.append(mean)
+        nodes.append(of_world)
+    found = (_own if own else _shared)(units, grids, worlds)
+    if not np.isfinite(found.log_evidence):
+        return units, found
+    worth = np.exp(found.log_worlds)
+    share = worth.sum(axis=1)
+    if not own:
+        nodes.append(share**2 / np.maximum((worth**2).sum(axis=1), 1e-300))
+    fewest = [float(np.average(one[share > 0], weights=share[share > 0])) for one in nodes]
+    return units, replace(found, nodes=min(fewest))
 
 
-def _grid(low: float, high: float, quantiles: Quantiles | None) -> Grid:
+def _grid(low: float, high: float, quantiles: Quantiles | None, nodes: int) -> Grid:
     if quantiles is None:
         return Grid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
     first, last = _scores(low, high)
-    scores = np.linspace(first, last, _NODES + 1)[1:-1]
-    return _joined([np.linspace(low, high, _NODES + 1), special.ndtr(scores)], quantiles)
+    scores = np.linspace(first, last, nodes + 1)[1:-1]
+    return _joined([np.linspace(low, high, nodes + 1), special.ndtr(scores)], quantiles)
 
 
 def _scores(low: float, high: float) -> Floats:
@@ -224,16 +243,31 @@ def _is_much(ends: tuple[float, float], grid: Grid) -> bool:
     return middle or bool(np.ptp(_scores(*ends)) <= 0.5 * np.ptp(_scores(grid.low, grid.high)))
 
 
-def _mean_likelihood(log_likelihood: Floats, world: NDArray[np.intp], worlds: int) -> Floats:
-    """Return the logarithm of the mean over the rows of each world, shape (worlds, g)."""
+def _mean_likelihood(
+    log_likelihood: Floats, world: NDArray[np.intp], worlds: int, log_share: Floats
+) -> tuple[Floats, Floats]:
+    """Return the logarithm of the mean over the rows of each world, shape (worlds, g).
+
+    With it how many nodes share the law of the integrated input in a row of each, shape (worlds,).
+    """
     order = np.argsort(world, kind="stable")
     there, first = np.unique(world[order], return_index=True)
     sorted_rows = log_likelihood[order]
     top = np.maximum.reduceat(sorted_rows, first, axis=0)
     level = np.where(np.isfinite(top), top, 0.0)
     count = np.diff(np.append(first, len(world)))
-    sums = np.add.reduceat(np.exp(sorted_rows - np.repeat(level, count, axis=0)), first, axis=0)
-    found = np.full((worlds, log_likelihood.shape[1]), -np.inf)
+    numbers = np.exp(sorted_rows - np.repeat(level, count, axis=0))
+    sums = np.add.reduceat(numbers, first, axis=0)
+    found, nodes = np.full((worlds, log_likelihood.shape[1]), -np.inf), np.ones(worlds)
     with np.errstate(divide="ignore"):
         found[there] = np.log(sums / count[:, None]) + level
-    return found
+    joint = top + log_share
+    highest = joint.max(axis=1, keepdims=True)
+    worth = np.exp(joint - np.where(np.isfinite(highest), highest, 0.0))
+    numbers *= np.repeat(worth, count, axis=0)
+    total, squares = numbers.sum(axis=1), np.einsum("ij,ij->i", numbers, numbers)
+    of_rows = total**3 / np.maximum(squares, 1e-300)
+    nodes[there] = np.add.reduceat(of_rows, first) / np.maximum(
+        np.add.reduceat(total, first), 1e-300
+    )
+    return found, nodes

@@ -12,7 +12,7 @@ from uq.designs.levels import SHARED
 from uq.estimate import Estimate
 from uq.learning.importance import importance_of
 from uq.learning.result import as_unit, prior_of
-from uq.population.means import moments_of_rows
+from uq.population.means import moments_of_rows, trusted
 from uq.rows.elements import analysis_of, replicates_of
 from uq.rows.nesting import levels_of
 from uq.rows.weights import WEIGHT
@@ -22,6 +22,8 @@ QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 CONFOUNDED = 0.3
 """Correlation of ranks, in magnitude, from which a pair is reported."""
 
+_FEW_ROWS = "it rests on a few rows, and more hardly help; read the quantiles"
+
 
 @dataclass(frozen=True)
 class Spread:
@@ -30,7 +32,8 @@ class Spread:
     Attributes
     ----------
     mean, sd : Estimate
-        Of the posterior with intervals, which say how well the rows determine them.
+        Of the posterior with intervals, which say how well the rows determine them; missing, with
+        the reason, where Pareto k of weight times value, or times its square, is too large.
     quantiles : dict of float to float
     """
 
@@ -159,8 +162,11 @@ def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread
 
 def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
     values, weights = ds[name].values, ds[WEIGHT].values
-    moments = moments_of_rows(values, weights, replicates_of(ds))
-    return Spread(*moments, quantiles(values, weights, asked))
+    part = replicates_of(ds)
+    mean, sd = moments_of_rows(values, weights, part)
+    mean = trusted(mean, weights * values, part, hopeless=_FEW_ROWS)
+    sd = trusted(sd, weights * values**2, part, hopeless=_FEW_ROWS)
+    return Spread(mean, sd, quantiles(values, weights, asked))
 
 
 def quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:

@@ -2,7 +2,7 @@
 
 import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from math import isfinite
 from pathlib import Path
@@ -49,6 +49,8 @@ class Inspection:
         Coefficient of variation of a lognormal error, whose median is 1.
     detection_50, detection_90 : float or None
         What is detected with these probabilities; in between, and beyond, by a lognormal curve.
+    where : str
+        Where it is written, for messages: ``found.csv, line 3``.
     """
 
     unit: str
@@ -60,14 +62,16 @@ class Inspection:
     cv: float | None = None
     detection_50: float | None = None
     detection_90: float | None = None
+    where: str = field(default="", compare=False, repr=False)
 
 
-COLUMNS = tuple(field.name for field in fields(Inspection))
+COLUMNS = tuple(one.name for one in fields(Inspection) if one.compare)
 """Columns of a file of inspections."""
 
 _REQUIRED = ("unit", "output", "kind")
 _NUMBERS = COLUMNS[3:]
 _DETECTION = ("detection_50", "detection_90")
+_SEPARATE = "separate cells by commas, and write a decimal point in numbers"
 
 
 def read_inspections(path: Path) -> list[Inspection]:
@@ -92,8 +96,9 @@ def read_inspections(path: Path) -> list[Inspection]:
     faults: list[str] = []
     found = []
     for line, cells in _lines(path):
-        inspection, problems = _read(cells)
-        faults += [f"{path}, line {line}: {problem}" for problem in problems]
+        where = f"{path}, line {line}"
+        inspection, problems = _read(cells, where)
+        faults += [f"{where}: {problem}" for problem in problems]
         if inspection is not None:
             found.append(inspection)
     if faults:
@@ -103,25 +108,28 @@ def read_inspections(path: Path) -> list[Inspection]:
     return found
 
 
-def read_tables(tables: Sequence[Mapping[str, object]], label: str) -> list[Inspection]:
+def read_tables(
+    tables: Sequence[Mapping[str, object]], places: Sequence[str] = ()
+) -> list[Inspection]:
     """Read inspections from tables, as `read_inspections` from lines.
 
     Parameters
     ----------
     tables : sequence of dict
         Column -> value.
-    label : str
-        Where they are from, for messages.
+    places : sequence of str, optional
+        Where each is written, for messages; by default its number.
     """
     faults: list[str] = []
     found = []
-    for number, table in enumerate(tables, start=1):
+    numbers = [f"inspection {number}" for number in range(1, len(tables) + 1)]
+    for where, table in zip(places or numbers, tables, strict=True):
         if unknown := [name for name in table if name not in COLUMNS]:
-            faults += [f"{label} {number}: {_no_column(name)}" for name in unknown]
+            faults += [f"{where}: {_no_column(name)}" for name in unknown]
             continue
         cells = {name: str(value) for name, value in table.items() if value is not None}
-        inspection, problems = _read(cells)
-        faults += [f"{label} {number}: {problem}" for problem in problems]
+        inspection, problems = _read(cells, where)
+        faults += [f"{where}: {problem}" for problem in problems]
         if inspection is not None:
             found.append(inspection)
     if faults:
@@ -147,40 +155,47 @@ def _lines(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
                     continue
                 if len(cells) != len(names):
                     raise InputError(
-                        f"{path}, line {rows.line_num}: has {len(cells)} cells, the first line"
-                        f" {len(names)}; write numbers with a decimal point, not a comma"
+                        f"{path}, line {rows.line_num}: {len(cells)} of {len(names)} cells;"
+                        f" {_SEPARATE}"
                     )
                 yield rows.line_num, {n: c for n, c in zip(names, cells, strict=True) if c}
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except (csv.Error, UnicodeDecodeError):
+    except csv.Error as error:
+        raise InputError(f"{path}, line {rows.line_num}: not CSV: {error}") from None
+    except UnicodeDecodeError:
         raise InputError(f"{path}: not CSV in UTF-8") from None
 
 
 def _check_columns(path: Path, names: Sequence[str]) -> None:
     if len(names) == 1 and (";" in names[0] or "\t" in names[0]):
-        raise InputError(f"{path}: separate cells by commas, and write a decimal point in numbers")
-    faults = [f"{path}: {_no_column(name)}" for name in names if name not in COLUMNS]
-    faults += [f"{path}: has several columns '{n}'" for n in COLUMNS if names.count(n) > 1]
-    faults += [f"{path}: has no column '{name}'" for name in _REQUIRED if name not in names]
+        raise InputError(f"{path}, line 1: {_SEPARATE}")
+    faults = [_no_column(name) for name in names if name not in COLUMNS]
+    faults += [f"has several columns '{name}'" for name in COLUMNS if names.count(name) > 1]
+    faults = faults or [f"has no column '{name}'" for name in _REQUIRED if name not in names]
     if faults:
-        raise InputError(*faults)
+        raise InputError(*(f"{path}, line 1: {fault}" for fault in faults))
 
 
 def _no_column(name: str) -> str:
+    if not name:
+        return "has a column without a name"
     return f"no such column '{name}'{nearest(name, COLUMNS)} (allowed: {', '.join(COLUMNS)})"
 
 
-def _read(cells: Mapping[str, str]) -> tuple[Inspection | None, list[str]]:
+def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list[str]]:
     """Return an inspection, or what is wrong with its cells."""
     faults = [f"{name} is missing" for name in _REQUIRED if name not in cells]
+    if not cells.get("unit", "").isprintable():
+        faults.append(f"unit = {cells['unit']!r}: must consist of printable characters")
     numbers: dict[str, float] = {}
     for name in _NUMBERS:
         if name in cells:
             try:
                 numbers[name] = _number(cells[name])
             except (ValueError, OverflowError):
-                faults.append(f"{name} = {cells[name]}: must be a finite number")
+                unit = " of seconds since the unit's life began" if name == "time" else ""
+                faults.append(f"{name} = {cells[name]}: must be a finite number{unit}")
     if "kind" in cells and cells["kind"] not in list(Kind):
         allowed = f"(allowed: {', '.join(Kind)})"
         like = nearest(cells["kind"], list(Kind))
@@ -191,7 +206,7 @@ def _read(cells: Mapping[str, str]) -> tuple[Inspection | None, list[str]]:
     faults = list(_conflicts(kind, numbers))
     if faults:
         return None, faults
-    return Inspection(cells["unit"], cells["output"], kind, **numbers), []
+    return Inspection(cells["unit"], cells["output"], kind, **numbers, where=where), []
 
 
 def _number(text: str) -> float:

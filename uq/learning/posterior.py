@@ -95,7 +95,7 @@ class Posterior:
 def posterior(
     rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float = 0.0
 ) -> Posterior:
-    """Return what inspections leave of a result.
+    """Return what inspections leave of a result [1]_.
 
     Parameters
     ----------
@@ -113,6 +113,11 @@ def posterior(
     ------
     InputError
         When an inspection does not fit the result, or more units are inspected than samples have.
+
+    References
+    ----------
+    .. [1] C. Andrieu, G. O. Roberts, "The pseudo-marginal approach for efficient Monte Carlo
+       computations", Ann. Stat. 37, 697-725 (2009).
     """
     looks = _looks(rows, inspections)
     place = nesting_of(rows)
@@ -176,7 +181,7 @@ def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspecti
         try:
             found[one] = known(one)
         except InputError as error:
-            faults += [f"unit {one.unit}: {line}" for line in error.lines]
+            faults += [f"{one.where}: unit {one.unit}: {line}" for line in error.lines]
     if faults:
         raise InputError(*faults)
     return found

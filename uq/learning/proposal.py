@@ -62,6 +62,10 @@ class Proposal(NamedTuple):
         with np.errstate(divide="ignore"):
             return np.asarray(np.log(density) + constant + (at**2 / 2).sum(axis=1) + k * _LOG_ROOT)
 
+    def wider(self, factor: float) -> "Proposal":
+        """Return the same around the same centres, wider by a factor."""
+        return self._replace(root=factor * self.root)
+
     def _whitened(self, at: Floats) -> Floats:
         # Not by BLAS, whose threads take longer to start than so few columns to compute.
         return np.einsum("ij,nj->in", np.linalg.inv(self.root), at)

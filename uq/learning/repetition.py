@@ -8,6 +8,10 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.learning.proposal import Proposal, fitted, tempered
 
+_WIDER = 2.0
+"""Of a last proposal: tails that are too light bias what its rows say, and too heavy ones only cost
+rows."""
+
 
 class Repetition:
     """The rows of one repetition, in the order of their rounds, and how much they count.
@@ -18,6 +22,8 @@ class Repetition:
         Normal scores of the rows of the study with which it begins.
     each : int
         Rows that it draws in a round.
+    last : Proposal, optional
+        From which it draws all its rows; by default it fits one anew in each round.
 
     Attributes
     ----------
@@ -32,9 +38,9 @@ class Repetition:
        135-143 (2000).
     """
 
-    def __init__(self, scores: Floats, each: int):
+    def __init__(self, scores: Floats, each: int, last: Proposal | None = None):
         self.log_importance = np.zeros(len(scores))
-        self._scores, self._each, self._own = scores, each, len(scores)
+        self._scores, self._each, self._own, self._last = scores, each, len(scores), last
         self._proposals: list[Proposal] = []
         self._log_mixture = np.full(len(scores), np.log(len(scores)))
 
@@ -44,7 +50,7 @@ class Repetition:
         columns: NDArray[np.intp],
         rng: np.random.Generator,
     ) -> Floats:
-        """Draw a round around the rows so far, weighted with as much likelihood as they bear.
+        """Draw a round.
 
         Parameters
         ----------
@@ -59,12 +65,9 @@ class Repetition:
         ndarray, shape (each, inputs)
             Normal scores.
         """
-        weights = np.zeros(len(self._scores))
-        for one in log_likelihoods:
-            possible = one if np.isfinite(one).any() else np.zeros(len(one))
-            of_unit = tempered(self.log_importance, possible)
-            weights += of_unit / of_unit.sum()
-        proposal = fitted(self._scores, weights, columns, rng)
+        proposal = self._last
+        if proposal is None:
+            proposal = _around(self._scores, self.log_importance, log_likelihoods, columns, rng)
         new = proposal.drawn(self._each, self._scores.shape[1], rng)
         self._add(proposal, new)
         return new
@@ -79,3 +82,45 @@ class Repetition:
         before = np.concatenate([self._log_mixture, mixture])
         self._log_mixture = np.logaddexp(before, log_each + proposal.log_ratio(self._scores))
         self.log_importance = np.log(len(self._scores)) - self._log_mixture
+
+    @staticmethod
+    def settled(
+        repetitions: Sequence["Repetition"],
+        log_likelihoods: Sequence[Sequence[Floats]],
+        columns: NDArray[np.intp],
+        rng: np.random.Generator,
+    ) -> "list[Repetition]":
+        """Return repetitions that begin anew, and draw around all rows that these have so far.
+
+        Their rows are independent of the proposal, and of each other given it. Those to which
+        proposals were fitted are not: they count too little, for the proposals are denser there.
+
+        Parameters
+        ----------
+        repetitions : sequence of Repetition
+        log_likelihoods : sequence of sequence of ndarray
+            Of each repetition, as for `drawn`.
+        columns, rng
+            As for `drawn`.
+        """
+        scores = np.concatenate([one._scores for one in repetitions])
+        log_importance = np.concatenate([one.log_importance for one in repetitions])
+        of_units = [np.concatenate(each) for each in zip(*log_likelihoods, strict=True)]
+        last = _around(scores, log_importance, of_units, columns, rng).wider(_WIDER)
+        return [Repetition(one._scores[: one._own], one._each, last) for one in repetitions]
+
+
+def _around(
+    scores: Floats,
+    log_importance: Floats,
+    log_likelihoods: Sequence[Floats],
+    columns: NDArray[np.intp],
+    rng: np.random.Generator,
+) -> Proposal:
+    """Return a proposal around rows, weighted with as much likelihood as they bear."""
+    weights = np.zeros(len(scores))
+    for one in log_likelihoods:
+        possible = one if np.isfinite(one).any() else np.zeros(len(one))
+        of_unit = tempered(log_importance, possible)
+        weights += of_unit / of_unit.sum()
+    return fitted(scores, weights, columns, rng)

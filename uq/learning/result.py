@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
 from hashlib import sha256
 
 import numpy as np
@@ -10,7 +9,7 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError, choices, nearest
-from uq.learning.inspections import Inspection, read_tables
+from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
 from uq.population.row_inputs import inputs_of
@@ -160,12 +159,13 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
 
 def inspections_of(ds: xr.Dataset) -> list[Inspection]:
     """Return the inspections that a posterior rests on."""
-    return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")), "inspection")
+    return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
 
 
 def as_table(one: Inspection) -> dict[str, object]:
     """Return what is known of an inspection: column -> value."""
-    return {name: value for name, value in asdict(one).items() if value is not None}
+    values = {name: getattr(one, name) for name in COLUMNS}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def digest(one: Inspection) -> str:

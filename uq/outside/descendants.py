@@ -3,7 +3,9 @@
 import ctypes
 import os
 import resource
+import select
 import shutil
+import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -57,6 +59,25 @@ def bound_files(folder: Path) -> int:
     if _adopting:
         resource.setrlimit(resource.RLIMIT_FSIZE, (most, hard))
     return most
+
+
+def ended_within(process: subprocess.Popen[bytes], seconds: float) -> bool:
+    """Wait for a process, for some seconds at most; return whether it has ended."""
+    seconds = max(seconds, 0.0)
+    if sys.platform == "linux":
+        with suppress(OSError):
+            descriptor = os.pidfd_open(process.pid)
+            try:
+                poll = select.poll()
+                poll.register(descriptor, select.POLLIN)
+                return bool(poll.poll(1000 * seconds))
+            finally:
+                os.close(descriptor)
+    try:
+        process.wait(seconds)  # elsewhere it looks again and again, ever more seldom
+    except subprocess.TimeoutExpired:
+        return False
+    return True
 
 
 def end_descendants() -> None:

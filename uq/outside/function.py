@@ -146,7 +146,7 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]
         if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
             faults.append(f"{label}: argument '{argument}': only named floats can be parameters")
             continue
-        if not isinstance(argument.default, int | float):
+        if not isinstance(argument.default, Real):
             was = "no default" if argument.default is argument.empty else f"{argument.default!r}"
             faults.append(f"{label}: argument '{name}' has {was}; its nominal value is needed")
             continue

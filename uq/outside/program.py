@@ -12,11 +12,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
-from threading import Event, Thread
 from typing import Any, Self
 
 from uq.contract import Model, Parameter
-from uq.outside.descendants import bound_files, end_descendants
+from uq.outside.descendants import bound_files, end_descendants, ended_within
 from uq.outside.folders import Folders, size_of
 from uq.outside.machine_file import (
     FOLDER,
@@ -151,7 +150,7 @@ class _Program:
         if machine.template:
             (folder / machine.input).write_bytes(filled(self.template, places).encode())
         program, *arguments = (filled(part, places) for part in machine.command)
-        environment = dict(os.environ) | machine.environment
+        added = machine.environment
         path = _found(program, self.folder) or program
         largest = bound_files(folder)
         with (
@@ -162,7 +161,7 @@ class _Program:
                 process = subprocess.Popen(
                     [path, *arguments],
                     cwd=folder,
-                    env=environment,
+                    env=dict(os.environ) | added if added else None,
                     stdin=subprocess.DEVNULL,
                     stdout=out,
                     stderr=err,
@@ -180,29 +179,23 @@ class _Program:
 
     def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
         """Return the exit code of a program, once it and all that descends from it has ended."""
-        over, faults = Event(), list[Exception]()
-
-        def watch() -> None:
-            until = time.monotonic() + self.limit
-            while not over.wait(min(_LOOK_SECONDS, max(until - time.monotonic(), 0.0))):
+        fault: Exception | None = None
+        until = time.monotonic() + self.limit
+        try:
+            while not ended_within(process, min(until - time.monotonic(), _LOOK_SECONDS)):
                 if time.monotonic() >= until:
-                    faults.append(OverdueError(f"did not end within {self.limit:g} s"))
+                    fault = OverdueError(f"did not end within {self.limit:g} s")
                 elif size_of(folder) > largest:
                     said = f"was ended, as it wrote files of more than {largest:.2g} bytes"
-                    faults.append(ProgramError(said))
-                if faults:
-                    return process.kill()
-
-        watching = Thread(target=watch, daemon=True)
-        watching.start()
-        try:
+                    fault = ProgramError(said)
+                if fault:
+                    process.kill()
+                    break
             code = process.wait()
         finally:
-            over.set()
             end_descendants()
-            watching.join()
-        if faults:
-            raise faults[0]
+        if fault:
+            raise fault
         return code
 
 

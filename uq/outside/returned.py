@@ -89,14 +89,31 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
     """
     if returns is None:
         return {}
+    if not isinstance(returns, Mapping):
+        raise InputError(f"{label}: returns: must be a dict of outputs, not {returns!r}")
     wrong = [
         f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {one!r}"
         for name, one in returns.items()
         if not (isinstance(one, str | Returned) and isinstance(name, str) and name.isidentifier())
     ]
+    wrong += [
+        f"{label}: returns: shape of '{name}' must be a tuple of numbers above 0, not {one.shape!r}"
+        for name, one in returns.items()
+        if isinstance(one, Returned) and not _is_shape(one.shape)
+    ]
+    wrong += [
+        f"{label}: returns: unit and meaning of '{name}' must be text"
+        for name, one in returns.items()
+        if isinstance(one, Returned)
+        and not (isinstance(one.unit, str) and isinstance(one.meaning, str))
+    ]
     if wrong or not returns:
         raise InputError(*(wrong or [f"{label}: returns: name at least one output"]))
     return {n: Returned(one) if isinstance(one, str) else one for n, one in returns.items()}
+
+
+def _is_shape(shape: Any) -> bool:
+    return isinstance(shape, tuple) and all(isinstance(n, int) and n > 0 for n in shape)
 
 
 class WrongReturnError(Exception):

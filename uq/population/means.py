@@ -23,6 +23,7 @@ from uq.intervals import (
     wilson_interval,
 )
 from uq.population.smoothing import (
+    HOPELESS,
     carries_little,
     effective_rows,
     largest_share,
@@ -223,7 +224,13 @@ def weighted_moments(
     return trusted(mean, weights * values, part), Estimate(reason=why) if why else sd
 
 
-def trusted(found: Estimate, pulls: Floats, part: Replicates, most: float = inf) -> Estimate:
+def trusted(
+    found: Estimate,
+    pulls: Floats,
+    part: Replicates,
+    most: float = inf,
+    hopeless: str = HOPELESS,
+) -> Estimate:
     """Return an estimate, or why its weights do not allow one.
 
     Parameters
@@ -234,9 +241,11 @@ def trusted(found: Estimate, pulls: Floats, part: Replicates, most: float = inf)
     part : ndarray of int, shape (n,), or None
     most : float, optional
         The largest weight that a row can have.
+    hopeless : str, optional
+        What to say where more rows would not help.
     """
     of_samples = per_sample(np.abs(pulls), part)
     if carries_little(most, len(of_samples)):
         return found
-    why = refusal(tail_shape(of_samples), len(of_samples))
+    why = refusal(tail_shape(of_samples), len(of_samples), hopeless)
     return Estimate(reason=why) if why else found

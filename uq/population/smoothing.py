@@ -71,7 +71,8 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
 
     Weights that are known to be bounded, so that no row can carry more than a hundredth of all,
     stay as they are: the variance of their mean is below a hundredth of its square, and their k not
-    above 0, whatever the largest look like.
+    above 0, whatever the largest look like. Where samples have several rows, that of all rows of a
+    sample is smoothed: samples are independent, and rows in proportion are as they were.
 
     Parameters
     ----------
@@ -99,7 +100,12 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
     if carries_little(most, len(of_samples)):
         k = min(k, 0.0)
     elif np.isfinite(k):
-        weights = _with_smooth_tail(raw)
+        smooth = _with_smooth_tail(of_samples)
+        if of_samples is raw:
+            weights = smooth
+        else:
+            with np.errstate(invalid="ignore"):  # samples without weight
+                weights = raw * _of_rows(smooth / of_samples, part)
     effective = effective_rows(per_sample(weights, part))
     return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
 
@@ -229,6 +235,12 @@ def per_sample(numbers: Floats, part: Replicates) -> Floats:
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
     return np.bincount(place, weights=numbers).astype(float)
+
+
+def _of_rows(of_samples: Floats, part: Replicates) -> Floats:
+    """Return for each row what its sample has; nothing where that is not a number."""
+    _, place = np.unique(np.asarray(part), return_inverse=True)
+    return np.nan_to_num(of_samples)[place]
 
 
 def _are_few_values(ascending: Floats, count: int) -> bool:

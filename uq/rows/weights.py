@@ -91,16 +91,16 @@ def sample_weights(rows: xr.Dataset, place: Nesting, what: str) -> Floats | None
     if weights is None:
         return None
     if unit := rows.attrs.get(OF_UNIT, ""):
-        raise InputError(f"{what}: not of unit '{unit}' alone; ask it of the whole posterior")
+        raise InputError(f"no {what}: these rows stand for unit '{unit}'; use the whole posterior")
     if why := rows.attrs.get(ONLY_INSPECTED, ""):
-        raise InputError(f"{what}: {why}")
+        raise InputError(f"no {what}: {why}")
     table = place.table(weights).reshape(place.samples, -1)
     least, most = np.nanmin(table, axis=1), np.nanmax(table, axis=1)
     if (most - least > _SAME * most).any():
         raise InputError(
-            f"{what}: not where units differ in more than an integrated input: the inspections then"
-            " weight each unit of a sample by itself; 'uq summary' describes a single unit, and the"
-            " result before 'uq update' has them"
+            f"no {what}: the inspections weight each unit of a sample separately, since units"
+            " differ in more than an integrated input; use 'uq summary' for a single unit, or the"
+            " result before 'uq update'"
         )
     return np.asarray(most / most.mean())
 

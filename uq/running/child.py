@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from uq.compilation import compilation
@@ -166,6 +167,7 @@ def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.T
         cleanup()
         os._exit(0)
 
+    sys.stdin = Path(os.devnull).open()  # for a model that asks something
     thread = threading.Thread(target=wait, daemon=True)
     thread.start()
     return thread

@@ -10,6 +10,7 @@ import os
 import re
 import sys
 from collections.abc import Mapping
+from contextlib import redirect_stdout
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from inspect import isfunction
@@ -147,7 +148,8 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
     keep_apart(module_name)
     try:
-        module = importlib.import_module(module_name)
+        with redirect_stdout(sys.stderr):  # what it prints is no part of an answer
+            module = importlib.import_module(module_name)
         found = getattr(module, attribute or _only_model(module, label))
     except InputError:
         raise
