@@ -1,28 +1,33 @@
-"""Shapley effects of dependent inputs, in closed form: normal and two-valued ones, and their sum.
+"""Shapley effects of dependent inputs, in closed form: of sums, a product and an exponential.
 
 y = x1 + x2 + 2 x3, all standard normal; x2 is correlated with x3, and x1 with x4, which the model
-does not use. The same with x1 x3 added. Or y = x1 + x2 + x3, with x1 and x2 either -1 or 1, and all
+does not use. The same with x1 x3 added, or e to the power of a sixth or half of y; or all four
+exponential, correlated in the same way. Or y = x1 + x2 + x3, with x1 and x2 either -1 or 1, and all
 three correlated.
 """
 
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 from math import factorial
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from scipy import stats
-from scipy.spatial import cKDTree
+from scipy import special, stats
 
 from benchmarks.coverage.problems import Settings, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.contract import Model, Output, Parameter
-from uq.intervals import scatter_interval
+from uq.indices.samples import sample_of
+from uq.methods.indices import SHAPLEY
+from uq.methods.registry import METHODS
 
 NAMES = ("x1", "x2", "x3", "x4")
 WEIGHTS = np.array([1.0, 1.0, 2.0, 0.0])
 CORRELATIONS = (0.0, 0.3, 0.6, 0.9)
+MILD, STEEP = 1 / 6, 1 / 2
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+EXPONENTIAL = {"distribution": "exponential", "mean": 1.0}
 SIGN = {"distribution": "discrete-choice", "values": [-1.0, 1.0]}
 SIGNED = {"x1": SIGN, "x2": SIGN, "x3": NORMAL}
 AMONG_SIGNS = np.array([[1.0, 0.7, 0.5], [0.7, 1.0, -0.2], [0.5, -0.2, 1.0]])
@@ -45,7 +50,13 @@ class Inputs(NamedTuple):
 def _batch(x, seed, settings):
     x1, x2, x3, _ = np.ascontiguousarray(x.T)
     weighted = x1 + x2 + 2 * x3
-    found = {"weighted": weighted, "interacting": weighted + x1 * x3, "sum": x1 + x2 + x3}
+    found = {
+        "weighted": weighted,
+        "interacting": weighted + x1 * x3,
+        "mild": np.exp(MILD * weighted),
+        "steep": np.exp(STEEP * weighted),
+        "sum": x1 + x2 + x3,
+    }
     return found, np.zeros(len(x), np.int8)
 
 
@@ -58,6 +69,8 @@ SUMS = Model(
     {
         "weighted": Output("1", "x1 + x2 + 2 x3"),
         "interacting": Output("1", "x1 + x2 + 2 x3 + x1 x3"),
+        "mild": Output("1", "e to the power of a sixth of x1 + x2 + 2 x3"),
+        "steep": Output("1", "e to the power of half of x1 + x2 + 2 x3"),
         "sum": Output("1", "x1 + x2 + x3"),
     },
     _batch,
@@ -104,12 +117,47 @@ def of_normal(r, interaction=0.0):
     c, a = matrix(r), np.zeros((4, 4))
     a[0, 2] = a[2, 0] = interaction / 2
 
+    def variance(q):
+        return WEIGHTS @ q @ WEIGHTS + 2 * np.trace(a @ q @ a @ q)
+
+    return _of_explained(c, variance)
+
+
+def of_lognormal(r, scale):
+    """Return the Shapley effects of e to the power of the weighted sum of normal inputs, scaled.
+
+    The mean given some inputs is lognormal: its variance is e^v - 1 times its squared mean, with v
+    that of its logarithm.
+    """
+    return _of_explained(matrix(r), lambda q: np.expm1(scale**2 * WEIGHTS @ q @ WEIGHTS))
+
+
+def of_exponential(r, degrees=60):
+    """Return the Shapley effects of the weighted sum of exponential inputs.
+
+    Hermite polynomials of degree n in two scores have the correlation of the scores to the power n
+    (Mehler 1866); coefficients by the trapezoidal rule.
+    """
+    z = np.linspace(-12.0, 12.0, 48_001)
+    weight = stats.norm.pdf(z) * (z[1] - z[0])
+    x, last, now = -special.log_ndtr(-z), np.zeros_like(z), np.ones_like(z)
+    squares = []
+    for n in range(degrees):
+        last, now = now, (z * now - np.sqrt(n) * last) / np.sqrt(n + 1)
+        squares.append((weight @ (x * now)) ** 2)
+
+    def variance(q):
+        return sum(one * WEIGHTS @ q ** (n + 1) @ WEIGHTS for n, one in enumerate(squares))
+
+    return _of_explained(matrix(r), variance)
+
+
+def _of_explained(c, variance):
+    """Return the effects where some inputs u explain a variance that C_u C_uu^-1 C_u' decides."""
+
     def explained(some):
         some = list(some)
-        if not some:
-            return 0.0
-        q = c[:, some] @ np.linalg.solve(c[np.ix_(some, some)], c[some])
-        return float(WEIGHTS @ q @ WEIGHTS + 2 * np.trace(a @ q @ a @ q))
+        return variance(c[:, some] @ np.linalg.solve(c[np.ix_(some, some)], c[some])) if some else 0
 
     return dict(zip(NAMES, shares(explained, 4).tolist(), strict=True))
 
@@ -156,81 +204,93 @@ def _mirrored(matrix):
     return found
 
 
-def study(output, laws, correlations, samples, **design):
-    """Return a study of Shapley effects of one of the sums."""
+def study(output, laws, correlations, samples, method="shapley"):
+    """Return a study of one of the outputs."""
     dependence = {"parameters": list(laws), "rank_correlation": ranks(correlations)}
     return study_of(
-        "shapley",
+        method,
         samples,
         model=NAME,
         laws=laws,
         dependence=dependence,
         analysis={"outputs": [output]},
-        **design,
     )
 
 
-def shapley(repetitions):
+EXACT = "exact: the output is a polynomial in the normal scores, and its effects a formula"
+FAR = "conservative: few paths far out hold most of the errors, and their leverage widens intervals"
+TAIL = "few paths hold most of the variance; by default the indices are those of the logarithm"
+
+
+class Case(NamedTuple):
+    """A problem.
+
+    Attributes
+    ----------
+    output : str
+    laws : dict
+    correlations : ndarray
+        Of normal scores.
+    truth : dict of str to float
+    reason : str
+        Why the coverage is off, or "".
+    """
+
+    output: str
+    laws: dict
+    correlations: np.ndarray
+    truth: dict
+    reason: str = ""
+
+
+BELLS, DECAYS = dict.fromkeys(NAMES, NORMAL), dict.fromkeys(NAMES, EXPONENTIAL)
+CASES = {
+    **{
+        f"correlation {r:g}": Case("weighted", BELLS, matrix(r), of_normal(r), EXACT)
+        for r in CORRELATIONS
+    },
+    "interaction": Case("interacting", BELLS, matrix(0.6), of_normal(0.6, 1.0), EXACT),
+    **{
+        f"exponential, correlation {r:g}": Case(
+            "weighted", DECAYS, matrix(r), of_exponential(r), FAR
+        )
+        for r in CORRELATIONS
+    },
+    "mild lognormal": Case("mild", BELLS, matrix(0.6), of_lognormal(0.6, MILD), FAR),
+    "steep lognormal": Case("steep", BELLS, matrix(0.6), of_lognormal(0.6, STEEP), TAIL),
+    "two signs and a number": Case("sum", SIGNED, AMONG_SIGNS, of_signs()),
+}
+PATHS = 512
+REFUSED = dict.fromkeys(NAMES, {"low": None, "high": None})
+ALONE = "paths without polynomials"
+
+
+def of_paths_alone(ds, output):
+    """Return the Shapley effects of a result that its paths show, without a control variate."""
+    sample = sample_of(ds)
+    none = np.full_like(sample.scores, np.nan)
+    sample = replace(sample, values=ds[output].values, scores=none)
+    return METHODS["shapley"].indices(sample).values[SHAPLEY]
+
+
+def title(words, rows):
+    """Return what a table of some case is called."""
+    return f"dependent inputs, {words}, shapley, {PATHS} paths of {rows} rows"
+
+
+def shapley(repetitions, cases=CASES):
     """Count the Shapley effects of dependent inputs."""
     lines = []
-    laws = dict.fromkeys(NAMES, NORMAL)
-    cases = [
-        *((f"correlation {r:g}", "weighted", matrix(r), of_normal(r)) for r in CORRELATIONS),
-        ("interaction", "interacting", matrix(0.6), of_normal(0.6, 1.0)),
-        ("two signs and a number", "sum", AMONG_SIGNS, of_signs()),
-    ]
-    for words, output, correlations, truth in cases:
-        own = SIGNED if output == "sum" else laws
-        tally = Tally(f"dependent inputs, {words}, shapley, 512 paths of {len(own) + 1} rows")
-        for ds in repeated(study(output, own, correlations, 512), repetitions):
-            for method in ("shapley", "shapley-additive")[: 1 + (output == "interacting")]:
-                entry = indices_of(ds, method)[output]["shapley"]
-                for name, value in truth.items():
-                    if value > 0:  # else it is zero in every path
-                        tally.entry(f"{method} {name}", value, entry[name])
-        lines += tally.lines()
-    return lines
-
-
-# Nearest neighbours -------------------------------------------------------------------------------
-
-PARTS = 8
-NEIGHBOURS = 3
-
-
-def by_neighbours(x, y):
-    """Estimate Shapley effects from independent rows: rows nearest in some inputs share these.
-
-    B. Broto, F. Bachoc, M. Depecker, "Variance reduction for estimation of Shapley effects and
-    adaptation to unknown input distribution", SIAM/ASA J. Uncertain. Quantif. 8, 693-716 (2020).
-    """
-    d = x.shape[1]
-    left = {(): y.var(ddof=1), tuple(range(d)): 0.0}
-    for size in range(1, d):
-        for some in combinations(range(d), size):
-            _, near = cKDTree(x[:, some]).query(x[:, some], NEIGHBOURS)
-            left[some] = y[near].var(axis=1, ddof=1).mean()
-    return shares(lambda some: left[()] - left[tuple(sorted(some))], d)
-
-
-def neighbours(repetitions):
-    """Count the intervals of nearest neighbours, by Student's t of parts of as many rows."""
-    lines = []
-    cases = [
-        *((f"correlation {r:g}", r, 0.0) for r in CORRELATIONS),
-        ("interaction", 0.6, 1.0),
-    ]
-    for words, r, interaction in cases:
-        tally = Tally(f"dependent inputs, {words}, shapley, 512 paths of 5 rows")
-        truth, factor = of_normal(r, interaction), np.linalg.cholesky(matrix(r))
-        for seed in range(repetitions):
-            x = np.random.default_rng(seed).standard_normal((512 * 5, 4)) @ factor.T
-            y = x @ WEIGHTS + interaction * x[:, 0] * x[:, 2]
-            found = np.array([by_neighbours(x[i::PARTS], y[i::PARTS]) for i in range(PARTS)])
-            for name, one in zip(NAMES, found.T, strict=True):
-                ends = scatter_interval(one.mean(), one)
-                by = f"nearest neighbours in {PARTS} parts"
-                if truth[name] > 0:
-                    tally.add(f"shapley {name}", truth[name], *ends, by)
+    for words in cases:
+        case = CASES[words]
+        tally = Tally(title(words, len(case.laws) + 1), {"shapley": case.reason})
+        of = study(case.output, case.laws, case.correlations, PATHS)
+        for ds in repeated(of, repetitions):
+            ours = indices_of(ds, output=[case.output])[case.output].get("shapley", REFUSED)
+            alone = of_paths_alone(ds, case.output)
+            for name, value in case.truth.items():
+                if value > 0:  # else it is zero in every path
+                    tally.entry(f"shapley {name}", value, ours[name])
+                    tally.estimate(f"shapley {name}", value, alone[name], ALONE)
         lines += tally.lines()
     return lines

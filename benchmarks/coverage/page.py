@@ -24,8 +24,9 @@ variance but no skewness; the same life *never ending* in some rows, *censored* 
 random times; lives of which 60 % *never end*, known at once, while the others, Weibull, may be
 censored; Weibull and lognormal lives; the *g-function*; a *linear function* in two studies;
 *Pareto* values without variance or mean; gamma lives and lives with infant mortality, to which
-wrong laws are fitted; *dependent inputs*: x1 + x2 + 2 x3 of normal inputs, with x2 and x3, and
-x1 and an unused x4, correlated, and the sum of two correlated signs and a number; a *random
+wrong laws are fitted; *dependent inputs*: x1 + x2 + 2 x3 of normal or exponential inputs, with x2
+and x3, and x1 and an unused x4, correlated, e to the power of a sixth (*mild*) or half (*steep*) of
+it, and the sum of two correlated signs and a number; a *random
 model*, x1 + (1 + 2 x2) e with noise e; limits with a probability of 1e-5; nested *random
 effects* of samples, units and repeats; lives *scaled* by a lognormal input; *fleets* of units
 that share a lognormal rate, each with a depth of its own; *curves* whose points are taken

@@ -216,7 +216,8 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "worn_depth": Output(
         "m",
-        "growth of the site's gap by the instant; the last of the depths once that is reached",
+        "growth of the site's gap by the instant, nine in ten within the accuracy of lives;"
+        " the last of the depths once that is reached",
         dims=("site", "instant"),
     ),
     "largest_worn_depth": Output(

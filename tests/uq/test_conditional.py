@@ -1,6 +1,7 @@
 """Dependent inputs drawn given some of them, and the Shapley effects of such paths."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from scipy import stats
 
 import uq
 from benchmarks.coverage import dependent, problems
+from benchmarks.coverage.neighbours import by_neighbours
+from benchmarks.coverage.tally import LOW, OURS
 from uq import plots
 from uq.analysis.findings import Findings
 from uq.cli.sensitivity import show
@@ -22,6 +25,7 @@ from uq.errors import InputError
 from uq.indices import sensitivities as module
 from uq.indices.samples import sample_of
 from uq.inputs.conditional import conditional_paths
+from uq.methods import polynomials
 from uq.methods.indices import SHAPLEY
 from uq.methods.registry import METHODS
 from uq.report.indices import sensitivity_of
@@ -232,32 +236,43 @@ def test_few_paths_do_not_show_that_an_input_has_no_effect():
     assert "by_correlation" not in entry_of(weighted(0.9, 32))
 
 
-# The additive part by formula ---------------------------------------------------------------------
+# Polynomials as control variate -------------------------------------------------------------------
 
 
-def additive_of(ds):
-    (entry,) = sensitivities(ds, "shapley-additive")["outputs"].values()
-    return entry
+def of_case(words, samples, seed=1):
+    case = dependent.CASES[words]
+    of = dependent.study(case.output, case.laws, case.correlations, samples)
+    return problems.computed(problems.with_seed(of, seed)), case
 
 
-@pytest.mark.parametrize("r", dependent.CORRELATIONS)
-def test_effects_of_an_additive_output_are_exact(r):
-    found = additive_of(weighted(r, 256))
-    for name, value in dependent.of_normal(r).items():
-        assert found["shapley"][name]["value"] == pytest.approx(value, abs=1e-10)
+def widths(found):
+    return np.array([one.high - one.low for one in found.values()])
+
+
+def controlled_and_alone(ds, output):
+    sample = replace(sample_of(ds), values=ds[output].values)
+    ours = METHODS["shapley"].indices(sample).values[SHAPLEY]
+    return ours, dependent.of_paths_alone(ds, output)
+
+
+@pytest.mark.parametrize("words", ["correlation 0", "correlation 0.9", "interaction"])
+def test_effects_of_polynomials_in_normal_inputs_are_exact(words):
+    ds, case = of_case(words, 128)
+    found = entry_of(ds)["shapley"]
+    for name, value in case.truth.items():
+        assert found[name]["value"] == pytest.approx(value, abs=1e-10)
         if value:
-            one = found["shapley"][name]
-            assert 0 <= one["low"] < value < one["high"] < one["low"] + 1e-8
+            assert found[name]["low"] < value < found[name]["high"] < found[name]["low"] + 1e-8
 
 
-def test_effects_of_polynomials_in_each_input_are_exact():
+def test_effects_of_polynomials_of_higher_degree_are_exact():
     # Given one of two scores with correlation r, the mean of the other's Hermite polynomial of
     # degree n has r^2n of its variance: here 2 of the square of x1, 1.5 of the cube of x4.
     r, square, cube, own = 0.6, 2.0, 1.5, 1.0
-    ds = weighted(r, 512)
+    ds = weighted(r, 256)
     x1, x3, x4 = (ds[name].values for name in ("x1", "x3", "x4"))
     y = x1**2 + (x4**3 - 3 * x4) / 2 + x3
-    found = additive_of(with_output(ds, "weighted", y))["shapley"]
+    found = entry_of(with_output(ds, "weighted", y))["shapley"]
     alone = square + cube * r**6, cube + square * r**4
     both, whole = square + cube, square + cube + own
     truth = {
@@ -270,23 +285,79 @@ def test_effects_of_polynomials_in_each_input_are_exact():
         assert found[name]["value"] == pytest.approx(value, abs=1e-9)
 
 
-def test_the_additive_part_leaves_what_interacts_to_the_paths():
-    laws = dict.fromkeys(dependent.NAMES, dependent.NORMAL)
-    study = dependent.study("interacting", laws, dependent.matrix(0.6), 2048)
-    ds = problems.computed(problems.with_seed(study, 1))
-    controlled, plain = additive_of(ds)["shapley"], entry_of(ds)["shapley"]
-    assert_near(controlled, dependent.of_normal(0.6, 1.0))
-    assert sum(one["value"] for one in controlled.values()) == pytest.approx(1.0)
-    widths = [[one["high"] - one["low"] for one in of.values()] for of in (controlled, plain)]
-    assert sum(widths[0]) < 0.8 * sum(widths[1])
+def test_values_of_polynomials_are_those_of_many_rows():
+    r, k = 0.7, 50_000
+    c = np.array([[1.0, r, 0.0], [r, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    terms = polynomials.terms_of(range(3), c, 100)
+    rng = np.random.default_rng(1)
+    weights = rng.standard_normal((len(terms), 1))
+    found = polynomials.shapley_values(weights, terms, c)
+
+    def y(z):
+        return (polynomials.products(z, terms, c) @ weights)[:, 0]
+
+    z, e = rng.standard_normal((2, k, 3))
+    half = np.sqrt(1 - r**2)
+
+    def again(some):  # the scores outside of some, drawn again given these
+        x = np.where(np.isin(range(3), some), z, e)
+        if 0 in some and 1 not in some:
+            x[:, 1] = r * z[:, 0] + half * e[:, 1]
+        elif 1 in some and 0 not in some:
+            x[:, 0] = r * z[:, 1] + half * e[:, 0]
+        elif not {0, 1} & set(some):
+            x[:, 1] = r * e[:, 0] + half * e[:, 1]
+        return x
+
+    z[:, 1] = r * z[:, 0] + half * z[:, 1]
+    whole = y(z)
+    explained = {
+        some: np.cov(whole, y(again(some)))[0, 1]
+        for size in range(4)
+        for some in combinations(range(3), size)
+    }
+    many = dependent.shares(lambda some: explained[tuple(sorted(some))], 3)
+    assert found / found.sum() == pytest.approx(many, abs=0.03)
+
+
+def test_the_degree_is_what_the_rows_allow():
+    none = np.eye(4)
+    counts = [len(polynomials.terms_of(range(4), none, most)) for most in (3, 4, 13, 14, 34, 99)]
+    assert counts == [0, 4, 4, 14, 34, 34]
+
+
+def test_products_of_too_many_correlated_inputs_are_left_to_the_paths():
+    matrix = np.full((13, 13), 0.1) + 0.9 * np.eye(13)
+    assert not polynomials.terms_of(range(13), matrix, 1000)
+    matrix[:6, 6:] = matrix[6:, :6] = 0.0
+    terms = polynomials.terms_of(range(13), matrix, 1000)
+    assert (0, 1) in terms and (6, 12) in terms and (5, 6) not in terms
+
+
+def test_what_resembles_a_polynomial_has_narrower_intervals():
+    for words, factor in (("exponential, correlation 0.6", 0.1), ("mild lognormal", 0.3)):
+        ds, case = of_case(words, 256)
+        ours, alone = controlled_and_alone(ds, case.output)
+        assert (widths(ours) < factor * widths(alone)).all()
+        for name, value in case.truth.items():
+            assert abs(ours[name].value - value) < 0.75 * (ours[name].high - ours[name].low)
+        assert sum(one.value for one in ours.values()) == pytest.approx(1.0)
+
+
+def test_what_does_not_resemble_one_has_intervals_as_without():
+    ds = weighted(0.6, 512)
+    x1, x3 = ds["x1"].values, ds["x3"].values
+    for y in (np.sin(6 * x1 + 4 * x3), (x1 + x3 > 3.5) * 1.0):
+        ours, alone = controlled_and_alone(with_output(ds, "weighted", y), "weighted")
+        assert (widths(ours) < 1.2 * widths(alone))[[0, 2]].all()
 
 
 def test_elements_of_an_output_add_up():
     # Of x1 + x2 + 2 x3, and of x3 alone, whose correlated inputs are x2 and x3.
     r = 0.6
-    ds = weighted(r, 512)
+    ds = weighted(r, 256)
     both = np.stack([ds["weighted"].values, ds["x3"].values], axis=1)
-    found = METHODS["shapley-additive"].indices(replace(sample_of(ds), values=both))
+    found = METHODS["shapley"].indices(replace(sample_of(ds), values=both))
     sizes = 6.0 + 4.0 * r, 1.0
     alone = {"x2": r**2 / 2, "x3": 1 - r**2 / 2}
     for name, value in dependent.of_normal(r).items():
@@ -294,33 +365,32 @@ def test_elements_of_an_output_add_up():
         assert found.values[SHAPLEY][name].value == pytest.approx(truth, abs=1e-9)
 
 
-def test_the_additive_part_of_discrete_inputs_stays_with_the_paths():
-    study = dependent.study("sum", dependent.SIGNED, dependent.AMONG_SIGNS, 512)
-    ds = problems.computed(study)
-    assert additive_of(ds)["shapley"] == entry_of(ds)["shapley"]
+def test_discrete_inputs_stay_with_the_paths():
+    # A sign, independent of the numbers, with a third of the variance.
+    laws = {"x1": dependent.SIGN, "x2": dependent.NORMAL, "x3": dependent.NORMAL}
+    of = dependent.study("sum", laws, np.eye(3), 512)
+    found = entry_of(problems.computed(of))["shapley"]
+    assert_near(found, dict.fromkeys(laws, 1 / 3))
 
 
-def test_few_paths_fit_no_additive_part():
-    ds = weighted(0.6, 32)
-    assert additive_of(ds)["shapley"] == entry_of(ds)["shapley"]
-
-
-def test_intervals_of_paths_are_narrower_than_those_of_nearest_neighbours():
+@pytest.mark.parametrize("words", ["correlation 0.9", "exponential, correlation 0.6"])
+def test_intervals_are_narrower_than_those_of_nearest_neighbours(words):
     # Of as many rows: 256 paths of 5, or 8 parts of 160 independent rows.
-    r = 0.9
-    x = np.random.default_rng(1).standard_normal((256 * 5, 4))
-    x = x @ np.linalg.cholesky(dependent.matrix(r)).T
-    y = x @ dependent.WEIGHTS
-    found = np.array([dependent.by_neighbours(x[i::8], y[i::8]) for i in range(8)])
+    ds, case = of_case(words, 256)
+    ours = controlled_and_alone(ds, case.output)[0]
+    rows = dependent.study(case.output, case.laws, case.correlations, 256 * 5, "monte-carlo")
+    rows = problems.computed(rows)
+    x = rows[list(case.laws)].to_dataarray().values.T
+    y = rows[case.output].values
+    found = np.array([by_neighbours(x[i::8], y[i::8]) for i in range(8)])
     theirs = 2 * 2.365 * found.std(axis=0, ddof=1) / np.sqrt(8)
-    ours = additive_of(weighted(r, 256))["shapley"].values()
-    assert max(one["high"] - one["low"] for one in ours) < 0.01 * theirs.min()
+    assert (widths(ours) < 0.5 * theirs).all()
 
 
 def test_designs_for_dependent_inputs_are_named_with_what_they_feed():
     said = refusal(tables({"x1": UNIFORM, "x3": UNIFORM}, "saltelli", 128, dependence=PAIR))
     assert "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and" in said
-    assert said.endswith(", or shapley for shapley and shapley-additive")
+    assert said.endswith(", or shapley for shapley")
 
 
 def test_paths_have_no_effects_within_a_regime():
@@ -362,7 +432,9 @@ def test_the_answer_does_not_count_a_share_by_correlation_as_a_contribution():
 
 @pytest.mark.slow
 def test_intervals_of_dependent_effects_hold_the_truth_in_93_to_97_of_100_cases():
-    lines = dependent.shapley(1000)
-    assert len(lines) == 3 + 3 * 4 + 2 * 4 + 3
+    cases = ["exponential, correlation 0.6", "mild lognormal", "two signs and a number"]
+    lines = dependent.shapley(1000, cases)
+    assert len(lines) == 2 * (4 + 4 + 3)
     assert all(line.given == 1000 for line in lines)
+    assert not [line for line in lines if line.by == OURS and line.coverage[0] < LOW]
     assert not [line for line in lines if line.unexplained]

@@ -20,6 +20,10 @@ def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
     assert stopping.interim_sizes(replicated) == (32, 63, 125, 250)
     design = study(0.1, samples=1000).design
     assert stopping.confidence(design) == interim_levels.of_independent_rows(3)
+    several = study(0.1, samples=250, replicates=4).design
+    assert stopping.interim_sizes(several) == (63, 125, 250)
+    paths = study(0.1, samples=64, method="shapley", replicates=8, index="shapley").design
+    assert stopping.interim_sizes(paths) == (32, 64)
     design = study(0.1, samples=1000, method="halton", replicates=8).design
     assert stopping.confidence(design) == interim_levels.of_replicates(8, 6)
 

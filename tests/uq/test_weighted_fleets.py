@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from computed import asking
 from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
@@ -101,6 +102,14 @@ def test_a_weight_of_zero_is_no_sample():
     assert found.left_out == 0
     for one, other in zip(found[:3], nested_shares(values[kept])[:3], strict=True):
         assert one.numbers == pytest.approx(other.numbers)
+
+
+def test_an_event_that_the_inspections_make_rare_has_no_shares(posterior):
+    """Rows have hits, but hardly any weight."""
+    early = asking(posterior, outputs=["life"], thresholds={"life": [2e5]})
+    hits = (posterior["life"].values < 2e5).sum()
+    shares = by_level(early).outputs["P(life<200000.0)"].shares
+    assert hits > 10 and "hits of equal weight, and 5 are needed" in shares["shared"].reason
 
 
 @pytest.mark.parametrize("question", [lambda ds: fleet_of(ds, 1), by_level])

@@ -15,7 +15,7 @@ from uq.contract import Floats
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.chosen import targets_of
-from uq.indices.sensitivities import few_hits
+from uq.indices.sensitivities import FEWEST_HITS, few_hits
 from uq.indices.targets import Target, lightened, split_name
 from uq.methods.indices import RefusedError
 from uq.population.by_level import Scales, scales_by_level
@@ -151,6 +151,8 @@ def _shares(
     if not reason and not target.event and lacks_variance(values):
         reason = "the tail is too heavy for a variance to apportion"
     reason, few = _few(rows, target) if target.event and not reason else (reason, ())
+    if target.event and not reason:
+        reason = _too_few_effective(target.values, place, weights)
     if reason:
         return LevelShares({name: Estimate(reason=reason) for name in SOURCES}, notes=target.notes)
     errors, why_none = _errors(rows, target)
@@ -179,6 +181,20 @@ def _few(rows: xr.Dataset, event: Target) -> tuple[str, tuple[str, ...]]:
         return "", few_hits(rows, event)
     except RefusedError as refusal:
         return str(refusal), ()
+
+
+def _too_few_effective(hits: Floats, place: Nesting, weights: Smoothed | None) -> str:
+    """Return why an event has too few hits in rows of equal weight, or ""."""
+    if weights is None:
+        return ""
+    known = np.isfinite(hits)
+    share = float(np.average(hits[known], weights=weights.weights[place.sample[known]]))
+    rows = known.sum() * weights.effective / weights.rows
+    rarer = min(share, 1 - share) * rows
+    if not 0 < rarer < FEWEST_HITS:
+        return ""  # without any, no two rows differ
+    side = "hits" if share < 0.5 else "misses"
+    return f"the rows are worth {rarer:.2g} {side} of equal weight, and {FEWEST_HITS} are needed"
 
 
 def _errors(rows: xr.Dataset, target: Target) -> tuple[Floats | None, str]:

@@ -86,7 +86,9 @@ def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
     """Return the numbers of samples at which a run estimates; the last is all of them."""
     size = design.samples
     sizes = [size]
-    first = _FIRST_OF_REPLICATES if _rests_on_replicates(design) else _FIRST
+    # Where samples are independent, those of all replicates count.
+    all_first = -(-_FIRST // design.replicates)
+    first = _FIRST_OF_REPLICATES if _rests_on_replicates(design) else all_first
     while (size := -(-size // 2)) >= first:
         sizes.append(size)
     return tuple(reversed(sizes))

@@ -9,7 +9,6 @@ from functools import partial
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
-from uq.methods.additive import additive_shapley
 from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import EXPLAINED, hdmr_indices
@@ -133,24 +132,12 @@ METHODS = {
         PATHS,
         shapley_indices,
         (SHAPLEY,),
-        source="Goda (2021); Song, Nelson & Staum (2016) where inputs are correlated",
+        source="Goda (2021), Song, Nelson & Staum (2016); polynomials as control variate",
         intervals="Student's t of independent paths",
         least=MIN_PATHS,
         assumes_independence=False,
         aggregates=True,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
-    ),
-    "shapley-additive": Method(
-        "the same shares, from fewer rows where the effects of inputs nearly add up",
-        PATHS,
-        additive_shapley,
-        (SHAPLEY,),
-        source="as shapley, with the additive part of the output by formula",
-        intervals="Student's t of independent paths",
-        least=MIN_PATHS,
-        assumes_independence=False,
-        noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
-        aggregates=True,
     ),
     "fast": Method(
         "how much of the variance, alone and with others, without intervals",

@@ -5,16 +5,18 @@ import numpy as np
 from uq.contract import Floats
 from uq.errors import choices
 from uq.estimate import Estimate
-from uq.intervals import ROUNDING, UNKNOWN, is_constant, scatter_interval
+from uq.intervals import UNKNOWN, is_constant, scatter_interval
+from uq.methods.controlled import controlled
 from uq.methods.indices import ALL_NOISE, SHAPLEY, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
+from uq.methods.paths import parts_of, paths_without_effect
 from uq.methods.sample import Sample
 
 MIN_PATHS = 32
 """With fewer paths Student's law does not give the interval of a mean."""
 
-MIN_SEEN = 10
-"""With fewer paths it is not known whether an input has an effect of its own."""
+EXACT = 1e-9
+"""The least half-width of an interval: what rounding may leave of an effect known by formula."""
 
 
 def shapley_indices(sample: Sample) -> Indices:
@@ -45,7 +47,9 @@ def shapley_indices(sample: Sample) -> Indices:
     inputs in [1]_, by one outer and two inner rows [2]_. Its increase, the mean of
     (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
-    path is (y - end)^2/2.
+    path is (y - end)^2/2. A polynomial of known effects serves as control variate
+    (`uq.methods.controlled`); a path's error is that from the regression on all others, "HC3" of
+    [4]_.
 
     References
     ----------
@@ -55,68 +59,31 @@ def shapley_indices(sample: Sample) -> Indices:
        and computation", SIAM/ASA J. Uncertain. Quantif. 4, 1060-1083 (2016).
     .. [3] T. Goda, "A simple algorithm for global sensitivity analysis with Shapley effects",
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
-    """
-    y = sample.grouped[sample.whole]
-    return indices_from(sample, parts_of(sample, y))
-
-
-def parts_of(sample: Sample, y: Floats) -> Floats:
-    """Return what the steps of each input add to half the square of the change along each path.
-
-    Parameters
-    ----------
-    sample : Sample
-    y : ndarray, shape (n, k) or (n, k, e)
-        Any function of the rows of whole paths; its elements add up.
-
-    Returns
-    -------
-    ndarray, shape (n, d)
-        Unbiased for the Shapley values of its variance.
-    """
-    before, after = y[:, :-1], y[:, 1:]
-    steps = (y[:, :1] - (before + after) / 2) * (before - after)
-    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)
-    return np.asarray(np.einsum("ns,nsp->np", steps, sample.direction[sample.whole] != 0))
-
-
-def indices_from(sample: Sample, parts: Floats, rounding: float = 0.0) -> Indices:
-    """Return Shapley effects from independent estimates of their parts of the variance.
-
-    Parameters
-    ----------
-    sample : Sample
-    parts : ndarray, shape (n, d)
-        Of each whole path.
-    rounding : float, optional
-        What rounding may change in an effect: the least half-width of its interval.
-
-    Raises
-    ------
-    RefusedError
+    .. [4] J. G. MacKinnon, H. White, "Some heteroskedasticity-consistent covariance matrix
+       estimators with improved finite sample properties", J. Econometrics 29, 305-325 (1985).
     """
     y = sample.grouped[sample.whole]
     if sample.is_constant(y):
         raise RefusedError(NO_VARIANCE)
     if is_constant(y - y[:, :1]):
         raise RefusedError(ALL_NOISE)
-    total = parts.sum(axis=1)
-    shares = parts.mean(axis=0) / total.mean()
-    errors = (parts - shares * total[:, None]) / total.mean()
-    found = {}
-    names = list(sample.inputs)
-    terms = list(zip(names, shares.tolist(), errors.T, strict=True))
+    plain = parts_of(sample, y)
+    seen = _linearised(plain)
+    shares, errors = _linearised(*controlled(sample, plain))
+    names, single = list(sample.inputs), np.eye(plain.shape[1])
+    contrasts = dict(zip(names, single, strict=True))
     if sample.difference:
-        one, other = (terms[names.index(name)] for name in sample.difference)
-        terms.append((" - ".join(sample.difference), one[1] - other[1], one[2] - other[2]))
-    for name, share, error in terms:
-        # Errors of rounding alone give no interval.
-        constant = is_constant(share + error)
-        ends = UNKNOWN if constant else scatter_interval(share, error, sample.confidence)
-        if rounding:
-            ends = np.fmin(ends[0], share - rounding), np.fmax(ends[1], share + rounding)
-        found[name] = Estimate(share, *ends)
-    idle = {name: paths for name in found if (paths := _paths_without_effect(sample, name))}
+        one, other = (contrasts[name] for name in sample.difference)
+        contrasts[" - ".join(sample.difference)] = one - other
+    found = {}
+    for name, contrast in contrasts.items():
+        share, error = float(shares @ contrast), errors @ contrast
+        # Where every path shows the same, scatter is rounding.
+        certain = is_constant(seen[0] @ contrast + seen[1] @ contrast)
+        low, high = scatter_interval(share, error, sample.confidence)
+        ends = np.fmin(low, share - EXACT), np.fmax(high, share + EXACT)
+        found[name] = Estimate(share, *(UNKNOWN if certain else ends))
+    idle = {name: paths for name in names if (paths := paths_without_effect(sample, name))}
     notes = tuple(
         f"{name} does not change the output by itself in any of {paths} paths: its share is due to"
         f" its correlation with {choices(sample.correlated[name])}"
@@ -125,20 +92,8 @@ def indices_from(sample: Sample, parts: Floats, rounding: float = 0.0) -> Indice
     return Indices({SHAPLEY: found}, notes, by_correlation=tuple(idle))
 
 
-def _paths_without_effect(sample: Sample, name: str) -> int:
-    """Return how many paths show that a correlated input has no effect of its own; else 0.
-
-    An input shows its own effect where it is the first to change. Only paths along which the output
-    changes say something.
-    """
-    if not sample.correlated.get(name):
-        return 0
-    whole = sample.whole
-    y, x = sample.grouped[whole], sample.inputs[name][sample.groups[whole]]
-    first = sample.direction[whole][:, 0, list(sample.inputs).index(name)] != 0
-    alone = first & (x[:, 1] != x[:, 0])
-    if (np.abs(y[:, 1] - y[:, 0])[alone] > ROUNDING * np.abs(y).max()).any():
-        return 0
-    moves = (y[:, -1] != y[:, 0]).reshape(len(y), -1).any(axis=1)  # some element of a whole output
-    seen = int((alone & moves).sum())
-    return seen if seen >= MIN_SEEN else 0
+def _linearised(parts: Floats, leverage: Floats | float = 0.0) -> tuple[Floats, Floats]:
+    """Return shares of the variance, shape (d,), and the errors of paths, shape (n, d)."""
+    mean = parts.mean(axis=0)
+    shares, scatter = mean / mean.sum(), (parts - mean) / (1 - leverage)
+    return shares, (scatter - shares * scatter.sum(axis=1, keepdims=True)) / mean.sum()

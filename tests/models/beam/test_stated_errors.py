@@ -85,3 +85,19 @@ def test_nine_in_ten_lives_lie_within_their_stated_errors(name):
     depths = (1.25e-4, 2.5e-4)
     tight = Settings(depths=depths, accuracy=0.006)
     assert within(name, Settings(depths=depths, accuracy=0.05), tight, 48) >= 0.88
+
+
+@pytest.mark.slow
+def test_nine_in_ten_worn_depths_lie_within_the_accuracy_of_lives():
+    instants = (3600.0, 7200.0, 14400.0, 28800.0, 43200.0, 57600.0, 86400.0)
+    rows = row_block(load_study(STUDIES / "beam-worn-depth.toml"), 0, 24)
+    x, seed = rows.x[:24], rows.seed[:24]
+    depths = {}
+    for accuracy in (0.05, 0.006):
+        settings = Settings(depths=(2.5e-4, 5e-4), instants=instants, accuracy=accuracy)
+        depths[accuracy] = MODEL.batch(x, seed, settings)[0]["worn_depth"]
+    known = depths[0.006]
+    on_the_way = (known > 1e-6) & (known < 5e-4)
+    off = np.abs(depths[0.05] / known - 1)[on_the_way]
+    assert len(off) > 100
+    assert np.mean(off <= 0.05) >= 0.9

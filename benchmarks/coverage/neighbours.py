@@ -1,0 +1,48 @@
+"""Shapley effects of dependent inputs by nearest neighbours, for comparison."""
+
+from itertools import combinations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from benchmarks.coverage.dependent import CASES, PATHS, shares, study, title
+from benchmarks.coverage.problems import repeated
+from benchmarks.coverage.tally import Tally
+from uq.intervals import scatter_interval
+
+PARTS = 8
+NEIGHBOURS = 3
+
+
+def by_neighbours(x, y):
+    """Estimate Shapley effects from independent rows: rows nearest in some inputs share these.
+
+    B. Broto, F. Bachoc, M. Depecker, "Variance reduction for estimation of Shapley effects and
+    adaptation to unknown input distribution", SIAM/ASA J. Uncertain. Quantif. 8, 693-716 (2020).
+    """
+    d = x.shape[1]
+    left = {(): y.var(ddof=1), tuple(range(d)): 0.0}
+    for size in range(1, d):
+        for some in combinations(range(d), size):
+            _, near = cKDTree(x[:, some]).query(x[:, some], NEIGHBOURS)
+            left[some] = y[near].var(axis=1, ddof=1).mean()
+    return shares(lambda some: left[()] - left[tuple(sorted(some))], d)
+
+
+def neighbours(repetitions):
+    """Count the intervals of nearest neighbours, by Student's t of parts of as many rows."""
+    lines = []
+    for words, case in CASES.items():
+        names, rows = list(case.laws), len(case.laws) + 1
+        tally = Tally(title(words, rows))
+        of = study(case.output, case.laws, case.correlations, PATHS * rows, "monte-carlo")
+        for ds in repeated(of, repetitions):
+            x, y = ds[names].to_dataarray().values.T, ds[case.output].values
+            found = np.array([by_neighbours(x[i::PARTS], y[i::PARTS]) for i in range(PARTS)])
+            for name, one in zip(names, found.T, strict=True):
+                ends = scatter_interval(one.mean(), one)
+                by = f"nearest neighbours in {PARTS} parts"
+                if case.truth[name] > 0:
+                    tally.add(f"shapley {name}", case.truth[name], *ends, by)
+        lines += tally.lines()
+    return lines

@@ -1,0 +1,94 @@
+"""Parts of the variance that paths show, with a polynomial of known parts as control variate."""
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.methods.paths import changes_alone, parts_of
+from uq.methods.polynomials import products, shapley_values, terms_of
+from uq.methods.sample import Sample
+
+FOLDS = 4
+"""Of the paths: the polynomial that serves on one is fitted to the rows of all others."""
+
+ROWS_EACH = 4
+"""Rows for each weight that is fitted to them."""
+
+MOST_TERMS = 250
+MOST_NUMBERS = 30_000_000
+"""In all products of all rows."""
+
+
+def controlled(sample: Sample, parts: Floats) -> tuple[Floats, Floats]:
+    """Replace what a polynomial's parts are on the paths by what they are.
+
+    Parameters
+    ----------
+    sample : Sample
+        Of paths.
+    parts : ndarray, shape (n, d)
+        Of the output, on each whole path.
+
+    Returns
+    -------
+    parts : ndarray, shape (n, d)
+        With the same expectation, and less scatter where the output resembles a polynomial in the
+        normal scores: the errors of the polynomial's parts on the paths are subtracted, times the
+        coefficient of their regression, from 0 (of no use) to 1.
+    leverage : ndarray, shape (n, d)
+        Of each path in that regression: the part of its error that the regression hides.
+
+    Notes
+    -----
+    The method is that of control variates [1]_. Fitted to other paths, the polynomial is a given
+    one, whatever its fit, and the errors of its parts have mean zero.
+
+    References
+    ----------
+    .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 8.9.
+    """
+    errors = _errors(sample, parts)
+    spread = errors - errors.mean(axis=0)
+    squares = (spread**2).sum(axis=0)
+    squares = np.where(squares > 0, squares, 1.0)
+    slopes = np.clip((spread * (parts - parts.mean(axis=0))).sum(axis=0) / squares, 0.0, 1.0)
+    return parts - slopes * errors, spread**2 / squares
+
+
+def _errors(sample: Sample, parts: Floats) -> Floats:
+    """Return the parts of a polynomial on each path, less what they are."""
+    errors = np.zeros_like(parts)
+    y = sample.grouped[sample.whole]
+    n, rows = y.shape[:2]
+    y = (y - y.mean(axis=(0, 1))).reshape(n, rows, -1)  # with the elements of a whole output
+    enough = n * rows * (1 - 1 / FOLDS) / ROWS_EACH
+    most = min(enough, MOST_TERMS, MOST_NUMBERS / (n * rows))
+    terms = terms_of(_used(sample), sample.matrix, most)
+    if not terms:
+        return errors
+    values = products(sample.scores[sample.whole], terms, sample.matrix)
+    values = np.concatenate([np.ones((n, rows, 1)), values], axis=2)
+    control = np.empty_like(y)
+    folds = [np.arange(n) % FOLDS == i for i in range(FOLDS)]
+    squares = np.stack([_products_of(values[fold], values[fold]) for fold in folds])
+    sums = np.stack([_products_of(values[fold], y[fold]) for fold in folds])
+    for fold, own, sum_ in zip(folds, squares, sums, strict=True):
+        others = squares.sum(axis=0) - own, sums.sum(axis=0) - sum_
+        weights = np.linalg.lstsq(*others, rcond=None)[0]
+        control[fold] = values[fold] @ weights
+        errors[fold] -= shapley_values(weights[1:], terms, sample.matrix)
+    return errors + parts_of(sample, control)
+
+
+def _products_of(one: Floats, other: Floats) -> Floats:
+    """Return the sums over rows of the products of columns."""
+    return np.asarray(np.tensordot(one, other, axes=((0, 1), (0, 1))))
+
+
+def _used(sample: Sample) -> list[int]:
+    """Return the places of the inputs that the polynomial is about.
+
+    Not of those that never change the output by themselves: if they have no effect, paths show that
+    exactly.
+    """
+    known = np.isfinite(sample.scores[0, 0, 0])
+    return np.flatnonzero(known & changes_alone(sample).any(axis=0)).tolist()

@@ -1,0 +1,189 @@
+"""Polynomials in correlated normal scores, whose Shapley values are known by formula."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import combinations, combinations_with_replacement, permutations
+from math import comb, factorial, prod, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from uq.contract import Floats
+
+DEGREE = 3
+"""Of the products in total, at most."""
+
+MOST_TOGETHER = 12
+"""The sets of more inputs, correlated with each other, are too many."""
+
+Term = tuple[int, ...]
+"""The places of the scores in a product, in order; a power repeats its place."""
+
+
+class Form(NamedTuple):
+    """The Shapley values of a sum of products, as quadratic forms in their weights.
+
+    Attributes
+    ----------
+    terms : list of int
+        Which of the products.
+    inputs : list of int
+        Which of the inputs.
+    matrices : ndarray, shape (inputs, terms, terms)
+    """
+
+    terms: list[int]
+    inputs: list[int]
+    matrices: Floats
+
+
+def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, ...]:
+    """Return the products of some scores up to the highest degree with at most so many of them.
+
+    Parameters
+    ----------
+    places : sequence of int
+    matrix : ndarray, shape (d, d)
+        The correlations of all scores.
+    most : float
+
+    Returns
+    -------
+    tuple of tuple of int
+        Without products that belong to more than `MOST_TOGETHER` inputs: their own, and those
+        correlated with these.
+    """
+    found: tuple[Term, ...] = ()
+    for degree in range(1, DEGREE + 1):
+        if comb(len(places) + degree, degree) - 1 > most:
+            break
+        more = combinations_with_replacement(places, degree)
+        groups = _groups(matrix)
+        found += tuple(one for one in more if len(_inputs_of(one, groups)) <= MOST_TOGETHER)
+    return found
+
+
+def products(z: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
+    """Return Wick's products of normal scores.
+
+    Parameters
+    ----------
+    z : ndarray, shape (..., d)
+    terms : sequence of tuple of int
+    matrix : ndarray, shape (d, d)
+
+    Returns
+    -------
+    ndarray, shape (..., terms)
+        Those of different degree are uncorrelated, and have mean zero. Of independent scores they
+        are products of Hermite polynomials. Scaled to a variance of the order of one.
+    """
+    known: dict[Term, Floats] = {(): np.ones(z.shape[:-1])}
+
+    def product(term: Term) -> Floats:
+        if term not in known:
+            one, rest = term[0], term[1:]
+            found = z[..., one] * product(rest)
+            for i, other in enumerate(rest):
+                if matrix[one, other]:
+                    found = found - matrix[one, other] * product(rest[:i] + rest[i + 1 :])
+            known[term] = found
+        return known[term]
+
+    found = np.empty((*z.shape[:-1], len(terms)))
+    for i, term in enumerate(terms):
+        found[..., i] = product(term) * _scale(term)
+    return found
+
+
+def shapley_values(weights: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
+    """Return the Shapley values of the variance of a polynomial.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (terms, e)
+        Of `products`; the variances of the elements add up.
+    terms : sequence of tuple of int
+    matrix : ndarray, shape (d, d)
+
+    Returns
+    -------
+    ndarray, shape (d,)
+
+    Notes
+    -----
+    The mean of a product given some scores is the product of their means given these, in the sense
+    of Wick; and two products of degree n have the covariance of n factors each, the sum over all
+    ways to pair them of the products of the covariances of pairs [1]_.
+
+    References
+    ----------
+    .. [1] S. Janson, "Gaussian Hilbert Spaces", Cambridge University Press (1997), theorems 3.9
+       and 4.9.
+    """
+    found = np.zeros(len(matrix))
+    for form in _forms(tuple(terms), matrix.tobytes()):
+        own = weights[form.terms]
+        found[form.inputs] += np.einsum("itu,tu->i", form.matrices, own @ own.T)
+    return found
+
+
+@lru_cache(maxsize=8)
+def _forms(terms: tuple[Term, ...], matrix: bytes) -> list[Form]:
+    """Return the forms of products that share their inputs: all others are uncorrelated."""
+    flat = np.frombuffer(matrix)
+    square = flat.reshape(round(sqrt(len(flat))), -1)
+    groups, together = _groups(square), defaultdict[tuple[int, ...], list[int]](list)
+    for i, term in enumerate(terms):
+        together[_inputs_of(term, groups)].append(i)
+    return [_form(terms, own, inputs, square) for inputs, own in together.items()]
+
+
+def _form(terms: tuple[Term, ...], own: list[int], inputs: tuple[int, ...], matrix: Floats) -> Form:
+    """Return the form of some products, by the sets of their inputs: L. S. Shapley (1953)."""
+    d = len(inputs)
+    found = np.zeros((d, len(own), len(own)))
+    for size in range(1, d + 1):
+        for some in combinations(range(d), size):
+            known = [inputs[i] for i in some]
+            explained = _explained([terms[i] for i in own], known, matrix)
+            share = np.full(d, -1 / (d - size) / comb(d, size) if size < d else 0.0)
+            share[list(some)] = 1 / size / comb(d, size)
+            found += share[:, None, None] * explained
+    return Form(own, list(inputs), found)
+
+
+def _explained(terms: list[Term], known: list[int], matrix: Floats) -> Floats:
+    """Return the covariances of the means of products given some scores."""
+    shared = matrix[:, known] @ np.linalg.solve(matrix[np.ix_(known, known)], matrix[known])
+    scale = np.array([_scale(term) for term in terms])
+    found = np.zeros((len(terms), len(terms)))
+    degrees = np.array([len(term) for term in terms])
+    for degree in set(degrees.tolist()):
+        rows = np.flatnonzero(degrees == degree)
+        places = np.array([terms[i] for i in rows])
+        pairs = shared[places[:, None, :, None], places[None, :, None, :]]
+        ways = (
+            prod(pairs[..., i, j] for i, j in enumerate(order))
+            for order in permutations(range(degree))
+        )
+        found[np.ix_(rows, rows)] = sum(ways)
+    return np.asarray(found * scale * scale[:, None])
+
+
+def _scale(term: Term) -> float:
+    """Return one over the standard deviation that the product has if scores are independent."""
+    return 1 / sqrt(prod(factorial(term.count(place)) for place in set(term)))
+
+
+def _groups(matrix: Floats) -> Floats:
+    """Return the number of each input's group: of those correlated, directly or through others."""
+    from scipy.sparse.csgraph import connected_components
+
+    return np.asarray(connected_components(matrix != 0, directed=False)[1])
+
+
+def _inputs_of(term: Term, groups: Floats) -> tuple[int, ...]:
+    """Return the inputs that a product, or the mean of it given others, depends on."""
+    return tuple(np.flatnonzero(np.isin(groups, groups[list(term)])).tolist())
