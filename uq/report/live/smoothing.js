@@ -10,12 +10,16 @@ function effectiveRows(numbers) {
   return squares > 0 ? sum * sum / squares : 0;
 }
 
-// The sum of each sample of several rows, else the numbers themselves.
-function perSample(numbers, sample) {
-  if (!sample) return numbers;
+// The sum of each sample of several rows by its number.
+function sumsOf(numbers, sample) {
   const sums = new Map();
   numbers.forEach((one, row) => sums.set(sample[row], (sums.get(sample[row]) ?? 0) + one));
-  return Float64Array.from(sums.values());
+  return sums;
+}
+
+// The sum of each sample of several rows, else the numbers themselves.
+function perSample(numbers, sample) {
+  return sample ? Float64Array.from(sumsOf(numbers, sample).values()) : numbers;
 }
 
 // Shape and scale of a generalised Pareto law of ascending numbers (J. Zhang, M. A. Stephens,
@@ -95,12 +99,20 @@ function withSmoothTail(raw) {
   return weights;
 }
 
+// Where samples have several rows, the weight of all of a sample's is smoothed: samples are independent.
+function smoothedSamples(raw, sample) {
+  const sums = sumsOf(raw, sample), smooth = withSmoothTail(Float64Array.from(sums.values())), factors = new Map();
+  [...sums].forEach(([one, sum], i) => factors.set(one, sum > 0 ? smooth[i] / sum : 0));
+  return raw.map((one, row) => one * factors.get(sample[row]));
+}
+
 function smoothed(logWeights, sample) {
   const most = logWeights.reduce((a, b) => b > a ? b : a, -Infinity);
   if (most === -Infinity) return {refusal: "No row of this result is possible under these laws"};
   const raw = logWeights.map(one => isNaN(one) ? 0 : Math.exp(one - most));
   const ofSamples = perSample(raw, sample), k = tailShape(ofSamples);
-  const weights = isFinite(k) ? withSmoothTail(raw) : raw, mean = total(weights) / weights.length;
+  const smooth = () => sample ? smoothedSamples(raw, sample) : withSmoothTail(raw);
+  const weights = isFinite(k) ? smooth() : raw, mean = total(weights) / weights.length;
   return {
     weights: weights.map(one => one / mean), k, rows: ofSamples.length,
     effective: effectiveRows(perSample(weights, sample)), refusal: refusal(k, ofSamples.length),
