@@ -15,7 +15,14 @@ from tornado.websocket import websocket_connect
 
 CHROMIUM = shutil.which("chromium")
 _SECONDS = 60.0
-_KEYS = {"Enter": 13, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
+_KEYS = {
+    "Enter": 13,
+    "Escape": 27,
+    "ArrowLeft": 37,
+    "ArrowUp": 38,
+    "ArrowRight": 39,
+    "ArrowDown": 40,
+}
 
 
 class Tab:

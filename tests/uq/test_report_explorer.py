@@ -173,9 +173,69 @@ def test_a_point_is_named_under_the_mouse_and_opened_by_a_click(shown):
     card = browser.value("document.querySelector('.card').innerText")
     assert f"uq row 'a result.nc' {row}" in card
     assert all(f"{ds[name].values[row]:.6g}" in card for name in ("x1", "x2", "x3", "x4", "y"))
-    browser.value("document.querySelector('.card button').click()")
+
+
+def test_a_copied_command_is_said_to_be_for_two_seconds(shown):
+    browser = shown(linear(samples=100))
+    browser.value(
+        "navigator.clipboard.writeText = async text => { window.clip = text };"
+        " window.setTimeout = (work, time) => { window.later = [work, time] }; 0"
+    )
+    open_by_keyboard(browser)
+    browser.value("document.activeElement.click()")
     browser.painted()
-    assert browser.value("document.querySelector('.card [role=status]').innerText")
+    command = browser.value("document.querySelector('.card code').innerText")
+    said = "document.querySelector('.card [role=status]').innerText"
+    assert browser.value("window.clip") == command
+    assert browser.value(said) == "Copied" and browser.value("later[1]") == 2000
+    browser.value("later[0]()")
+    assert browser.value(said) == ""
+
+
+def open_by_keyboard(browser, key="Enter"):
+    """Open the card of the row in the middle."""
+    browser.value("document.querySelector('.scatter canvas').focus()")
+    browser.press("ArrowRight", key)
+    browser.painted()
+
+
+def test_a_card_takes_the_focus_from_the_keyboard_and_gives_it_back(shown):
+    browser = shown(linear(samples=100))
+    at = "document.activeElement.textContent || document.activeElement.localName"
+    tip = "document.querySelector('.tip').innerText"
+    cards = "document.querySelectorAll('.card').length"
+    open_by_keyboard(browser)
+    row = browser.value("document.querySelector('.card').dataset.row")
+    assert browser.value(at) == "Copy"
+    browser.press("Escape")
+    browser.painted()
+    assert browser.value(cards) == 0 and browser.value(at) == "canvas"
+    assert browser.value(tip).startswith(f"Row {row}\n")  # the arrows go on from there
+    browser.click(*place_of_a_point(browser))
+    assert browser.value(cards) == 1 and browser.value(at) == "canvas"
+
+
+def test_a_threshold_is_drawn_where_it_is_or_not_at_all(shown):
+    for at, drawn in ((6.0, 1), (-1e3, 0), (1e3, 0)):
+        browser = shown(linear(samples=100, analysis={"thresholds": {"y": at}}))
+        for part in ("#explore", "#tolerances"):
+            lines = f"document.querySelectorAll('{part} svg .threshold').length"
+            assert browser.value(lines) == drawn
+
+
+def test_inputs_are_called_as_in_the_answer(shown):
+    ds = linear(samples=100)
+    ds["x4"].attrs |= {"long_name": "a long explanation", "symbol": "xi_4"}
+    browser = shown(ds)
+    for place in (".range span", ".tolerance[data-name=x4] span"):
+        found = browser.value(
+            f"(one => [one.textContent, one.title])(document.querySelector('{place}'))"
+        )
+        assert found == ["x4 (ξ₄)", "a long explanation (ξ₄)"]
+    options = browser.value("[...document.querySelectorAll('option')].map(o => o.textContent)")
+    assert any(option.startswith("x4 (ξ₄)") for option in options)
+    open_by_keyboard(browser)
+    assert "x4 (ξ₄)" in browser.value("document.querySelector('.card').innerText")
 
 
 def test_the_keyboard_moves_between_rows_and_handles(shown):

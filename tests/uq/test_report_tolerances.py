@@ -101,7 +101,9 @@ def test_too_few_rows_are_refused_as_in_python(shown):
     with pytest.raises(RunError) as refused:
         asked_of_python(browser, ds)
     said = browser.value("document.querySelector('#tolerances .said').innerText")
-    assert said.split(":")[0] == str(refused.value).split(":")[0] and "Pareto k" in said
+    why = str(refused.value)
+    assert said == f"{why[0].upper()}{why[1:]}." and "Pareto k" in said
+    assert browser.value("document.querySelector('#tolerances').innerText").count("Pareto k") == 1
     assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
 
 

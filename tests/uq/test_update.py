@@ -60,7 +60,7 @@ def test_moments_that_rest_on_a_few_rows_are_refused(three_units):
     heavy = (ds["rate"] / 2.5e-10) ** 20
     found = inputs_of(ds.assign(rate=heavy.assign_attrs(ds["rate"].attrs)))["rate"]["posterior"]
     assert found["mean"] is None and found["sd"] is None and found["quantiles"]["0.5"] > 0
-    assert found["mean_reason"].startswith("Pareto k = ")
+    assert "(Pareto k " in found["mean_reason"]
     assert "mean_reason" not in inputs_of(ds)["rate"]["posterior"]
 
 

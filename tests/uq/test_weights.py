@@ -86,4 +86,4 @@ def test_smoothed_weights_follow_the_published_algorithm():
     expected = [34.5552566, 12.21125704, 7.41715988]
     assert found.weights[:3] == pytest.approx(expected)
     assert found.weights.mean() == pytest.approx(1.0)
-    assert found.refusal.startswith("Pareto k")
+    assert "(Pareto k 0.92)" in found.refusal

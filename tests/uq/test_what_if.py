@@ -53,7 +53,7 @@ def test_the_law_of_what_only_scales_is_replaced_exactly(result):
     assert life["thresholds"]["0.8"]["below"]["value"] == pytest.approx(below.mean(), rel=1e-12)
     assert life["integrated"]["inputs"] == ["a"]
     assert "y" not in what_if_json(found)["outputs"]  # the weights of a are not to be trusted
-    assert any(note.startswith("y: Pareto k") for note in found.summary.notes)
+    assert any(re.match("y: .*Pareto k", note) for note in found.summary.notes)
 
 
 def test_the_same_laws_change_nothing(result):
@@ -151,9 +151,9 @@ def test_other_designs_have_the_intervals_of_their_replicates():
 
 
 def test_a_refusal_names_the_rows_to_add(result):
-    with pytest.raises(RunError, match="Pareto k = .* run it as a study of its own"):
+    with pytest.raises(RunError, match=r"run it as a study of its own.*Pareto k [0-9.]+\)"):
         what_if(result, {"uncertain.z.mean": 4.0})
-    with pytest.raises(RunError, match=r"Pareto k = 0\.\d+ is above 0\.44: add \d+ samples"):
+    with pytest.raises(RunError, match=r"add about \d+ samples \(Pareto k 0\.\d+, limit 0\.44\)"):
         what_if(computed(study(samples=60)), {"uncertain.z.sd": 1.05})
     assert largest_shape(100) == 0.5 and largest_shape(10**6) == 0.7
 

@@ -84,8 +84,13 @@ def element_in_words(ds: xr.Dataset, element: Element) -> str:
 
 def in_words(variable: xr.DataArray) -> str:
     """Return the meaning of a variable, with its symbol (never broken) where it has one."""
+    return with_symbol(meaning_of(variable), variable)
+
+
+def with_symbol(words: str, variable: xr.DataArray) -> str:
+    """Return words for a variable with its symbol, unless they are its symbol."""
     symbol = as_text(symbol_of(variable)).replace(" ", "\u00a0")
-    return f"{meaning_of(variable)} ({symbol})" if symbol else meaning_of(variable)
+    return words if symbol in ("", as_text(words)) else f"{words} ({symbol})"
 
 
 def meaning_of(variable: xr.DataArray) -> str:

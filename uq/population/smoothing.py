@@ -210,10 +210,13 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
         return f"weights rest on {rows} independent {parts}, and more than 10 are needed"
     if k < DOUBTFUL:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
-        return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
+        return (
+            f"the rows of this study cannot tell: add about {more} samples"
+            f" (Pareto k {k:.2f}, limit {most:.2f})"
+        )
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
-    return f"Pareto k = {k:.2f}: {hopeless}"
+    return f"{hopeless} (Pareto k {k:.2f})"
 
 
 def largest_share(weights: Floats) -> float:

@@ -16,7 +16,7 @@ from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
-from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.drawing.words import element_in_words, in_words, unbroken, with_symbol
 from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
@@ -139,8 +139,9 @@ def _drawn(elements: Sequence[Element], analysis: AnalysisTable) -> int:
 def _input(rows: xr.Dataset, name: str) -> dict[str, Any]:
     variable, values = rows[name], rows[name].values
     factor, unit = scale_of([variable])
-    return _column(name, in_words(variable), unit, 1 / factor, values) | {
+    return _column(name, with_symbol(called(name), variable), unit, 1 / factor, values) | {
         "role": "input",
+        "meaning": plain(readable(in_words(variable))),
         "thresholds": [],
     }
 

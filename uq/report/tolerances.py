@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from uq.conclusions.words import called
 from uq.designs.registry import DESIGNS
-from uq.drawing.words import in_words
+from uq.drawing.words import with_symbol
+from uq.greek import readable
 from uq.inputs.law import Law
 from uq.inputs.observed import IntegerRange
 from uq.literals import plain
@@ -58,7 +60,10 @@ def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] 
     return {
         "laws": [_plain_law(name, inputs) for name in known],
         "sliders": [name for name in known if name not in without],
-        "without": [[plain(in_words(rows[name])), why] for name, why in without.items()],
+        "without": [
+            [plain(readable(with_symbol(called(name), rows[name]))), why]
+            for name, why in without.items()
+        ],
         "correlated": list(_copulas(inputs)),
         "lives": {name: _scales(one, inputs) for name, one in integrated.items()},
         "refused": refused,

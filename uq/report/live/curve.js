@@ -20,7 +20,8 @@ function curvesOf(column, lines, title) {
     parts.push(draw("text", {x: at, y: HIGH - 8, "text-anchor": "middle"}, words));
     free = at + half + 8;
   }
-  for (const value of column.angle ? times.flatMap(time => [-time, time]) : times) {
+  const asked = column.angle ? times.flatMap(time => [-time, time]) : times;
+  for (const value of asked.filter(one => scale.has(one))) { // none beyond the axis
     parts.push(draw("line", {x1: x(value), x2: x(value), y1: y(0), y2: y(1), class: "threshold"}));
   }
   for (const {curve, name, half, band} of lines) {

@@ -5,8 +5,9 @@ function explorerOf(rows) {
   const {columns} = rows, outputs = columns.filter(one => one.role === "output");
   let x = columns[rows.first[0]], y = columns[rows.first[1]];
   const card = make("div", {"aria-live": "polite"});
-  const scatter = new Scatter(selection, columns, row => {
+  const scatter = new Scatter(selection, columns, (row, byKey) => {
     card.replaceChildren(cardOf(rows, row));
+    if (byKey) card.querySelector("button").focus({preventScroll: true});
     card.scrollIntoView({block: "nearest"});
   });
   const ranges = new Map(), shelf = make("div", {class: "ranges"});
@@ -14,7 +15,7 @@ function explorerOf(rows) {
   const chooser = (label, chosen, choose) => make("label", {}, `${label} `,
     make("select", {"on:change": event => choose(columns[event.target.value])},
       ...["input", "output"].map(role => make("optgroup", {label: `${role}s`}, ...columns.flatMap((one, place) =>
-        one.role === role ? [make("option", {value: place, selected: one === chosen}, one.title)] : [])))));
+        one.role === role ? [make("option", {value: place, selected: one === chosen, title: one.meaning}, one.title)] : [])))));
 
   function arrange() {
     scatter.show(x, y);
@@ -47,17 +48,24 @@ function explorerOf(rows) {
     return make("div", {class: "chips", role: "group", "aria-label": category.label}, `${category.label} `, ...buttons);
   });
 
+  const hint = make("p", {class: "note"}, "Click to leave out or take in.");
   const clear = make("button", {type: "button", class: "clear", "on:click": () => selection.clear()}, "Choose all rows");
   selection.listeners.push(showRanges, () => { clear.disabled = selection.isAll; });
   clear.disabled = true;
   const keys = make("p", {class: "note", id: "keys"}, "Drag over points to choose rows, or move the handles; click"
-    + " a point to see its row. On the plot, the arrow keys go from row to row, and Enter opens one.");
+    + " a point to see its row. On the plot, the arrow keys go from row to row, Enter opens one, and"
+    + " Escape closes it.");
   const element = make("div", {},
     make("div", {class: "explorer"},
-      make("div", {}, ...chips, chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
+      make("div", {}, ...chips, ...(chips.length ? [hint] : []), chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
         chooser("Horizontal:", x, one => { x = one; arrange(); }), keys, shelf, clear),
       found.element),
     card);
+  element.addEventListener("keydown", event => {
+    if (event.key !== "Escape" || !card.hasChildNodes()) return;
+    card.replaceChildren();
+    scatter.close();
+  });
   new ResizeObserver(() => scatter.resize()).observe(scatter.element);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => scatter.draw());
   return {element, arrange};

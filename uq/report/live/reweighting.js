@@ -78,10 +78,10 @@ class Reweighting {
     return law.logDensities(law.kind.discrete ? factors.map(Math.round) : factors, others);
   }
 
-  // The probability of what the study asks for.
+  // The probability of what the study asks for; NaN where weights are refused.
   probability({column, value, hits}) {
     const weights = this.weights(column), law = this.lawOf(column);
-    if (weights?.refusal) return {share: NaN, low: NaN, high: NaN, more: weights.refusal};
+    if (weights?.refusal) return {share: NaN, low: NaN, high: NaN};
     const unknown = hits.reduce((sum, one, row) => sum + (isNaN(one) && column.states[row] !== FAILED), 0);
     if (unknown) return {share: NaN, low: NaN, high: NaN, more: `${unknown} rows were censored before that time`};
     if (!weights && !law) return shareOf(this.rows, hits, new Uint8Array(hits.length).fill(1));

@@ -3,9 +3,10 @@
 function cardOf(rows, row) {
   const name = rows.numbers[row];
   const command = `uq row ${rows.file} ${name}`;
-  const facts = rows.categories.map(one => [one.label, one.entry(row).label]);
-  const list = pairs => make("dl", {}, ...pairs.flatMap(([term, words]) => [make("dt", {}, term), make("dd", {}, words)]));
-  const of = role => rows.columns.filter(one => one.role === role).map(one => [one.label, one.wordsOfRow(row)]);
+  const facts = rows.categories.map(one => [one, one.entry(row).label]);
+  const list = pairs => make("dl", {}, ...pairs.flatMap(([{label, meaning}, words]) => [
+    make("dt", {title: meaning}, label), make("dd", {}, words)]));
+  const of = role => rows.columns.filter(one => one.role === role).map(one => [one, one.wordsOfRow(row)]);
   const done = make("span", {role: "status"});
   const copy = make("button", {type: "button", "on:click": () => copied(command, done)}, "Copy");
   return make("div", {class: "card", "data-row": name},
@@ -15,10 +16,13 @@ function cardOf(rows, row) {
       make("div", {}, make("h4", {}, "Outputs"), list([...facts, ...of("output")]))));
 }
 
+const SHORTLY = 2000; // ms
+
 async function copied(text, done) {
   try {
     await navigator.clipboard.writeText(text);
-    done.textContent = "Copied.";
+    done.textContent = "Copied";
+    setTimeout(() => { done.textContent = ""; }, SHORTLY);
   } catch {
     done.textContent = "Select the command to copy it.";
   }

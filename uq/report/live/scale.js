@@ -21,6 +21,8 @@ class Scale {
   // The place of a value on the axis: 0 at its lower, 1 at its upper end.
   place(value) { return (this.bent(value) - this.from) / (this.to - this.from); }
 
+  has(value) { return value >= this.low && value <= this.high; }
+
   // The value at a place; the ends exactly.
   value(place) {
     if (place <= 0) return this.low;

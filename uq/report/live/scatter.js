@@ -137,11 +137,20 @@ class Scatter {
     this.draw();
   }
 
-  open(row) {
+  open(row, byKey = false) {
     if (row < 0) return;
     this.picked = row;
     this.draw();
-    this.pick(row);
+    this.pick(row, byKey);
+  }
+
+  // Back to the row that was open.
+  close() {
+    const row = this.picked;
+    this.picked = -1;
+    this.canvas.focus();
+    this.point(row);
+    this.draw();
   }
 
   listen() {
@@ -171,7 +180,7 @@ class Scatter {
     canvas.addEventListener("pointerleave", () => this.point(-1));
     canvas.addEventListener("blur", () => this.point(-1));
     canvas.addEventListener("keydown", event => {
-      if (event.key === "Enter" || event.key === " ") this.open(this.at);
+      if (event.key === "Enter" || event.key === " ") this.open(this.at, true);
       else if (!this.step(event.key, event.shiftKey ? 50 : 1)) return;
       event.preventDefault();
     });

@@ -33,7 +33,7 @@ function slidersOf(name, reweighting, moved) {
 
   show();
   const element = make("div", {class: "tolerance", role: "group", "aria-label": label, "data-name": name},
-    make("span", {}, label), words,
+    make("span", {title: column.meaning}, label), words,
     ...(kind.scaleOnly ? [] : [make("label", {}, "width", factor)]), make("label", {}, "shift", shift));
   return {element, reset() { factor.value = 1; shift.value = 0; move(); }};
 }

@@ -108,7 +108,7 @@ function smoothedSamples(raw, sample) {
 
 function smoothed(logWeights, sample) {
   const most = logWeights.reduce((a, b) => b > a ? b : a, -Infinity);
-  if (most === -Infinity) return {refusal: "No row of this result is possible under these laws"};
+  if (most === -Infinity) return {refusal: "no row of this result is possible under the other laws"};
   const raw = logWeights.map(one => isNaN(one) ? 0 : Math.exp(one - most));
   const ofSamples = perSample(raw, sample), k = tailShape(ofSamples);
   const smooth = () => sample ? smoothedSamples(raw, sample) : withSmoothTail(raw);
@@ -124,10 +124,11 @@ function refusal(k, rows) {
   const most = rows > 10 ? Math.min(HOPELESS, 1 - 1 / Math.log10(rows)) : -Infinity;
   if (k <= most || k === -Infinity) return "";
   if (most === -Infinity) return `weights rest on ${rows} independent part${rows > 1 ? "s" : ""}, and more than 10 are needed`;
-  if (k === Infinity) return `fewer than ${FEWEST} samples have weight there`;
+  if (k === Infinity) return `fewer than ${FEWEST} samples have weight there: add ${rows} or more`;
   if (k < HOPELESS) {
     const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);
-    return `Pareto k = ${k.toFixed(2)} is above ${most.toFixed(2)}: add ${more} samples`;
+    return `the rows of this study cannot tell: add about ${more} samples (Pareto k ${k.toFixed(2)}, limit ${most.toFixed(2)})`;
   }
-  return `Pareto k = ${k.toFixed(2)}: the rows hardly visit what these laws would; run them as a study`;
+  return "the rows hardly visit what the other laws would; run it as a study of its own, or with many times the rows"
+    + ` (Pareto k ${k.toFixed(2)})`;
 }

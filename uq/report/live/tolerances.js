@@ -38,13 +38,14 @@ function tolerancesOf(rows) {
   }
 
   function say(changed, problem) {
-    const all = problem ? [] : outputs.map(column => reweighting.weights(column)).filter(Boolean);
-    const used = [...new Set(all)].filter(one => !one.refusal);
+    const all = problem ? [] : [...new Set(outputs.map(column => reweighting.weights(column)).filter(Boolean))];
+    const used = all.filter(one => !one.refusal), why = [...new Set(all.map(one => one.refusal).filter(Boolean))];
     const least = used.reduce((a, b) => b.effective < a.effective ? b : a, used[0]);
     const most = used.reduce((a, b) => b.k > a ? b.k : a, -Infinity);
-    said.replaceChildren(...(problem ? [problem] : !changed ? ["The laws of the study."] : !least ? [all[0].refusal]
+    said.replaceChildren(...(problem ? [problem] : !changed ? ["The laws of the study."] : !least ? [capitalized(`${why.join("; ")}.`)]
       : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${least.rows} ${rows.parts}${rows.count < rows.total ? " in this page" : ""}`,
-        isFinite(most) ? ` (Pareto k = ${number(most, 2)}).` : "."]));
+        isFinite(most) ? ` (Pareto k = ${number(most, 2)}).` : ".",
+        why.length ? ` Where a number is missing, ${why.join("; ")}.` : ""]));
   }
 
   function asStudied() {

@@ -22,6 +22,10 @@ function percent(share) {
   return `${(100 * share).toFixed(digits)}\u00a0%`;
 }
 
+function capitalized(text) {
+  return text.slice(0, 1).toUpperCase() + text.slice(1);
+}
+
 // An element with attributes and contents; a name with ":" is an event.
 function make(tag, attributes = {}, ...contents) {
   const element = document.createElement(tag);
