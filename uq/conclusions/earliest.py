@@ -94,7 +94,7 @@ class Earliest:
             return ""
         one = self.regimes[0]
         unknown = isnan(one.share.low)
-        also = "" if one.is_more_frequent or unknown else ": no measurable difference"
+        also = "" if one.is_more_frequent or unknown else ": chance may explain the difference"
         return (
             f"{share_text(one.share)} of them are {one.label}, of all rows"
             f" {percent(one.overall)}{also}."
