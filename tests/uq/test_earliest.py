@@ -11,6 +11,7 @@ from uq.analysis.findings import Findings
 from uq.conclusions.answer import answer, conclude
 from uq.conclusions.as_json import answer_json
 from uq.conclusions.page import fragment
+from uq.report.embedded import rows_inside
 from uq.rows.elements import independent_rows, named_elements
 from uq.rows.row_choice import lowest_row
 
@@ -39,6 +40,13 @@ def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
     assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
     assert found.command == "uq row OUT --lowest life"
     assert lowest_row(ds, "life").number == found.rows[0]
+
+
+def test_commands_that_compute_rows_name_a_model_that_is_not_installed():
+    own = Findings(kinds(analysis={"outputs": ["life"]}))
+    assert answer(own.ds).lead.earliest.command.endswith("]' --model FILE")
+    assert rows_inside(own, "a.nc")["model"] == " --model FILE"
+    assert rows_inside(Findings(lived(lambda x1, x4: x1)), "a.nc")["model"] == ""
 
 
 def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():

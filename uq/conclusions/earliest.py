@@ -18,6 +18,7 @@ from uq.analysis.findings import Findings
 from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
 from uq.errors import InputError
 from uq.intervals import Replicates
+from uq.rows.commands import model_option
 from uq.rows.elements import Element
 from uq.rows.row_choice import lowest_rows
 from uq.wording import grouped, percent
@@ -47,12 +48,15 @@ class Earliest:
         Those that the earliest are in more often than all, else that of most of them.
     unit : Unit
         Of the lives.
+    command : str
+        What shows the first of them.
     """
 
     element: str
     rows: tuple[int, ...]
     lives: tuple[float, ...]
     unit: Unit
+    command: str
     size: int = 0
     of: int = 0
     inputs: tuple[Apart, ...] | None = None
@@ -68,11 +72,6 @@ class Earliest:
         ]
         rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
         return sentence(f"{rows} {_and(named)} {verb} first")
-
-    @property
-    def command(self) -> str:
-        """What shows the first of them."""
-        return f"uq row OUT --lowest {shlex.quote(self.element)}"
 
     @property
     def why(self) -> str:
@@ -131,7 +130,8 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
     if not rows:
         return None
-    found = Earliest(element.name, rows, lives, unit)
+    command = f"uq row OUT --lowest {shlex.quote(element.name)}{model_option(findings.ds)}"
+    found = Earliest(element.name, rows, lives, unit, command)
     places = earliest_rows(element)
     if len(places) < FEWEST:
         return found

@@ -2,7 +2,7 @@
 
 function cardOf(rows, row) {
   const name = rows.numbers[row];
-  const command = `uq row ${rows.file} ${name}`;
+  const command = `uq row ${rows.file} ${name}${rows.model}`;
   const facts = rows.categories.map(one => [one.label, one.entry(row).label]);
   const list = pairs => make("dl", {}, ...pairs.flatMap(([term, words]) => [make("dt", {}, term), make("dd", {}, words)]));
   const of = role => rows.columns.filter(one => one.role === role).map(one => [one.label, one.wordsOfRow(row)]);
