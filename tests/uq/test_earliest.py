@@ -138,6 +138,20 @@ def test_the_regime_of_the_earliest_rows_is_named():
     )
 
 
+def test_the_regime_of_most_of_the_earliest_rows_is_named_where_all_rows_are_in_it_as_often():
+    ds = kinds(samples=400)
+    lives = np.random.default_rng(3).uniform(1, 2, 400)
+    ds = asking(with_output(ds, "end", lives, "lifetime"), outputs=["end"])
+    first = np.argsort(lives)[:20]
+    found = answer(ds).lead.earliest
+    most = found.regimes[0]
+    of_first = (ds["regime"].values[first] == 1).mean()
+    assert most.label == ("fast" if of_first > 0.5 else "slow")
+    assert most.share.value == max(of_first, 1 - of_first)
+    assert f"are {most.label}, of all rows {100 * most.overall:.1f} %" in found.sentence
+    assert found.sentence.endswith("%: chance may explain the difference.")
+
+
 def test_equal_values_share_their_rank():
     assert ranks(np.array([3.0, 1.0, 1.0, 2.0])).tolist() == [0.875, 0.25, 0.25, 0.625]
 
