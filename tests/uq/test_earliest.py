@@ -11,6 +11,7 @@ from uq.analysis.findings import Findings
 from uq.conclusions.answer import answer, conclude
 from uq.conclusions.as_json import answer_json
 from uq.conclusions.page import fragment
+from uq.report.embedded import rows_inside
 from uq.rows.elements import independent_rows, named_elements
 from uq.rows.row_choice import lowest_row
 
@@ -39,6 +40,13 @@ def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
     assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
     assert found.command == "uq row OUT --lowest life"
     assert lowest_row(ds, "life").number == found.rows[0]
+
+
+def test_commands_that_compute_rows_name_a_model_that_is_not_installed():
+    own = Findings(kinds(analysis={"outputs": ["life"]}))
+    assert answer(own.ds).lead.earliest.command.endswith("]' --model FILE")
+    assert rows_inside(own, "a.nc")["model"] == " --model FILE"
+    assert rows_inside(Findings(lived(lambda x1, x4: x1)), "a.nc")["model"] == ""
 
 
 def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():
@@ -128,6 +136,20 @@ def test_the_regime_of_the_earliest_rows_is_named():
     assert found.sentence.endswith(
         f"100 % (83.2 to 100 %) of them are fast, of all rows {100 * fast.mean():.1f} %."
     )
+
+
+def test_the_regime_of_most_of_the_earliest_rows_is_named_where_all_rows_are_in_it_as_often():
+    ds = kinds(samples=400)
+    lives = np.random.default_rng(3).uniform(1, 2, 400)
+    ds = asking(with_output(ds, "end", lives, "lifetime"), outputs=["end"])
+    first = np.argsort(lives)[:20]
+    found = answer(ds).lead.earliest
+    most = found.regimes[0]
+    of_first = (ds["regime"].values[first] == 1).mean()
+    assert most.label == ("fast" if of_first > 0.5 else "slow")
+    assert most.share.value == max(of_first, 1 - of_first)
+    assert f"are {most.label}, of all rows {100 * most.overall:.1f} %" in found.sentence
+    assert found.sentence.endswith("%: chance may explain the difference.")
 
 
 def test_equal_values_share_their_rank():

@@ -47,6 +47,7 @@ def test_a_threshold_with_a_unit_waits_for_the_outputs(uq, write_function):
     limits = '[analysis]\nthresholds = {life = "4 days"}\n'
     refused = uq("check", "own.toml", "--model", write_function(WEAR, WEAR_STUDY + limits))
     assert refused.code == 2 and "the unit 'days' does not fit 'life'" in refused.err
+    assert "returns={'life': uq.Returned('s', life=True), ...}" in refused.err
     in_seconds = '@uq.machine(returns={"life": uq.Returned("s", life=True), "profile": "m"})'
     text = WEAR.replace("@uq.machine", in_seconds)
     assert uq("check", "own.toml", "--model", write_function(text, WEAR_STUDY + limits)).code == 0

@@ -3,6 +3,8 @@
 import pytest
 from own_machines import WEAR, WEAR_STUDY
 
+from uq.outside.returned import Returned, WrongReturnError, checked
+
 BOUNDED = (
     "from typing import Annotated\nimport uq\n"
     "@uq.machine\ndef wear(load: Annotated[float, %s] = 1.0): ...\n"
@@ -98,3 +100,11 @@ def test_a_study_names_no_code(uq, write_function):
 def test_an_own_model_that_is_not_named_is_asked_for(uq, write_function):
     write_function(WEAR)
     assert "a model of your own is named by its file" in uq("check", "own.toml").err
+
+
+def test_an_output_that_is_missing_is_named_with_what_was_returned_instead():
+    with pytest.raises(WrongReturnError) as caught:
+        list(checked({"strees": 1.0, "mass": 2.0}, {"stress": Returned()}))
+    assert str(caught.value) == (
+        "returned no 'stress' (it returned 'strees', 'mass'); did you mean 'strees'?"
+    )

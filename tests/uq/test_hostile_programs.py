@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
-from own_machines import PAD_PROGRAM, run_program
+from own_machines import PAD, PAD_PROGRAM, run_program
 
 from uq.contract import Status
 from uq.outside import descendants, folders, program
@@ -134,11 +134,20 @@ def test_a_row_limit_costs_no_more_than_the_limit_of_each_row(uq, write_program)
     assert time.monotonic() - began < 10  # each in a process of its own: half a minute
 
 
-def test_a_program_that_is_not_there_is_a_status(uq, write_program, folder):
-    write_program()
-    (folder / "program").unlink()
-    _, ds = run_program(uq)
-    assert "cannot be started: No such file" in ds["status"].attrs["example_raised"]
+def test_a_program_that_cannot_be_started_is_refused_before_the_run(uq, write_program, folder):
+    def refused(text=PAD):
+        write_program(text=text)
+        ended = uq("run", "own.toml", "--model", "machine.toml")
+        assert ended.code == 2 and ended.err.count("\n") == 1
+        return ended.err
+
+    assert "the one beside this file is './program'" in refused(PAD.replace("./prog", "prog"))
+    wrong = refused(PAD.replace("./program", "./progam"))
+    assert "'./progam' is no file; did you mean './program'?" in wrong
+    write_program(text=PAD)
+    (folder / "program").chmod(0o600)
+    ended = uq("run", "own.toml", "--model", "machine.toml")
+    assert "'./program' is not executable: chmod +x ./program" in ended.err
 
 
 def test_folders_of_killed_processes_are_removed(folder):

@@ -75,6 +75,7 @@ HEAD = "HTTP/1.1 200 OK\r\n\r\n"
 HTML = HEAD + "<html>"
 WRONG = {
     "<html>": (HTML, "answers Evaluate with status 200 and no JSON (<html>)"),
+    "inf": (HEAD + '{"output": [[inf]]}', "inf is not JSON; return finite numbers, or"),
     "an error": ({"error": {"type": "X", "message": "no mesh"}}, "answers Evaluate: no mesh"),
     "a list": ([1.0], "answers Evaluate without a list of vectors"),
     "text": ({"output": [["a"]]}, "returned 'y' as str"),

@@ -156,3 +156,10 @@ def test_a_number_is_read_as_it_is_written_or_refused(folder, file, how, text, e
 def test_a_study_in_its_place_is_one_line(uq, write_program):
     write_program()
     assert "is a study, not a machine file" in uq("check", "own.toml", "--model", "own.toml").err
+
+
+def test_a_machine_file_in_the_place_of_a_study_is_one_line(uq, write_program):
+    write_program()
+    said = uq("run", "machine.toml").err
+    assert said.count("\n") == 1
+    assert "is a machine file; run a study of it: uq run STUDY --model machine.toml" in said

@@ -63,7 +63,7 @@ def test_a_report_says_all_there_is_to_say(asked, text):
         "pawn",
         "share the highest rank",
         "uq run kinds.toml",
-        "uq verify OUT.nc",
+        "uq verify OUT.nc --model FILE",
         ds.attrs["study_sha256"],
         ds.attrs["cpu"],
         ds.attrs["numpy"],
@@ -127,7 +127,7 @@ def test_where_all_rows_failed_the_report_says_why():
     ds["status"].attrs["example_raised"] = "ValueError: no such thing"
     words = read(ds).plain_words
     assert "20 of 20 rows failed." in words and "ValueError: no such thing" in words
-    assert "uq rerun --failed" in words
+    assert "uq rerun OUT --failed --model FILE" in words  # which is not installed
 
 
 @pytest.mark.parametrize(

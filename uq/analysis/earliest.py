@@ -50,12 +50,25 @@ class Apart:
 
 
 @dataclass(frozen=True)
-class RegimeApart:
-    """A regime in which the earliest rows are more often than all."""
+class RegimeOfFirst:
+    """A regime of the earliest rows.
+
+    Attributes
+    ----------
+    label : str
+    share : Estimate
+        Its share of the earliest rows.
+    overall : float
+        Its share of all rows.
+    is_more_frequent : bool
+        Whether the earliest rows are in it more often than all, with 95 % confidence for all
+        regimes together.
+    """
 
     label: str
     share: Estimate
     overall: float
+    is_more_frequent: bool
 
 
 def ranks(column: Floats) -> Floats:
@@ -141,15 +154,19 @@ def inputs_apart(
     return [one for _, one in sorted(found, key=lambda pair: -pair[0])]
 
 
-def regimes_apart(ds: xr.Dataset, first: Places, replicate: Replicates = None) -> list[RegimeApart]:
-    """Return the regimes that the earliest rows are in more often than all, with 95 % confidence.
+def regimes_of_first(
+    ds: xr.Dataset, first: Places, replicate: Replicates = None
+) -> list[RegimeOfFirst]:
+    """Return the regimes that some rows are in more often than all, the most frequent first.
 
-    The most frequent among them first.
+    If there are none, that in which most of them are; nothing where all rows are in one regime.
     """
-    return sorted(_regimes(ds, first, replicate), key=lambda one: -one.share.value)
+    found = sorted(_regimes(ds, first, replicate), key=lambda one: -one.share.value)
+    more = [one for one in found if one.is_more_frequent]
+    return more or [one for one in found[:1] if one.overall < 1]
 
 
-def _regimes(ds: xr.Dataset, first: Places, replicate: Replicates) -> Iterator[RegimeApart]:
+def _regimes(ds: xr.Dataset, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
     if "regime" not in ds:
         return
     mask = np.zeros(ds.sizes["sample"], dtype=bool)
@@ -161,7 +178,5 @@ def _regimes(ds: xr.Dataset, first: Places, replicate: Replicates) -> Iterator[R
         inside = ds["regime"].values == code
         overall = float(inside.mean())
         low, _ = share_interval(inside[mask], part, sure)
-        if low > overall:
-            ends = share_interval(inside[mask], part)
-            share = Estimate(float(inside[mask].mean()), float(ends[0]), float(ends[1]))
-            yield RegimeApart(label, share, overall)
+        share = Estimate(float(inside[mask].mean()), *share_interval(inside[mask], part))
+        yield RegimeOfFirst(label, share, overall, bool(low > overall))

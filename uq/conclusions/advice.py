@@ -23,6 +23,7 @@ from uq.conclusions.words import (
     twin_of,
 )
 from uq.keys import key_of
+from uq.rows.commands import model_option
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested
 from uq.rows.results import failed
@@ -71,7 +72,8 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
         yield Advice(
             "failed",
             f"Mend the {lost} failed rows first: {why[0]};"
-            " 'uq rerun --failed' computes them again, if necessary with other settings.",
+            f" 'uq rerun OUT --failed{model_option(ds)}' computes them again,"
+            " if necessary with other settings.",
         )
 
 

@@ -25,8 +25,8 @@ def answer_json(found: Answer) -> dict[str, Any]:
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
         input ``over``. A ranking has ``contributions``: ``inputs`` -> index, ``effects`` -> change
         with a ``step`` of the input, in a ``unit`` or, where that is "", in that of the output. The
-        earliest rows have ``lives`` (row -> life), and the ``inputs`` and ``regimes`` that
-        distinguish them.
+        earliest rows have ``lives`` (row -> life), and the ``inputs`` that distinguish
+        them and the ``regimes`` of most of them.
     """
     return {
         "rows": found.rows,
@@ -67,7 +67,8 @@ def _earliest(one: Earliest) -> dict[str, Any]:
             for each in one.inputs or ()
         },
         "regimes": {
-            each.label: json_form.numbers(each.share) | {"overall": each.overall}
+            each.label: json_form.numbers(each.share)
+            | {"overall": each.overall, "is_more_frequent": each.is_more_frequent}
             for each in one.regimes
         },
     }

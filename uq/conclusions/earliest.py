@@ -2,21 +2,23 @@
 
 import shlex
 from dataclasses import dataclass, replace
+from math import isnan
 
 import xarray as xr
 
 from uq.analysis.earliest import (
     FEWEST,
     Apart,
-    RegimeApart,
+    RegimeOfFirst,
     earliest_rows,
     inputs_apart,
-    regimes_apart,
+    regimes_of_first,
 )
 from uq.analysis.findings import Findings
 from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
 from uq.errors import InputError
 from uq.intervals import Replicates
+from uq.rows.commands import model_option
 from uq.rows.elements import Element
 from uq.rows.row_choice import lowest_rows
 from uq.wording import grouped, percent
@@ -42,21 +44,24 @@ class Earliest:
         Those whose values differ, the most different first; None where that cannot be known.
     units : tuple of Unit
         Theirs.
-    regimes : tuple of RegimeApart
-        Those that the earliest are in more often than all.
+    regimes : tuple of RegimeOfFirst
+        Those that the earliest are in more often than all, else that of most of them.
     unit : Unit
         Of the lives.
+    command : str
+        What shows the first of them.
     """
 
     element: str
     rows: tuple[int, ...]
     lives: tuple[float, ...]
     unit: Unit
+    command: str
     size: int = 0
     of: int = 0
     inputs: tuple[Apart, ...] | None = None
     units: tuple[Unit, ...] = ()
-    regimes: tuple[RegimeApart, ...] = ()
+    regimes: tuple[RegimeOfFirst, ...] = ()
 
     @property
     def first(self) -> str:
@@ -67,11 +72,6 @@ class Earliest:
         ]
         rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
         return sentence(f"{rows} {_and(named)} {verb} first")
-
-    @property
-    def command(self) -> str:
-        """What shows the first of them."""
-        return f"uq row OUT --lowest {shlex.quote(self.element)}"
 
     @property
     def why(self) -> str:
@@ -88,12 +88,15 @@ class Earliest:
 
     @property
     def where(self) -> str:
-        """The regime that is most frequent among the earliest, if it is less so among all."""
+        """The regime of most of the earliest, and whether it is less frequent among all."""
         if not self.regimes:
             return ""
         one = self.regimes[0]
+        unknown = isnan(one.share.low)
+        also = "" if one.is_more_frequent or unknown else ": chance may explain the difference"
         return (
-            f"{share_text(one.share)} of them are {one.label}, of all rows {percent(one.overall)}."
+            f"{share_text(one.share)} of them are {one.label}, of all rows"
+            f" {percent(one.overall)}{also}."
         )
 
     @property
@@ -127,7 +130,8 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
     if not rows:
         return None
-    found = Earliest(element.name, rows, lives, unit)
+    command = f"uq row OUT --lowest {shlex.quote(element.name)}{model_option(findings.ds)}"
+    found = Earliest(element.name, rows, lives, unit, command)
     places = earliest_rows(element)
     if len(places) < FEWEST:
         return found
@@ -138,7 +142,7 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
         of=int(element.present.sum()),
         inputs=None if inputs is None else tuple(inputs),
         units=tuple(_unit_of(findings.ds, one) for one in inputs or ()),
-        regimes=tuple(regimes_apart(findings.rows, places, part)),
+        regimes=tuple(regimes_of_first(findings.rows, places, part)),
     )
 
 

@@ -1,6 +1,8 @@
 """A machine file: a program, its input and its results, described in TOML."""
 
+import os
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from math import inf, isfinite
 from pathlib import Path
@@ -8,6 +10,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.outside.machine_tables import MachineName, Name, Table, read_as, refuse
 from uq.outside.row_by_row import SEED
@@ -137,6 +140,8 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
     except OSError:
         yield Fault(("machine", "template"), "no such file", machine.template)
         return
+    if problem := _program_problem(machine.command[0], folder):
+        yield Fault(("machine", "command"), problem)
     for argument in machine.command[1:]:
         if (folder / argument).is_file() and not Path(argument).is_absolute():
             problem = (
@@ -173,6 +178,21 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
     for code in machine.exit_codes:
         if not re.fullmatch(r"\d{1,3}", code):
             yield Fault(("machine", "exit_codes", code), "must be a number between 1 and 255")
+
+
+def _program_problem(program: str, folder: Path) -> str:
+    """Return why a program cannot be started, as far as its file shows it; "" if it can."""
+    program = program.replace(f"{{{FOLDER}}}", str(folder.absolute()))
+    path = folder / program
+    if re.search(_PLACE % r"\w+", program) or ("/" not in program and shutil.which(program)):
+        return ""
+    if "/" not in program:
+        remedy = f"; the one beside this file is './{program}'" if path.is_file() else ""
+        return f"'{program}' is not on the PATH{remedy}"
+    if not path.is_file():
+        there = [f"./{one.name}" for one in folder.iterdir() if os.access(one, os.X_OK)]
+        return f"'{program}' is no file{nearest(program, there)}"
+    return "" if os.access(path, os.X_OK) else f"'{program}' is not executable: chmod +x {program}"
 
 
 _IN_ROW = "must be the name of a file in the folder of the row"

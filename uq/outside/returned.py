@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Output
-from uq.errors import InputError
+from uq.errors import InputError, nearest
+
+_MOST_NAMES = 5  # that a message lists
 
 
 @dataclass(frozen=True)
@@ -219,7 +221,11 @@ def checked(
         raise WrongReturnError(f"returned {type(returned).__name__}, not a dict")
     for name in expected:
         if name not in returned:
-            raise WrongReturnError(f"returned no '{name}'")
+            there = [str(one) for one in returned]
+            listed = ", ".join(f"'{one}'" for one in there[:_MOST_NAMES])
+            listed += ", ..." * (len(there) > _MOST_NAMES)
+            what = f"it returned {listed or 'an empty dict'}"
+            raise WrongReturnError(f"returned no '{name}' ({what}){nearest(name, there)}")
     for name in returned:
         if name not in expected:
             raise WrongReturnError(f"returned '{name}', which 'returns' does not name")

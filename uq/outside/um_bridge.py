@@ -8,6 +8,7 @@ References
 
 import http.client
 import json
+import re
 import socket
 import time
 from collections.abc import Iterator, Sequence
@@ -33,6 +34,8 @@ _PATIENCE = 60.0  # seconds for which a server that does not answer is asked aga
 _PAUSES = (0.1, 0.3, 1.0, 3.0)
 
 _OUT_SECONDS = 10.0  # for which others are asked before a server that did not answer
+
+_NO_NUMBER = re.compile(rb"(?<=[\[,:\s])[-+]?(?:inf|nan)(?=[\],}\s])", re.IGNORECASE)
 
 _out = dict[str, float]()  # servers that did not answer, and when
 _silent = set[str]()  # servers that have not answered for that time: they are asked only once
@@ -177,6 +180,11 @@ def _read(server: str, what: str, status: int, text: bytes) -> Any:
     except OverflowError as large:
         raise ServerError(f"{server} answers {what}: {large}") from None
     except (ValueError, RecursionError):
+        if bare := _NO_NUMBER.search(text):
+            raise ServerError(
+                f"{server} answers {what}: {bare[0].decode()} is not JSON; return finite numbers,"
+                ' or {"error": {"type": ..., "message": ...}} for a row without them'
+            ) from None
         said = " ".join(text[:80].decode(errors="replace").split())
         raise ServerError(
             f"{server} answers {what} with status {status} and no JSON ({said})"

@@ -25,6 +25,7 @@ from uq.population.scaling import population
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
 from uq.report.tolerances import tolerances
+from uq.rows.commands import model_option
 from uq.rows.element import Element
 from uq.rows.elements import (
     analysis_of,
@@ -88,6 +89,7 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
             f" tolerances integrate {names} exactly instead. {design['intervals']}"
         )
     return {
+        "model": model_option(rows),
         "file": shlex.quote(plain(file)),
         "total": whole.sizes["sample"],
         "numbers": encoded(rows["sample"].values, "<i4"),

@@ -25,6 +25,7 @@ from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_tables, status_table
 from uq.report.pictures import pictures
 from uq.report.references import references
+from uq.rows.commands import model_option
 from uq.rows.results import failed, open_result
 from uq.store.files import check_target, whole
 
@@ -111,6 +112,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
+        "model_option": model_option(ds),
         "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
         "references": references(ds),
     }

@@ -14,6 +14,7 @@ from uq.errors import choices, nearest
 from uq.inputs.faults import Fault, unknown
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
 from uq.methods.registry import designs_for, fed_by, kinds_with_intervals
+from uq.outside.row_by_row import RowByRow
 from uq.written import misfit
 
 Tables = Mapping[str, Mapping[str, Any]]
@@ -149,6 +150,13 @@ def _unit_faults(model: Model, name: str, path: tuple[str, ...], value: Any) -> 
     """Yield whether a number is in a unit that does not fit an output."""
     output = model.outputs.get(name)  # None: not known before rows have run
     if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
+        if output.unit == "1" and isinstance(model.batch, RowByRow):
+            of_life = output.is_lifetime
+            python = "uq.Returned('s', life=True)" if of_life else "'m'"
+            problem += (
+                f"; '{name}' has no unit: declare it, in Python by returns={{'{name}': {python},"
+                f" ...}}, in a machine file by unit = '{'s' if of_life else 'm'}'"
+            )
         yield Fault(path, problem, value)
 
 

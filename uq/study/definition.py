@@ -184,6 +184,10 @@ def study_from_text(
     InputError
     """
     data = parse(text, source)
+    if "machine" in data and "study" not in data:
+        raise InputError(
+            f"{source}: is a machine file; run a study of it: uq run STUDY --model {source}"
+        )
     faults = shape_faults(data)
     tables = sound_entries(data, faults)
     lines: list[str] = []

@@ -10,6 +10,7 @@ from uq.report.dossier.items import Item
 from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.pictures import pictures
 from uq.report.references import references
+from uq.rows.commands import model_option
 from uq.rows.elements import analysis_of, shown_outputs, study_file_of
 from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
@@ -27,7 +28,7 @@ def context(findings: Findings, file: str) -> Iterator[Item]:
 def information(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what a reader needs to repeat the assessment."""
     ds = findings.ds
-    name = study_file_of(ds).study.name
+    name, model = study_file_of(ds).study.name, model_option(ds)
     yield Item(
         "Result",
         facts=[
@@ -42,7 +43,8 @@ def information(findings: Findings, file: str) -> Iterator[Item]:
             "The study file is in the appendix. On the same processor and versions the numbers"
             " are equal to the bit, on others up to rounding."
         ],
-        code=f"uq run {name}.toml --samples {ds.attrs['samples']}\nuq verify {quote(file)}",
+        code=f"uq run {name}.toml --samples {ds.attrs['samples']}{model}\n"
+        f"uq verify {quote(file)}{model}",
     )
     yield Item(
         "Key of each number",
@@ -86,7 +88,8 @@ def software(findings: Findings, file: str) -> Iterator[Item]:
     yield Item("Quality assurance programme")
     note = "The tests of vibrolife are part of its source, not of a result."
     yield Item("Verification against known solutions", notes=[note])
-    note = f"'uq verify {quote(file)}' computes rows again and compares them to the bit."
+    command = f"uq verify {quote(file)}{model_option(findings.ds)}"
+    note = f"'{command}' computes rows again and compares them to the bit."
     yield Item("Rows computed again", notes=[note])
     yield Item("Validation against observations")
 

@@ -2,7 +2,7 @@
 
 function cardOf(rows, row) {
   const name = rows.numbers[row];
-  const command = `uq row ${rows.file} ${name}`;
+  const command = `uq row ${rows.file} ${name}${rows.model}`;
   const facts = rows.categories.map(one => [one, one.entry(row).label]);
   const list = pairs => make("dl", {}, ...pairs.flatMap(([{label, meaning}, words]) => [
     make("dt", {title: meaning}, label), make("dd", {}, words)]));
