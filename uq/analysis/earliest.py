@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -73,9 +74,7 @@ class RegimeOfFirst:
 
 def ranks(column: Floats) -> Floats:
     """Return the rank of each value, from 0 to 1; equal values share theirs."""
-    _, place, counts = np.unique(column, return_inverse=True, return_counts=True)
-    below = np.cumsum(counts) - counts / 2
-    return np.asarray(below[place] / len(column))
+    return np.asarray((scipy.stats.rankdata(column) - 0.5) / len(column))
 
 
 def earliest_rows(element: Element) -> Places:
