@@ -73,6 +73,7 @@ class RegimeOfFirst:
 
 def ranks(column: Floats) -> Floats:
     """Return the rank of each value, from 0 to 1; equal values share theirs."""
+    # Not scipy.stats.rankdata: a summary starts without loading scipy.stats.
     _, place, counts = np.unique(column, return_inverse=True, return_counts=True)
     below = np.cumsum(counts) - counts / 2
     return np.asarray(below[place] / len(column))
