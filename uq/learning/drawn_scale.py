@@ -1,4 +1,4 @@
-"""Values of the integrated input, drawn from its law given the inspections."""
+"""Quantiles of the integrated input in each row, of its law given the inspections."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,18 +12,28 @@ _TINY = 2.0**-53
 _FLAT, _STEEPEST = 1e-6, 30.0
 
 
-def drawn_scale(grid: Grid, worth: Floats, scale: Scale, at: Floats) -> Floats:
-    """Draw the integrated input of each row from its law given the inspections.
+def scale_quantiles(grid: Grid, worth: Floats, scale: Scale, at: Floats) -> Floats:
+    """Return quantiles of the integrated input of each row, given the inspections.
 
     Parameters
     ----------
     grid : Grid
     worth : ndarray, shape (n, g)
     scale : Scale
-    at : ndarray, shape (n,)
-        What they are drawn with, between 0 and 1.
+    at : ndarray, shape (n, q)
+        Probabilities.
+
+    Returns
+    -------
+    ndarray, shape (n, q)
     """
     above = np.cumsum(worth, axis=1)
+    places = [_place(grid, worth, above, column) for column in at.T]
+    return scale.quantiles(np.concatenate(places)).reshape(at.shape[::-1]).T
+
+
+def _place(grid: Grid, worth: Floats, above: Floats, at: Floats) -> Floats:
+    """Return the prior probability of one quantile in each row, shape (n,)."""
     wanted = at * above[:, -1]
     node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)
     here = np.arange(len(worth)), node
@@ -32,7 +42,7 @@ def drawn_scale(grid: Grid, worth: Floats, scale: Scale, at: Floats) -> Floats:
     within = _tilted(np.nan_to_num(within).clip(0.0, 1.0), grid, worth, node)
     edges = grid.edges
     places = edges[node] + within * (edges[node + 1] - edges[node])
-    return scale.quantiles(np.where(above[:, -1] > 0, places.clip(_TINY, 1 - _TINY), at))
+    return np.where(above[:, -1] > 0, places.clip(_TINY, 1 - _TINY), at)
 
 
 def in_order(count: int) -> Floats:

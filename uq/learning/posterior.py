@@ -13,7 +13,7 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.drawn_scale import drawn_scale, in_order, in_order_of_weight
+from uq.learning.drawn_scale import in_order, in_order_of_weight, scale_quantiles
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
@@ -21,6 +21,7 @@ from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at
 from uq.learning.own_rows_out import log_worth
 from uq.learning.unit_likelihood import UnitLikelihoods
+from uq.population.learnt_scale import SCORES
 from uq.population.smoothing import Smoothed, smoothed
 from uq.rows.elements import replicates_of
 from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
@@ -45,11 +46,14 @@ class Weighted:
     weights : Smoothed
     scale : ndarray, shape (m,), or None
         What the integrated input is in each row.
+    quantiles : ndarray, shape (m, q), or None
+        Of its law in each row of an inspected unit, at `SCORES`.
     """
 
     rows: Rows
     weights: Smoothed
     scale: Floats | None
+    quantiles: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -227,8 +231,8 @@ def _uninspected(
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     worth = np.exp(log_rows - log_rows.max())
-    at = in_order(place.samples)[place.sample]
-    return Weighted(rows, weights, drawn_scale(found.grids[0], worth, scale, at))
+    at = in_order(place.samples)[place.sample, None]
+    return Weighted(rows, weights, scale_quantiles(found.grids[0], worth, scale, at)[:, 0])
 
 
 def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
@@ -268,5 +272,9 @@ def _inspected(
     kept = np.isin(np.arange(len(world)), rows)
     with np.errstate(divide="ignore"):
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
-    at = in_order_of_weight(of_rows)
-    return Weighted(rows, weights, drawn_scale(grid, worth, scale, at) if scale else None)
+    if scale is None:
+        return Weighted(rows, weights, None)
+    at = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
+    at = np.column_stack([in_order_of_weight(of_rows), at])
+    values = scale_quantiles(grid, worth, scale, at)
+    return Weighted(rows, weights, values[:, 0], values[:, 1:])
