@@ -13,13 +13,13 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.drawn_scale import in_order, in_order_of_weight, scale_quantiles
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at
 from uq.learning.own_rows_out import log_worth
+from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.population.learnt_scale import SCORES
 from uq.population.smoothing import Smoothed, smoothed
@@ -46,14 +46,14 @@ class Weighted:
     weights : Smoothed
     scale : ndarray, shape (m,), or None
         What the integrated input is in each row.
-    quantiles : ndarray, shape (m, q), or None
-        Of its law in each row of an inspected unit, at `SCORES`.
+    scores : ndarray, shape (m, q), or None
+        Its law in each row of an inspected unit (`LearntScale`).
     """
 
     rows: Rows
     weights: Smoothed
     scale: Floats | None
-    quantiles: Floats | None = None
+    scores: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -231,8 +231,9 @@ def _uninspected(
     if scale is None or scale.is_own:
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     worth = np.exp(log_rows - log_rows.max())
-    at = in_order(place.samples)[place.sample, None]
-    return Weighted(rows, weights, scale_quantiles(found.grids[0], worth, scale, at)[:, 0])
+    at = in_order(place.samples)[place.sample]
+    drawn = prior_places(found.grids[0], worth, at[None])[0]
+    return Weighted(rows, weights, scale.quantiles(drawn))
 
 
 def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
@@ -274,7 +275,8 @@ def _inspected(
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
     if scale is None:
         return Weighted(rows, weights, None)
-    at = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
-    at = np.column_stack([in_order_of_weight(of_rows), at])
-    values = scale_quantiles(grid, worth, scale, at)
-    return Weighted(rows, weights, values[:, 0], values[:, 1:])
+    of_law = np.repeat(special.ndtr(SCORES)[:, None], len(rows), axis=1)
+    at = np.concatenate([in_order_of_weight(of_rows)[None], of_law])
+    places = prior_places(grid, worth, at)
+    scores = np.asarray(special.ndtri(places[1:].T))
+    return Weighted(rows, weights, scale.quantiles(places[0]), scores)

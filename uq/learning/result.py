@@ -18,18 +18,19 @@ from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import (
+    INPUT,
     MOST,
     OF_UNIT,
     ONLY_INSPECTED,
-    SCALE_QUANTILES,
+    SCALE_SCORES,
     WEIGHT,
     has_weights,
 )
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
-UNIT_SCALE, UNIT_QUANTILES, SCORE = "unit_scale", "unit_scale_quantiles", "score"
-_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_QUANTILES)
+UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
 WORLDS = "worlds"
@@ -57,7 +58,7 @@ def as_result(
         sample), as each inspected one. An integrated input has the values that the inspections
         leave, and the lives that it scales are those for these values; as computed they are kept
         with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
-        of each inspected unit, one value of its law in each row; ``unit_scale_quantiles``
+        of each inspected unit, one value of its law in each row; ``unit_scale_scores``
         (inspected, sample, score): that law. Attributes: ``inspections``, and ``ledger``, a digest
         of each.
     """
@@ -85,10 +86,11 @@ def as_result(
         of_scale = {"role": WEIGHT, "units": rows[found.scale.name].attrs["units"]}
         of_scale["long_name"] = f"{found.scale.name} of the inspected unit"
         variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
-        laws = [_spread_out(one, one.quantiles, n, np.nan) for one in _units(found)]
-        of_law = {"long_name": f"quantiles of {found.scale.name} in each row of the unit"}
-        variables[UNIT_QUANTILES] = ((*both, SCORE), np.stack(laws), of_scale | of_law)
-        meaning = "standard normal quantile"
+        laws = [_spread_out(one, one.scores, n, SCORES) for one in _units(found)]
+        meaning = f"normal score before, of {found.scale.name} of the inspected unit"
+        of_law = attrs | {"long_name": meaning}
+        variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
+        meaning = "normal score given the inspections and the rest of the row"
         ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
     units, count = len(found.units), len(inspections)
@@ -161,10 +163,11 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
     place = known.index(label)
     rows, name = prior_of(ds), ds.attrs[INTEGRATED]
     if name:
-        scale, law = ds[UNIT_SCALE][place], ds[UNIT_QUANTILES][place].drop_vars(SCORE)
-        rows = rows.assign(_rescaled(rows, name, scale.fillna(rows[name]).values))
-        law = law.fillna(rows[name]).drop_vars("inspected").assign_attrs(input=name)
-        rows = rows.assign({SCALE_QUANTILES: law})
+        scale, drawn = ds[UNIT_SCALE].values[place], rows[name].values
+        rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
+        law = ds[UNIT_SCORES]
+        attrs = law.attrs | {INPUT: name}
+        rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
     if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
         # Rows of one sample have nothing in common: each has a value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
@@ -198,10 +201,11 @@ def _units(found: Posterior) -> list[Weighted]:
     return list(found.units.values())
 
 
-def _spread_out(one: Weighted, values: Floats | None, n: int, other: float) -> Floats:
+def _spread_out(one: Weighted, values: Floats | None, n: int, other: float | Floats) -> Floats:
     """Return values of the rows of a unit among all rows."""
-    found = np.full((n, *np.shape(values)[1:]), other)
-    found[one.rows] = other if values is None else values
+    found = np.full((n, *np.shape(other)), other)
+    if values is not None:
+        found[one.rows] = values
     return found
 
 

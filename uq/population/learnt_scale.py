@@ -8,10 +8,13 @@ import xarray as xr
 from scipy import special
 
 from uq.contract import Floats
-from uq.rows.weights import SCALE_QUANTILES
+from uq.inputs.conditioning import cdf_within
+from uq.inputs.law import Law
+from uq.population.row_inputs import Inputs
+from uq.rows.weights import INPUT, SCALE_SCORES
 
 SCORES = np.concatenate([[-8.0], np.linspace(-4.0, 4.0, 25), [8.0]])
-"""Standard normal quantiles at which the law of the input is kept."""
+"""Normal scores of the quantiles of which the law of the input consists."""
 
 
 @dataclass(frozen=True)
@@ -22,18 +25,23 @@ class LearntScale:
     ----------
     inputs : tuple of str
         Its name.
+    law : Law
+        Of the input before the inspections.
+    bounds : tuple of float
     exponent : float
     drawn : ndarray, shape (n,)
         The values of the rows.
-    quantiles : ndarray, shape (n, q)
-        Of its law in each row, at `SCORES`; the score is linear in their logarithms between them,
-        and nothing lies beyond the first and last.
+    scores : ndarray, shape (n, q)
+        Normal scores, by the law before the inspections, of its quantiles in each row at `SCORES`:
+        linear between them, and nothing beyond the first and last.
     """
 
     inputs: tuple[str, ...]
+    law: Law
+    bounds: tuple[float, float]
     exponent: float
     drawn: Floats
-    quantiles: Floats
+    scores: Floats
 
     @property
     def spread(self) -> float:
@@ -43,40 +51,45 @@ class LearntScale:
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            share = self._below(self.drawn * (time / lives) ** (1 / self.exponent))
+            reached = self.drawn * (time / lives) ** (1 / self.exponent)
+            before = cdf_within(self.law, reached, self.bounds)
+            share = self._given_inspections(special.ndtri(before))
         if self.exponent < 0:
             share = 1 - share
         return np.where(np.isnan(lives), 0.0, share)
 
-    def _below(self, values: Floats) -> Floats:
-        """Return the probability that the input of each row lies below a value."""
-        count = (self.quantiles <= values[:, None]).sum(axis=1)
-        after = np.clip(count, 1, len(SCORES) - 1)
-        low, high = (
-            np.take_along_axis(self.quantiles, i[:, None], 1)[:, 0] for i in (after - 1, after)
-        )
-        part = np.log(values / low) / np.log(high / low)
-        score = SCORES[after - 1] + part * (SCORES[after] - SCORES[after - 1])
-        inside = (count > 0) & (count < len(SCORES))
-        return np.where(inside, special.ndtr(score), (count > 0).astype(float))
+    def _given_inspections(self, score: Floats) -> Floats:
+        """Return the probability that the input of each row lies below a score before them."""
+        passed = (self.scores <= score[:, None]).sum(axis=1)
+        after = np.clip(passed, 1, len(SCORES) - 1)
+        row = np.arange(len(score))
+        low, high = self.scores[row, after - 1], self.scores[row, after]
+        part = (score - low) / (high - low)
+        found = special.ndtr(SCORES[after - 1] + part * (SCORES[after] - SCORES[after - 1]))
+        return np.where(passed == 0, 0.0, np.where(passed == len(SCORES), 1.0, found))
 
 
-def learnt_scale(rows: xr.Dataset, exponents: Mapping[str, float]) -> LearntScale | None:
-    """Return the law that inspections left of the input that is integrated, if it scales lives.
+def learnt_scale(
+    rows: xr.Dataset, inputs: Inputs, exponents: Mapping[str, float]
+) -> LearntScale | None:
+    """Return the law that inspections left of the integrated input, if it scales lives.
 
     Parameters
     ----------
     rows : xarray.Dataset
-        Of one inspected unit, or others: these have none.
+        Those of an inspected unit; others have no such law.
+    inputs : Inputs
+        Of these rows.
     exponents : dict of str to float
-        Of the inputs that only scale these lives.
+        Of the inputs that only scale the lives.
     """
     name = learnt_input(rows)
     if name not in exponents:
         return None
-    return LearntScale((name,), exponents[name], rows[name].values, rows[SCALE_QUANTILES].values)
+    of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
+    return LearntScale((name,), *of, rows[SCALE_SCORES].values)
 
 
 def learnt_input(rows: xr.Dataset) -> str:
-    """Return the input whose law in each row the inspections of a unit left, or ""."""
-    return str(rows[SCALE_QUANTILES].attrs["input"]) if SCALE_QUANTILES in rows else ""
+    """Return the input whose law in each row is what inspections of a unit left, or ""."""
+    return str(rows[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows else ""

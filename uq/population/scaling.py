@@ -239,7 +239,7 @@ def population(
     for element in elements_of(rows, outputs):
         if not plain and element.declared.scales and not element.censored.any():
             inputs = inputs or inputs_of(rows)
-            learnt = learnt_scale(rows, scalers(inputs, element.declared))
+            learnt = learnt_scale(rows, inputs, scalers(inputs, element.declared))
             law = learnt or integrated(rows, element.declared, inputs).law
             element = replace(element, law=law)
         yield element

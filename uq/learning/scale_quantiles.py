@@ -5,35 +5,31 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.learning.evidence import Grid
-from uq.learning.integrated import Scale
 
 _GOLDEN = (5**0.5 - 1) / 2
 _TINY = 2.0**-53
 _FLAT, _STEEPEST = 1e-6, 30.0
 
 
-def scale_quantiles(grid: Grid, worth: Floats, scale: Scale, at: Floats) -> Floats:
-    """Return quantiles of the integrated input of each row, given the inspections.
+def prior_places(grid: Grid, worth: Floats, at: Floats) -> Floats:
+    """Return prior probabilities of quantiles of the integrated input given the inspections.
 
     Parameters
     ----------
     grid : Grid
     worth : ndarray, shape (n, g)
-    scale : Scale
-    at : ndarray, shape (n, q)
-        Probabilities.
+    at : ndarray, shape (q, n)
+        The probabilities of the quantiles of each row.
 
     Returns
     -------
-    ndarray, shape (n, q)
+    ndarray, shape (q, n)
     """
     above = np.cumsum(worth, axis=1)
-    places = [_place(grid, worth, above, column) for column in at.T]
-    return scale.quantiles(np.concatenate(places)).reshape(at.shape[::-1]).T
+    return np.stack([_place(grid, worth, above, one) for one in at])
 
 
 def _place(grid: Grid, worth: Floats, above: Floats, at: Floats) -> Floats:
-    """Return the prior probability of one quantile in each row, shape (n,)."""
     wanted = at * above[:, -1]
     node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)
     here = np.arange(len(worth)), node
