@@ -9,10 +9,11 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import special
 
-from uq.contract import Floats
+from uq.contract import Floats, Mask
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
+from uq.learning.cut_cells import edges_of_rows
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
@@ -232,7 +233,8 @@ def _uninspected(
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     worth = np.exp(log_rows - log_rows.max())
     at = in_order(place.samples)[place.sample]
-    drawn = prior_places(found.grids[0], worth, at[None])[0]
+    edges = np.broadcast_to(found.grids[0].edges, (len(rows), len(found.grids[0].edges)))
+    drawn = prior_places(edges, worth, at[None])[0]
     return Weighted(rows, weights, scale.quantiles(drawn))
 
 
@@ -260,10 +262,18 @@ def _inspected(
     """
     rows, grid = likelihoods.blocks[unit], found.grids[unit]
     size = np.bincount(world[rows], minlength=len(found.rest[unit]))
-    joint = found.rest[unit][world[rows]] + likelihoods.of(unit, grid.values)
-    joint -= np.log(size[world[rows]])[:, None]
+    of_unit = likelihoods.of(unit, grid.values)
+    joint = found.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
     top = joint.max()
     worth = np.exp(joint - top)
+    edges = np.broadcast_to(grid.edges, (len(rows), len(grid.edges)))
+    if scale is not None and np.isneginf(of_unit).any():
+
+        def allowed(places: Floats) -> Mask:
+            return likelihoods.of(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
+
+        edges = edges_of_rows(grid, of_unit > -np.inf, allowed)
+        worth *= np.diff(edges) / np.diff(grid.edges)
     of_rows = worth.sum(axis=1)
     most = np.inf
     if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
@@ -277,6 +287,6 @@ def _inspected(
         return Weighted(rows, weights, None)
     of_law = np.repeat(special.ndtr(SCORES)[:, None], len(rows), axis=1)
     at = np.concatenate([in_order_of_weight(of_rows)[None], of_law])
-    places = prior_places(grid, worth, at)
+    places = prior_places(edges, worth, at)
     scores = np.asarray(special.ndtri(places[1:].T))
     return Weighted(rows, weights, scale.quantiles(places[0]), scores)

@@ -113,7 +113,7 @@ def _of_life(
         values=np.where(still, element.values, np.nan),
         censored=element.censored & still,
         failed=~still,
-        law=None if element.law is None else Surviving(element.law, seen),
+        law=None if element.law is None else Surviving(element.law, element.below(seen)),
         weights=weights,
         most=element.most * still.mean() / share,
     )

@@ -4,20 +4,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
-from uq.learning.evidence import Grid
 
 _GOLDEN = (5**0.5 - 1) / 2
 _TINY = 2.0**-53
 _FLAT, _STEEPEST = 1e-6, 30.0
 
 
-def prior_places(grid: Grid, worth: Floats, at: Floats) -> Floats:
+def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
     """Return prior probabilities of quantiles of the integrated input given the inspections.
 
     Parameters
     ----------
-    grid : Grid
+    edges : ndarray, shape (n, g + 1)
+        The prior probabilities between which each of its values stands, in each row.
     worth : ndarray, shape (n, g)
+        The probability of each value.
     at : ndarray, shape (q, n)
         The probabilities of the quantiles of each row.
 
@@ -26,18 +27,18 @@ def prior_places(grid: Grid, worth: Floats, at: Floats) -> Floats:
     ndarray, shape (q, n)
     """
     above = np.cumsum(worth, axis=1)
-    return np.stack([_place(grid, worth, above, one) for one in at])
+    return np.stack([_place(edges, worth, above, one) for one in at])
 
 
-def _place(grid: Grid, worth: Floats, above: Floats, at: Floats) -> Floats:
+def _place(edges: Floats, worth: Floats, above: Floats, at: Floats) -> Floats:
     wanted = at * above[:, -1]
     node = np.minimum((above < wanted[:, None]).sum(axis=1), worth.shape[1] - 1)
-    here = np.arange(len(worth)), node
+    row = np.arange(len(worth))
+    here = row, node
     with np.errstate(divide="ignore", invalid="ignore"):
         within = (wanted - (above[here] - worth[here])) / worth[here]
-    within = _tilted(np.nan_to_num(within).clip(0.0, 1.0), grid, worth, node)
-    edges = grid.edges
-    places = edges[node] + within * (edges[node + 1] - edges[node])
+    within = _tilted(np.nan_to_num(within).clip(0.0, 1.0), edges, worth, node)
+    places = edges[here] + within * (edges[row, node + 1] - edges[here])
     return np.where(above[:, -1] > 0, places.clip(_TINY, 1 - _TINY), at)
 
 
@@ -53,18 +54,23 @@ def in_order_of_weight(weights: Floats) -> Floats:
     return found
 
 
-def _tilted(within: Floats, grid: Grid, worth: Floats, node: NDArray[np.intp]) -> Floats:
+def _tilted(within: Floats, edges: Floats, worth: Floats, node: NDArray[np.intp]) -> Floats:
     """Return places within nodes, 0 to 1, drawn to the side on which the density is higher.
 
     By half its slope: evenly spread places would add the variance of a node to that of the density,
-    of which the values at the middles of nodes, equally spaced, have all.
+    of which the values at the middles of nodes, equally spaced, have all. Where a neighbour is
+    impossible, the slope is that to the other.
     """
-    middle = (grid.edges[1:] + grid.edges[:-1]) / 2
-    low, high = np.maximum(node - 1, 0), np.minimum(node + 1, len(middle) - 1)
     row = np.arange(len(worth))
+    sides = [np.clip(node + step, 0, worth.shape[1] - 1) for step in (-1, 1)]
+    low, high = (np.where(worth[row, side] > 0, side, node) for side in sides)
     with np.errstate(divide="ignore", invalid="ignore"):
-        below, above = (np.log(worth[row, i]) - grid.log_share[i] for i in (low, high))
-        rise = (above - below) / (middle[high] - middle[low])
-        tilt = (np.diff(grid.edges)[node] * rise / 2).clip(-_STEEPEST, _STEEPEST)
+        below, above = (
+            np.log(worth[row, i] / (edges[row, i + 1] - edges[row, i])) for i in (low, high)
+        )
+        middle = [(edges[row, i] + edges[row, i + 1]) / 2 for i in (low, high)]
+        rise = (above - below) / (middle[1] - middle[0])
+        wide = edges[row, node + 1] - edges[row, node]
+        tilt = (wide * rise / 2).clip(-_STEEPEST, _STEEPEST)
         moved = np.log1p(within * np.expm1(tilt)) / tilt
     return np.where(np.isfinite(tilt) & (np.abs(tilt) > _FLAT), moved, within)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 from scipy import special
+from scipy.interpolate import PchipInterpolator
 
 from uq.contract import Floats
 from uq.inputs.conditioning import cdf_within
@@ -13,8 +14,10 @@ from uq.inputs.law import Law
 from uq.population.row_inputs import Inputs
 from uq.rows.weights import INPUT, SCALE_SCORES
 
-SCORES = np.concatenate([[-8.0], np.linspace(-4.0, 4.0, 25), [8.0]])
-"""Normal scores of the quantiles of which the law of the input consists."""
+SCORES = np.linspace(-6.0, 6.0, 25)
+"""Normal scores of the quantiles that are kept of the law of the input."""
+
+_FINE = np.linspace(-6.0, 6.0, 97)
 
 
 @dataclass(frozen=True)
@@ -31,9 +34,9 @@ class LearntScale:
     exponent : float
     drawn : ndarray, shape (n,)
         The values of the rows.
-    scores : ndarray, shape (n, q)
-        Normal scores, by the law before the inspections, of its quantiles in each row at `SCORES`:
-        linear between them, and nothing beyond the first and last.
+    scores : ndarray, shape (n, 97)
+        Normal scores, by the law before the inspections, of evenly spread scores from -6 to 6 given
+        them: linear between these, and nothing beyond.
     """
 
     inputs: tuple[str, ...]
@@ -61,12 +64,12 @@ class LearntScale:
     def _given_inspections(self, score: Floats) -> Floats:
         """Return the probability that the input of each row lies below a score before them."""
         passed = (self.scores <= score[:, None]).sum(axis=1)
-        after = np.clip(passed, 1, len(SCORES) - 1)
+        after = np.clip(passed, 1, len(_FINE) - 1)
         row = np.arange(len(score))
         low, high = self.scores[row, after - 1], self.scores[row, after]
         part = (score - low) / (high - low)
-        found = special.ndtr(SCORES[after - 1] + part * (SCORES[after] - SCORES[after - 1]))
-        return np.where(passed == 0, 0.0, np.where(passed == len(SCORES), 1.0, found))
+        found = special.ndtr(_FINE[after - 1] + part * (_FINE[after] - _FINE[after - 1]))
+        return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, found))
 
 
 def learnt_scale(
@@ -87,7 +90,8 @@ def learnt_scale(
     if name not in exponents:
         return None
     of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
-    return LearntScale((name,), *of, rows[SCALE_SCORES].values)
+    scores = PchipInterpolator(SCORES, rows[SCALE_SCORES].values, axis=1)(_FINE)
+    return LearntScale((name,), *of, scores)
 
 
 def learnt_input(rows: xr.Dataset) -> str:

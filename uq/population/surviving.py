@@ -16,12 +16,12 @@ class Surviving:
     ----------
     law : RowLaw
         Of all lives.
-    seen : float
-        The time [s].
+    gone : ndarray, shape (n,)
+        The probability of each row that its life has ended by then.
     """
 
     law: RowLaw
-    seen: float
+    gone: Floats
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -34,7 +34,7 @@ class Surviving:
         return self.law.spread
 
     def below(self, lives: Floats, time: float) -> Floats:
-        """Return P(T < time) given T > `seen` of each row, shape (n,); 0 where T cannot be."""
-        gone, by = self.law.below(lives, self.seen), self.law.below(lives, max(time, self.seen))
+        """Return P(T < time) of each row, shape (n,); 0 where no life outlasts that time."""
+        more = np.maximum(self.law.below(lives, time) - self.gone, 0.0)
         with np.errstate(invalid="ignore"):
-            return np.where(gone < 1, (by - gone) / (1 - gone), 0.0)
+            return np.where(self.gone < 1, more / (1 - self.gone), 0.0)
