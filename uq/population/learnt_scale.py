@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 from scipy import special
-from scipy.interpolate import PchipInterpolator
 
 from uq.contract import Floats
 from uq.inputs.conditioning import cdf_within
@@ -89,6 +88,8 @@ def learnt_scale(
     name = learnt_input(rows)
     if name not in exponents:
         return None
+    from scipy.interpolate import PchipInterpolator  # late: it takes a while to import
+
     of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
     scores = PchipInterpolator(SCORES, rows[SCALE_SCORES].values, axis=1)(_FINE)
     return LearntScale((name,), *of, scores)
