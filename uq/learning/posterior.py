@@ -234,7 +234,7 @@ def _uninspected(
     worth = np.exp(log_rows - log_rows.max())
     at = in_order(place.samples)[place.sample]
     edges = np.broadcast_to(found.grids[0].edges, (len(rows), len(found.grids[0].edges)))
-    drawn = prior_places(edges, worth, at[None])[0]
+    drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
     return Weighted(rows, weights, scale.quantiles(drawn))
 
 
@@ -285,8 +285,7 @@ def _inspected(
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
     if scale is None:
         return Weighted(rows, weights, None)
-    of_law = np.repeat(special.ndtr(SCORES)[:, None], len(rows), axis=1)
-    at = np.concatenate([in_order_of_weight(of_rows)[None], of_law])
-    places = prior_places(edges, worth, at)
-    scores = np.asarray(special.ndtri(places[1:].T))
-    return Weighted(rows, weights, scale.quantiles(places[0]), scores)
+    of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
+    places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
+    scores = np.asarray(special.ndtri(places[:, 1:]))
+    return Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)

@@ -165,9 +165,10 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
     if name:
         scale, drawn = ds[UNIT_SCALE].values[place], rows[name].values
         rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
-        law = ds[UNIT_SCORES]
-        attrs = law.attrs | {INPUT: name}
-        rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
+        if UNIT_SCORES in ds:  # posteriors of older versions have none
+            law = ds[UNIT_SCORES]
+            attrs = law.attrs | {INPUT: name}
+            rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
     if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
         # Rows of one sample have nothing in common: each has a value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
