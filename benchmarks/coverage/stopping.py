@@ -273,7 +273,7 @@ def _stop(tally, what, looks, truths):
         tally.estimate(what, known[stop], own[stop])
 
 
-WIDEST = "conservative: of three inputs, that with the widest interval counts"
+WIDEST = "conservative: of all inputs, that with the widest interval counts"
 REASONS = {
     "": "conservative: no other check has a chance, or those of successive checks overlap",
     "S1 widest": WIDEST,
