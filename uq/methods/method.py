@@ -105,7 +105,7 @@ class Method:
         if kept < self.least:
             of_all = f" of {whole.size}" if kept < whole.size else ""
             reason = f"only {kept}{of_all} {self.layout.needs}"
-            raise RefusedError(f"{reason}; {self.least} are needed")
+            raise RefusedError(f"{reason}; {self.least} are needed", self.least / max(kept, 1))
         if self.layout is not PLAIN:
             return self.estimate(sample)
         rows, note = np.flatnonzero(whole), ""
