@@ -208,6 +208,20 @@ def rows_in_words(rows: float) -> str:
     return grouped(ceil(rows / digit) * digit)
 
 
+def counted(count: int, one: str, several: str = "") -> str:
+    """Return a number with the word for what is counted: ``1 row``, ``3 rows``.
+
+    Parameters
+    ----------
+    count : int
+    one : str
+        The word where it is one.
+    several : str, optional
+        Elsewhere; by default the same with an s.
+    """
+    return f"{count} {one if count == 1 else several or f'{one}s'}"
+
+
 def grouped(rows: int) -> str:
     """Return a number of rows with its thousands apart."""
     return f"{rows:,}".replace(",", " ")

@@ -155,7 +155,7 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
 def test_a_missing_ranking_is_explained_once():
     ds = with_output(linear(samples=32), "z", linear(samples=32)["y"].values)
     found = answer(asking(ds, outputs=["z"], thresholds={"z": "5 m"}))
-    reason = "only 32 rows have a value; 64 are needed"
+    reason = "only 32 rows with a value; 64 are needed"
     assert repr(found).count(reason) == 1
     alone = replace(found.lead, events=())
     assert reason in alone.ranking_sentence

@@ -11,6 +11,7 @@ from uq.methods.morris import MU, MU_STAR
 from uq.wording import (
     brief,
     capitalized,
+    counted,
     duration,
     estimated,
     interval,
@@ -141,3 +142,9 @@ def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
 )
 def test_a_name_that_is_a_symbol_keeps_its_case_at_the_head_of_a_sentence(text, title):
     assert capitalized(text) == title
+
+
+def test_what_is_counted_is_singular_where_it_is_one():
+    assert [counted(n, "row") for n in (0, 1, 2)] == ["0 rows", "1 row", "2 rows"]
+    assert counted(1, "life is", "lives are") == "1 life is"
+    assert counted(3, "life is", "lives are") == "3 lives are"

@@ -23,6 +23,7 @@ from uq.rows.variables import outputs_of
 from uq.units import Unit, typical, unit_of
 from uq.wording import (
     compared,
+    counted,
     estimated,
     failed_interval,
     in_brackets,
@@ -44,7 +45,7 @@ def show_findings(findings: Findings) -> None:
 
 def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = None) -> None:
     """Print a summary, and how intermingled its regimes are."""
-    design = f"{ds.attrs['design']}, {summary.samples} rows"
+    design = f"{ds.attrs['design']}, {counted(summary.samples, 'row')}"
     if summary.rows_used < summary.samples:
         some = summary.rows_used
         design += f", statistics from the {some} independent ones" if some else ", none independent"

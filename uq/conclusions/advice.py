@@ -29,7 +29,7 @@ from uq.rows.nesting import is_nested
 from uq.rows.results import failed
 from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
-from uq.wording import grouped, rows_in_words
+from uq.wording import counted, grouped, rows_in_words
 
 
 def advise(
@@ -71,8 +71,8 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     if why:
         yield Advice(
             "failed",
-            f"Mend the {lost} failed rows first: {why[0]};"
-            f" 'uq rerun OUT --failed{model_option(ds)}' computes them again,"
+            f"Mend the {counted(lost, 'failed row')} first: {why[0]};"
+            f" 'uq rerun OUT --failed{model_option(ds)}' computes failed rows again,"
             " if necessary with other settings.",
         )
 

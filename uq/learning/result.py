@@ -17,6 +17,7 @@ from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import MOST, OF_UNIT, ONLY_INSPECTED, WEIGHT, has_weights
+from uq.wording import counted
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
@@ -76,7 +77,7 @@ def as_result(
         variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
     units, count = len(found.units), len(inspections)
-    given = f"given {count} inspection{'s' * (count > 1)} of {units} unit{'s' * (units > 1)}"
+    given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
     if found.only_inspected:
         ds = ds.assign_attrs({ONLY_INSPECTED: found.only_inspected})
     found_attrs = {

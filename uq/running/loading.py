@@ -24,7 +24,7 @@ from uq.running.environment import started
 from uq.running.options import Say, ignore
 from uq.study.registry import code_of, find_model, located, with_returns
 from uq.study.sources import DISTRIBUTION
-from uq.wording import duration
+from uq.wording import counted, duration
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -165,8 +165,8 @@ def _returned(
         more = seconds / done * left if done else 0.0
         about = f": about {duration(more) or f'{more:.0f} s'}" if done else ""
         say(
-            f"running {left} rows, once, to see what the model returns{about}; 'returns' in"
-            " @uq.machine states it"
+            f"running {counted(left, 'row')}, once, to see what the model returns{about}; 'returns'"
+            " in @uq.machine states it"
         )
 
     while done < len(tried):

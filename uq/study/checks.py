@@ -248,6 +248,9 @@ def _index_faults(
     elif index not in known:
         yield Fault((*path, "index"), unknown("index with an interval", index, known), index)
     inputs = [name for name, law in uncertain.items() if "equals" not in law]
+    if len(inputs) == 1 and design.layout is PATHS:
+        problem = f"is 1 in every study of one input, {inputs[0]}: no interval to wait for"
+        yield Fault((*path, "index"), problem, index)
     for key in ("input", "difference"):
         given = until.get(key, [])
         for name in [given] if isinstance(given, str) else given:

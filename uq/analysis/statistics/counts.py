@@ -14,7 +14,7 @@ from uq.intervals import replicates_of_some
 from uq.population.smoothing import effective_rows, per_sample
 from uq.rows.elements import Element, elements_of, output_names
 from uq.rows.variables import error_name
-from uq.wording import percent
+from uq.wording import counted, percent
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
@@ -62,8 +62,8 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     kept = np.abs(error.values[known]) <= asked * np.abs(element.values[known])
     rows, missed = len(kept), int((~kept).sum())
     share = missed / rows if rows else None
-    lost, plural = percent(share) if missed and share else "", "s" if missed > 1 else ""
-    words = f"accuracy {asked:g} not reached in {missed} row{plural} ({lost})"
+    lost = percent(share) if missed and share else ""
+    words = f"accuracy {asked:g} not reached in {counted(missed, 'row')} ({lost})"
     readers = FACT.readers | Reader.REPORT if missed else FACT.readers
     yield Statistic(
         ("accuracy",),
