@@ -27,7 +27,7 @@ from uq.rows.nesting import is_nested, one_of_each_sample
 from uq.rows.results import refuse_empty
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
-from uq.wording import counted
+from uq.wording import counted, grouped, rows_in_words
 
 FEWEST_HITS = 5
 """With fewer in each replicate an event has no indices."""
@@ -254,8 +254,9 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
         return ()  # without any the method refuses
     side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
     each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
-    more = ENOUGH_HITS * replicates / rarer
-    remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
+    samples = int(ds.attrs["samples"])
+    needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
+    remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
     seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{each}"
     if rarer < FEWEST_HITS * replicates:
         if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
