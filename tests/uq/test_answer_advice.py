@@ -28,6 +28,14 @@ def lifetime():
     return answered.lifetime()
 
 
+def test_rows_too_few_for_a_ranking_are_added():
+    """The answer must not say that nothing is to be done."""
+    found = answer(linear(samples=20))
+    assert [one.rule for one in found.advice] == ["rows"]
+    assert found.advice[0].rows == 64
+    assert "Compute about 64 rows instead of 20: no ranking of the inputs" in found.advice[0].text
+
+
 def test_an_assumed_law_that_matters_is_measured_first(lifetime):
     ds, found = lifetime
     assert [one.rule for one in found.advice] == ["measure", "tighten"]

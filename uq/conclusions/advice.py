@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isfinite, isinf
+from math import ceil, isfinite, isinf
 
 import xarray as xr
 
@@ -240,6 +240,6 @@ def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advi
     yield Advice(
         "rows",
         f"Compute {_needed(worst, findings.ds)} instead of {grouped(rows)}: {worst.what}{more}.",
-        rows=int(min(worst.factor, MOST) * rows) + 1,
+        rows=ceil(min(worst.factor, MOST) * rows),
         others=tuple(capitalized(_settled(one, findings.ds)) for one in less),
     )

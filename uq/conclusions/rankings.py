@@ -120,7 +120,8 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
 def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
     found = findings.indices(method, name)
     if found.refused:
-        return Ranking(name, method, reason=f"no ranking of the inputs: {found.refused}")
+        why = f"no ranking of the inputs: {found.refused}"
+        return Ranking(name, method, reason=why, rows_factor=found.rows_factor)
     kinds = found.kinds()
     kind = list(kinds)[-1]
     measured = list(_measured(findings.ds, method, name, kind, found))

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 import xarray as xr
@@ -55,6 +56,8 @@ class TargetIndices:
         Empty where there are none.
     refused : str
         Why there are none, or "".
+    rows_factor : float
+        How many times the rows would give some; NaN where that is not known.
     """
 
     name: str
@@ -62,6 +65,7 @@ class TargetIndices:
     groups_dropped: int
     indices: Indices = Indices({})
     refused: str = ""
+    rows_factor: float = nan
 
     def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
         """Return the indices of single inputs, or those of pairs."""
@@ -201,7 +205,8 @@ def indices_of_target(
         few = few_hits(ds, target)
         found = method.indices(asked)
     except RefusedError as refusal:
-        return TargetIndices(target.name, *counts, refused=str(refusal))
+        factor = refusal.rows_factor
+        return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)
     combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
     return TargetIndices(target.name, *counts, replace(found, notes=combined))
 
