@@ -10,7 +10,7 @@ from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
 from uq.conclusions.words import Unit, called_together, sentence, share_text
 from uq.estimate import Estimate
-from uq.wording import percent, percent_interval
+from uq.wording import percent, percent_range
 
 RARE = 0.01
 MOST_REGIMES = 3
@@ -60,7 +60,7 @@ class Event:
             return sentence(f"how many {self.said} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
-            ends = percent_interval(self.failed.low, self.failed.high)
+            ends = percent_range(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
         if self.undefined > 0:
             text += f"; {percent(self.undefined)} are undefined"
