@@ -204,6 +204,8 @@ class Answer:
     advice : tuple of Advice
     notes : tuple of str
         What could not be said, and why.
+    regimes_first : bool
+        Whether the study is about the regimes: it names them before all other outputs.
     """
 
     title: str
@@ -213,6 +215,7 @@ class Answer:
     regimes: tuple[Event, ...]
     advice: tuple[Advice, ...]
     notes: tuple[str, ...] = ()
+    regimes_first: bool = False
 
     @property
     def rows_sentence(self) -> str:
@@ -251,9 +254,11 @@ class Answer:
         """The answer in a few sentences."""
         lead = self.lead
         found = [] if not self.failed and lead else [self.rows_sentence]
-        found += [] if lead is None else lead.head
-        events = [*([] if lead is None else lead.others), *self.main_regimes]
-        found += [one.with_cause for one in events]
+        regimes = [one.with_cause for one in self.main_regimes]
+        of_lead = []
+        if lead is not None:
+            of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
+        found += [*regimes, *of_lead] if self.regimes_first else [*of_lead, *regimes]
         found += [] if lead is None else [lead.ranking_sentence]
         if lead is not None and lead.earliest is not None:
             found += lead.earliest.lines
