@@ -59,10 +59,13 @@ def test_units_promise_a_quantile_with_the_reason(nested):
 
 def test_lives_that_never_end_are_said_in_the_range(nested):
     _, found, said = nested
-    low, median = numbers(
-        r"5 % end within # days; more than 5 % never end; median # days\.",
+    low, median, *never = numbers(
+        r"5 % end within # days; median # days; # % \(# to # %\) never end\.",
         found.lead.range.sentence,
     )
+    known = found.lead.range.never
+    assert never == pytest.approx([100 * one for one in known.numbers], abs=0.06)
+    assert known.value == said["never"] / 2400 and known.low < known.value < known.high
     assert said["quantiles"]["0.95"]["never"] and said["never"] > 0.05 * 2400
     shown = [said["quantiles"][p]["value"] / DAY for p in ("0.05", "0.5")]
     assert [low, median] == pytest.approx(shown, rel=5e-3)

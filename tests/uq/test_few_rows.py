@@ -1,5 +1,7 @@
 """Indices of events and regimes that few rows decide."""
 
+import re
+
 import numpy as np
 import pytest
 from asked_indices import sensitivities
@@ -32,7 +34,9 @@ def of_event(share, samples=128, method=None, design="saltelli"):
 def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
     refusal = of_event(0.013)["refused"]
     assert "hits in 2048 rows" in refusal and "5 are needed" in refusal
-    assert "times the samples" in refusal
+    hits = int(re.match(r"only (\d+) hits", refusal)[1])
+    wanted = int(re.search(r"about (\d+) samples instead of 128 would give 20", refusal)[1])
+    assert wanted == pytest.approx(128 * 20 * 8 / hits, rel=0.05)
     assert "'regional' of a 'monte-carlo' design needs 10 in all" in refusal
 
 

@@ -93,6 +93,8 @@ def show_answer(found: Answer) -> None:
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
                 paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    if lead is not None and lead.repeated.sentence:
+        paragraph(lead.repeated.sentence, indent=0)
     if lead is not None and lead.earliest is not None:
         for line in lead.earliest.lines:
             paragraph(line, indent=0)
@@ -159,7 +161,7 @@ def _line(one: Statistic, block: Block) -> Line:
         more = f"of its {form}"
     elif undefined := one.facts.get("undefined"):
         more = f"{percent(undefined)} undefined"
-    return block.label(one), one.words(per), interval(one.estimate, per), more
+    return block.label(one), one.words(per), one.interval(per), more
 
 
 def _failed(one: Statistic, block: Block) -> Iterator[Line]:

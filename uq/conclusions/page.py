@@ -71,7 +71,8 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     for one in quantities:
         why = "" if one.promise is None else plain(printed(one.promise.why))
         lines = [keyed.promise(one), why, keyed.likely(one)]
-        lines += [*keyed.events(one), keyed.leader(one), *keyed.earliest(one)]
+        lines += [*keyed.events(one), keyed.leader(one), keyed.repeated(one)]
+        lines += keyed.earliest(one)
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
         title = capitalized(one.words)
         found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
@@ -109,6 +110,8 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     if likely := keyed.likely(lead):
         yield _line(likely)
     yield from map(_line, keyed.others(lead))
+    if again := keyed.repeated(lead):
+        yield _small(again)
     elements = [one for one in answer.quantities[1:] if one.output == lead.output]
     promised = [one for one in elements if one.promise is not None and one.promise.sentence]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:

@@ -8,6 +8,7 @@ from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import Earliest
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
+from uq.conclusions.repeated import Repeated, repeated_quantile, repeated_share
 from uq.conclusions.words import Unit, called_together, sentence, share_text
 from uq.estimate import Estimate
 from uq.wording import percent, percent_range
@@ -174,6 +175,13 @@ class Quantity:
         return next((one for one in self.events if one.sentence), None)
 
     @property
+    def repeated(self) -> Repeated:
+        """What the study would find with another seed."""
+        if self.first is None:
+            return repeated_quantile(self.promise, self.ranking)
+        return repeated_share(self.first.said, self.first.share, self.ranking)
+
+    @property
     def others(self) -> list[Event]:
         """The events that do not stand first."""
         return [one for one in self.events if one is not self.first]
@@ -259,7 +267,7 @@ class Answer:
         if lead is not None:
             of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
         found += [*regimes, *of_lead] if self.regimes_first else [*of_lead, *regimes]
-        found += [] if lead is None else [lead.ranking_sentence]
+        found += [] if lead is None else [lead.ranking_sentence, lead.repeated.sentence]
         if lead is not None and lead.earliest is not None:
             found += lead.earliest.lines
         return [*filter(None, found), *(one.text for one in self.advice)]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 import xarray as xr
@@ -26,7 +27,7 @@ from uq.rows.nesting import is_nested, one_of_each_sample
 from uq.rows.results import refuse_empty
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
-from uq.wording import counted
+from uq.wording import counted, grouped, rows_in_words
 
 FEWEST_HITS = 5
 """With fewer in each replicate an event has no indices."""
@@ -55,6 +56,8 @@ class TargetIndices:
         Empty where there are none.
     refused : str
         Why there are none, or "".
+    rows_factor : float
+        How many times the rows would give some; NaN where that is not known.
     """
 
     name: str
@@ -62,6 +65,7 @@ class TargetIndices:
     groups_dropped: int
     indices: Indices = Indices({})
     refused: str = ""
+    rows_factor: float = nan
 
     def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
         """Return the indices of single inputs, or those of pairs."""
@@ -201,7 +205,8 @@ def indices_of_target(
         few = few_hits(ds, target)
         found = method.indices(asked)
     except RefusedError as refusal:
-        return TargetIndices(target.name, *counts, refused=str(refusal))
+        factor = refusal.rows_factor
+        return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)
     combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
     return TargetIndices(target.name, *counts, replace(found, notes=combined))
 
@@ -249,8 +254,9 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
         return ()  # without any the method refuses
     side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
     each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
-    more = ENOUGH_HITS * replicates / rarer
-    remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
+    samples = int(ds.attrs["samples"])
+    needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
+    remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
     seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{each}"
     if rarer < FEWEST_HITS * replicates:
         if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:

@@ -126,4 +126,4 @@ class Method:
         kept, every = int(sample.whole.sum()), sample.whole.size
         if kept < self.least:
             seen = counted(kept, *self.layout.group) + f" (of {every})" * (kept < every)
-            raise RefusedError(f"only {seen}; {self.least} are needed")
+            raise RefusedError(f"only {seen}; {self.least} are needed", self.least / max(kept, 1))

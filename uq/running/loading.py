@@ -127,8 +127,11 @@ def _found(
     """Return what a function returns, from the rows tried, the nominal one first."""
     from platformdirs import user_cache_path
 
+    from uq.provenance import __version__
+
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
-    key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
+    code = f"{__version__}\n{reference}\n{code_of(reference)}"
+    key = hashlib.sha256(code.encode() + numbers).hexdigest()
     kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
