@@ -230,7 +230,10 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
     try:
         ranking = ranking_of(findings, target, method, verb)
     except InputError as refused:
-        return replace(found, ranking=Ranking(target, method, reason=str(refused)))
+        why = str(refused)
+        if not split_name(target)[2]:  # a regime, of which the rows that could rank have none
+            why = f"no ranking of the inputs: no row that it could rest on is {said}"
+        return replace(found, ranking=Ranking(target, method, reason=why))
     found = replace(found, ranking=ranking)
     if ranking.leader is None:
         return found
