@@ -20,8 +20,10 @@ from nested_studies import nested_result
 from scipy.stats import binomtest
 
 from uq.analysis.findings import Findings
+from uq.cli.tables import show_answer
 from uq.conclusions.advice import advise, verdict
 from uq.conclusions.answer import answer
+from uq.conclusions.page import fragment
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.remedies import Tightened
 from uq.contract import Status
@@ -199,6 +201,20 @@ def test_no_single_input_explains_much():
     leads = found.leader is not None and found.leads
     assert not leads
     assert found.sentence.startswith(("No single input", "Which inputs matter is not settled"))
+
+
+def test_a_study_that_names_the_regime_first_is_about_the_regimes(capsys):
+    by_value = kinds(samples=64, analysis={"outputs": ["work", "regime"]})
+    by_regime = kinds(samples=64, analysis={"outputs": ["regime", "work"]})
+    for ds, first in ((by_value, False), (by_regime, True)):
+        found = answer(ds)
+        assert (found.regimes[0].sentence in found.lines[0]) == first
+        show_answer(found)
+        printed = capsys.readouterr().out
+        assert printed.startswith(found.regimes_sentence[:20]) == first
+        page = fragment(found)
+        places = [page.index(words) for words in ("slow", "answer-promise")]
+        assert (places == sorted(places)) == first
 
 
 def test_the_rarer_regimes_say_what_decides_them():

@@ -80,11 +80,14 @@ def show_answer(found: Answer) -> None:
     lead = found.lead
     if found.failed or lead is None:
         paragraph(found.rows_sentence, indent=0)
-    if lead is not None:
-        for line in filter(None, (*lead.head, *(one.with_cause for one in lead.others))):
-            paragraph(line, indent=0)
-    if found.regimes:
-        paragraph(found.regimes_sentence, indent=0)
+    of_lead = [] if lead is None else [*lead.head, *(one.with_cause for one in lead.others)]
+    if found.regimes_first:
+        causes = (one.decided_by for one, with_cause in found.told_regimes if with_cause)
+        lines = [found.regimes_sentence, *causes, *of_lead]
+    else:
+        lines = [*of_lead, found.regimes_sentence]
+    for line in filter(None, lines):
+        paragraph(line, indent=0)
     if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
         paragraph(ranking.sentence, indent=0)
         for contribution in ranking.contributions[:_MOST_EFFECTS]:

@@ -88,7 +88,8 @@ def regimes(answer: Answer) -> Markup:
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    parts += [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
+    told = [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
+    parts = [*told, *parts] if answer.regimes_first else [*parts, *told]
     if answer.failed or lead is None:
         parts.insert(0, _line(keyed.rows(answer)))
     return _block("verdict", parts)
