@@ -16,9 +16,10 @@ _WIDTH = 88
 def printed() -> str:
     """Run the study, and return the first paragraph that ``uq run`` prints."""
     with TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "uq", "run", HOUSE / STUDY, "-o", f"{folder}/out.nc"]
+        command = [sys.executable, "-m", "uq", "run", HOUSE / STUDY]
         text = subprocess.run(
             [*command, "--workers", "0"],
+            cwd=folder,
             env={**os.environ, "COLUMNS": str(_WIDTH), "NO_COLOR": "1"},
             capture_output=True,
             text=True,

@@ -22,10 +22,11 @@ from layers import (
 
 PICTURE = HOUSE / "docs/pictures/house.svg"
 
-WIDTH, UQ, LEFT, LANE, GAP = 760, 430, 180, 18, 8
+WIDTH, UQ, LEFT, LANE, GAP = 820, 490, 205, 18, 8
 PITCH, TALL = 60, 46  # of a layer [px]
 STOREY, LOW = 33, 27  # of a storey [px]
 MARGIN = 12
+WIDE = 6.5  # of a letter of the small print, whatever the font [px]
 
 STYLE = """
 text { font-family: system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; text-anchor: middle;
@@ -124,7 +125,7 @@ def _packages() -> Iterator[tuple[str, Box]]:
         }
         for name, (left, right) in spans.items():
             kind = "reader" if name in readers else "runner" if name in runners else ""
-            about = wrap(_about(f"uq/{name}"), int((right - left) / 5.7))
+            about = wrap(_about(f"uq/{name}"), int((right - left) / WIDE))
             box = Box(MARGIN + left, MARGIN + right, top, TALL, name, tuple(about), kind)
             yield name, box
 

@@ -40,15 +40,34 @@ def places(output: str, coordinates: Mapping[str, Any], most: float = inf) -> It
 
 
 def place_of(name: str, coordinates: Mapping[str, Any]) -> list[Place]:
-    """Return the place of an element in a list, which is empty if there is none of this name."""
+    """Return the place of an element in a list, which is empty if there is none of this name.
+
+    Numbers may be written in any way: ``[instant=3600]`` is ``[instant=3600.0]``.
+    """
     axes = tuple((dim, tuple(np.asarray(axis).tolist())) for dim, axis in coordinates.items())
-    found = _by_name(name.partition("[")[0], axes).get(name)
+    found = _by_name(name.partition("[")[0], axes).get(_read(name))
     return [found] if found else []
 
 
 @lru_cache(maxsize=4)
-def _by_name(output: str, axes: tuple[tuple[str, tuple[Any, ...]], ...]) -> dict[str, Place]:
-    return {place[0]: place for place in places(output, dict(axes))}
+def _by_name(
+    output: str, axes: tuple[tuple[str, tuple[Any, ...]], ...]
+) -> dict[tuple[Any, ...], Place]:
+    return {_read(place[0]): place for place in places(output, dict(axes))}
+
+
+def _read(name: str) -> tuple[Any, ...]:
+    """Return the parts of a name, its coordinates as numbers where they are."""
+    output, _, rest = name.partition("[")
+    parts = (part.partition("=") for part in rest.removesuffix("]").split(","))
+    return output, *((dim.strip(), _number(text.strip())) for dim, _, text in parts)
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def spread(lengths: Sequence[int], most: float) -> list[list[int]]:

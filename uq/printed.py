@@ -8,7 +8,8 @@ _NUMBER = re.compile(r"(?<![^\s(\[])-?(?:\d[\d.]*(?:e[-+]?\d+)?|∞|inf)(?![\w-]
 _TIMES = "minutes?|hours?|days?|years?"
 _UNIT = rf"(?:[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω)|{_TIMES}|%)(?!\w)"
 _POWER = r"(?<=\d) (?=× 10)|(?<=×) (?=10)"
-_BEFORE_UNIT = re.compile(rf"(?<=\d) (?={_UNIT})|(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}")
+_GROUP = r"(?<=\d) (?=\d{3}(?!\d))"
+_BEFORE_UNIT = re.compile(rf"(?<=\d) (?={_UNIT})|(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}|{_GROUP}")
 
 
 def minus(text: str) -> str:
@@ -20,7 +21,7 @@ def minus(text: str) -> str:
 
 
 def printed(text: str) -> str:
-    """Return text for a page: with minus signs, a dash for no number, and units never alone."""
+    """Return text for a page: with minus signs, a dash for no number, and numbers in one line."""
     if text == "-":
         return "\N{EN DASH}"
     return _BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", minus(text))

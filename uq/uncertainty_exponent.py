@@ -11,6 +11,7 @@ from uq.estimate import Estimate
 from uq.intervals import upper_probability
 from uq.quantile_functions import student
 from uq.roots import root
+from uq.wording import counted
 
 FARTHEST = 0.1
 """Points farther apart in any coordinate are not compared."""
@@ -97,8 +98,8 @@ def uncertainty_exponent(
     rows = len(np.union1d(pairs.first[apart], pairs.second[apart]))
     if rows < FEWEST_ROWS:
         return Estimate(
-            reason=f"only {rows} rows have a close neighbour in another basin; {FEWEST_ROWS} are"
-            " needed"
+            reason=f"only {counted(rows, 'row has', 'rows have')} a close neighbour in another"
+            f" basin; {FEWEST_ROWS} are needed"
         )
     goal = float(np.average(pairs.distance, weights=pairs.differing))
     try:

@@ -189,14 +189,24 @@ def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) ->
     text = percent(estimate.value)
     if not estimate.has_interval:
         return text
-    worst = ""
+    worst, ends = "", percent_interval(estimate.low, estimate.high)
     if failed is not None and failed.has_interval:
-        worst = f"; with failed rows {percent_interval(failed.low, failed.high)}"
-    return f"{text} (95 % interval {percent_interval(estimate.low, estimate.high)}{worst})"
+        worst = f"; with failed rows {percent_range(failed.low, failed.high)}"
+    return f"{text} ({'95 % interval ' * (ends != TO_THESE_DIGITS)}{ends}{worst})"
+
+
+TO_THESE_DIGITS = "exact to these digits"
 
 
 def percent_interval(low: float, high: float) -> str:
-    """Return the ends of the interval of a share in per cent."""
+    """Return the ends of the interval of a share in per cent, or that they are the share shown."""
+    return TO_THESE_DIGITS if percent(low) == percent(high) else percent_range(low, high)
+
+
+def percent_range(low: float, high: float) -> str:
+    """Return two shares in per cent, one of them if they are read alike."""
+    if percent(low) == percent(high):
+        return percent(low)
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
 
 
@@ -206,6 +216,20 @@ def rows_in_words(rows: float) -> str:
         return f"{rows:.0e}".replace("e+", "e")
     digit = 10 ** max(floor(log10(rows)) - 1, 0)
     return grouped(ceil(rows / digit) * digit)
+
+
+def counted(count: int, one: str, several: str = "") -> str:
+    """Return a number with the word for what is counted: ``1 row``, ``3 rows``.
+
+    Parameters
+    ----------
+    count : int
+    one : str
+        The word where it is one.
+    several : str, optional
+        Elsewhere; by default the same with an s.
+    """
+    return f"{count} {one if count == 1 else several or f'{one}s'}"
 
 
 def grouped(rows: int) -> str:

@@ -40,14 +40,17 @@ def _of_g_function():
     }
 
 
+ISHIGAMI_SHAPLEY = {name: (ISHIGAMI["S1"][name] + ISHIGAMI["ST"][name]) / 2 for name in LAWS}
+"""Its interactions are of pairs, which share them equally."""
+
+
 def shapley(repetitions):
     """Count the Shapley effects of Ishigami's function."""
     study = study_of("shapley", 512, model="ishigami", laws=LAWS)
     tally = Tally("Ishigami, shapley, 512 paths of 4 rows", REASONS)
-    truth = {name: (ISHIGAMI["S1"][name] + ISHIGAMI["ST"][name]) / 2 for name in LAWS}
     for ds in repeated(study, repetitions):
         entry = indices_of(ds)["y"]
-        for name, value in truth.items():
+        for name, value in ISHIGAMI_SHAPLEY.items():
             tally.entry(f"shapley {name}", value, entry["shapley"][name])
     return tally.lines()
 

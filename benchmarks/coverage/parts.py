@@ -99,6 +99,7 @@ PARTS = {
     "stopped-replicates": Part(partial(stopping.rows, "halton", 256, 8)),
     "stopped-integrated": Part(stopping.integrated),
     **{f"stopped-{name}": Part(partial(stopping.indices, name)) for name in stopping.INDICES},
+    "stopped-shapley": Part(stopping.shapley),
     "subset": Part(fewer_rows.subset),
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import special, stats
 
-from benchmarks.coverage import scaled
+from benchmarks.coverage import dependent, known_indices, scaled
 from benchmarks.coverage.indices import NAMES, ishigami
 from benchmarks.coverage.problems import (
     EDGE,
@@ -17,12 +17,17 @@ from benchmarks.coverage.problems import (
     ishigami_cdf,
     jump,
     jump_ppf,
+    repeated,
+    study_of,
 )
 from benchmarks.coverage.tally import Tally
 from uq.analysis import stopping
 from uq.contract import Output
 from uq.designs.registry import DESIGNS
-from uq.methods.indices import S1, ST
+from uq.estimate import NOTHING
+from uq.indices.samples import sample_of
+from uq.methods.indices import S1, SHAPLEY, ST, RefusedError
+from uq.methods.registry import METHODS
 from uq.methods.sample import Sample
 from uq.methods.sobol import sobol_indices
 from uq.rows.element import Element
@@ -181,9 +186,7 @@ def indices(name, repetitions, replicates=8):
         asked = {"widest": NAMES, "of x1": NAMES[:1], " - ".join(PAIR): (" - ".join(PAIR),)}
         for what, names in asked.items():
             looks = [[_widest(found[kind], names) for found in own] for own in seen]
-            truths = [[known[label] for label, _ in own] for own in looks]
-            estimates = [[estimate for _, estimate in own] for own in looks]
-            _stop(tally, f"{kind.key} {what}", estimates, truths)
+            _stop_at(tally, f"{kind.key} {what}", looks, known)
     return tally.lines()
 
 
@@ -191,6 +194,55 @@ def _indices_of(values, blocks, level):
     groups = np.arange(values.size).reshape(values.shape)
     sample = Sample(values.ravel(), {}, groups, blocks, confidence=level, difference=PAIR)
     return sobol_indices(sample).values
+
+
+PATHS = 2048
+DEPENDENT = ("exponential, correlation 0.6", "two signs and a number")
+
+
+def shapley(repetitions):
+    """Count the Shapley effects, and their differences, at which runs stop."""
+    ishigami = study_of("shapley", PATHS, model="ishigami", laws=known_indices.LAWS)
+    lines = _paths("Ishigami", ishigami, "y", known_indices.ISHIGAMI_SHAPLEY, repetitions)
+    for words in DEPENDENT:
+        case = dependent.CASES[words]
+        study = dependent.study(case.output, case.laws, case.correlations, PATHS)
+        known = {name: effect for name, effect in case.truth.items() if effect > 0}
+        lines += _paths(words, study, case.output, known, repetitions)
+    return lines
+
+
+def _paths(title, study, output, truth, repetitions):
+    tally = Tally(f"runs that stop, {title}, shapley, at most {PATHS} paths", REASONS)
+    until = Until(output=output, half_width=1.0, index="shapley")
+    design = study.design.model_copy(update={"until": until})
+    sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
+    known = truth | {" - ".join(PAIR): truth[PAIR[0]] - truth[PAIR[1]]}
+    asked = {"widest": tuple(truth), "of x1": PAIR[:1], " - ".join(PAIR): (" - ".join(PAIR),)}
+    seen = []
+    for ds in repeated(study, repetitions):
+        sample = replace(sample_of(ds), confidence=level, difference=PAIR)
+        sample = replace(sample, values=ds[output].values)
+        seen.append([_effects(sample, size) for size in sizes])
+    for what, names in asked.items():
+        looks = [[_widest(found, names) for found in own] for own in seen]
+        _stop_at(tally, f"shapley {what}", looks, known)
+    return tally.lines()
+
+
+def _effects(sample, size):
+    """Return the effects that the first paths show; without intervals where they are refused."""
+    kept = {name: getattr(sample, name)[:, :size] for name in ("groups", "direction", "scores")}
+    try:
+        return METHODS["shapley"].indices(replace(sample, **kept)).values[SHAPLEY]
+    except RefusedError:
+        return dict.fromkeys((*sample.inputs, " - ".join(PAIR)), NOTHING)
+
+
+def _stop_at(tally, what, looks, known):
+    """Count the intervals of labelled estimates at which runs stop."""
+    truths = [[known[label] for label, _ in own] for own in looks]
+    _stop(tally, what, [[estimate for _, estimate in own] for own in looks], truths)
 
 
 def _widest(found, names):
@@ -221,10 +273,11 @@ def _stop(tally, what, looks, truths):
         tally.estimate(what, known[stop], own[stop])
 
 
-WIDEST = "conservative: of three inputs, that with the widest interval counts"
+WIDEST = "conservative: of all inputs, that with the widest interval counts"
 REASONS = {
     "": "conservative: no other check has a chance, or those of successive checks overlap",
     "S1 widest": WIDEST,
     "ST widest": WIDEST,
+    "shapley widest": WIDEST,
 }
 """Beginning of a quantity -> why its coverage is not 95 %."""

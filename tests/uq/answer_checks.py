@@ -1,13 +1,20 @@
 """What is wrong with an answer: sentences whose numbers the rows deny, or that deny each other."""
 
 import re
+from functools import partial
 
 import numpy as np
 from scipy.stats import binomtest
 
 import uq
 from uq.analysis.findings import Findings
-from uq.rows.elements import are_independent, independent_rows, labels, named_elements
+from uq.rows.elements import (
+    are_independent,
+    independent_rows,
+    labels,
+    named_elements,
+    replicates_of,
+)
 
 NUMBER = re.compile(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?")
 
@@ -30,7 +37,8 @@ class Checker:
 
     def _denied_by_rows(self, found):
         for one in found.quantities:
-            for check in (self.promise, self.range, self.ranking, self.earliest):
+            checks = (self.promise, self.range, self.ranking, self.repeated, self.earliest)
+            for check in checks:
                 yield from (f"{one.name}: {text}" for text in check(one))
             for event in one.events:
                 hits = self.hits(one, event)
@@ -92,12 +100,57 @@ class Checker:
         if text.startswith("90 %"):
             places = dict(zip((0.05, 0.95, 0.5), shown[1:], strict=False))
         elif text.startswith("5 %"):
-            places = dict(zip((0.05, 0.5), [shown[1], *shown[3:]], strict=False))
+            median = re.search(r"median (\S+)", text)
+            places = {0.05: shown[1]} | ({0.5: float(median[1].rstrip(";"))} if median else {})
         else:
             places = {}
+        yield from self.never(one, text)
         for p, value in places.items():
             if not self._is_quantile(values, p, value, one):
                 yield f"{p} of {text}"
+
+    def never(self, one, text):
+        """Count the rows that never end; without any, bound them as no hit in as many rows does."""
+        never = np.isposinf(self.known(one))
+        if found := re.search(r"([\d.]+) % \((\S+) to (\S+) %\) never", text):
+            exact = binomtest(int(never.sum()), len(never)).proportion_ci()
+            ends = [100 * never.mean(), 100 * exact.low, 100 * exact.high]
+            if not np.allclose([float(each) for each in found.groups()], ends, atol=1.5):
+                yield text
+        elif found := re.search(r"at most (\S+) % never", text):
+            bound = 100 * (1 - 0.025 ** (1 / len(never)))
+            if never.any() or not 0.98 * bound <= float(found[1]) <= 1.6 * bound:
+                yield text
+
+    def repeated(self, one):
+        """Compare the scatter among seeds with that of the rows drawn again, with replacement."""
+        known = one.repeated
+        if not known.what:
+            return
+        if known.is_share:
+            numbers, per = np.nan_to_num(self.hits(one, one.first)).astype(float), 100
+            estimate = np.mean
+        else:
+            numbers, per = self.values(one), 1 / known.unit.per
+            p = numbers_in(known.what)[0] / 100
+            if round(p, 6) not in (0.05, 0.95):
+                yield known.sentence
+                return
+            estimate = partial(np.nanquantile, q=p, method="inverted_cdf")
+        random, part = np.random.default_rng(0), replicates_of(self.rows)
+        groups = np.arange(len(numbers)) if part is None else part
+        rows = [np.flatnonzero(groups == one) for one in np.unique(groups)]
+        drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
+        again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]
+        wide = 2 * 1.96 * 2**0.5 * np.std(again) * per
+        shown = numbers_in(known.sentence.split(known.what)[0 if known.is_share else 1])
+        if "would again be" in known.sentence:
+            if wide > 0.02 * abs(shown[0]):
+                yield f"{known.sentence} {wide}"
+            return
+        low, high = shown[:2]
+        if not 0.6 * wide < high - low < 2.2 * wide or not low <= estimate(numbers) * per <= high:
+            yield f"{known.sentence} {wide}"
 
     def hits(self, one, event):
         side, at = re.fullmatch(r"P\(.*([<>])(.*)\)", event.name).groups()
@@ -180,10 +233,12 @@ class Checker:
     def earliest(self, one):
         if (said := one.earliest) is None:
             return
-        values, numbers = self.values(one), self.rows["sample"].values
+        values = self.values(one)
+        (every,) = named_elements(self.ds, one.name)  # rows that are not independent are named, too
+        everything, everywhere = every.values, self.ds["sample"].values
         for number, life in re.findall(r"(\d+) \(([\d.e+-]+)", said.first):
-            (own,) = values[numbers == int(number)]
-            rank = (values < own).sum()
+            (own,) = everything[everywhere == int(number)]
+            rank = (everything < own).sum()
             if rank >= 3 or not np.isclose(float(life) * one.range.unit.per, own, rtol=0.01):
                 yield said.first
         if not said.inputs:

@@ -57,7 +57,8 @@ class Tab:
     def open(self, path, width=1400, height=1000, dark=False, script=True):
         """Show a page of this computer, and wait until it is there."""
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.do("Emulation.setEmulatedMedia", features=[scheme])
+        still = {"name": "prefers-reduced-motion", "value": "reduce"}  # else places move as read
+        self.do("Emulation.setEmulatedMedia", features=[scheme, still])
         self.do("Emulation.setScriptExecutionDisabled", value=not script)
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
         self.do("Emulation.setDeviceMetricsOverride", **size)

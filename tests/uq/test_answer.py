@@ -43,9 +43,11 @@ def test_the_promise_of_a_life_is_its_lower_tolerance_bound_rounded_down(lifetim
 
 def test_the_likely_range_is_that_of_the_quantiles(lifetime):
     ds, found = lifetime
-    low, high, median = numbers(
-        r"90 % lie between # and # days; median # days\.", found.lead.range.sentence
+    low, high, median, never = numbers(
+        r"90 % lie between # and # days; median # days; at most # % never end \(no row does\)\.",
+        found.lead.range.sentence,
     )
+    assert never == pytest.approx(100 * (1 - 0.025**1e-3), abs=0.005)  # no row of 1000
     known = summarised(ds)["outputs"]["life"]["quantiles"]
     shown = {"0.05": low, "0.95": high, "0.5": median}
     for p, value in shown.items():

@@ -28,6 +28,14 @@ def lifetime():
     return answered.lifetime()
 
 
+def test_rows_too_few_for_a_ranking_are_added():
+    """The answer must not say that nothing is to be done."""
+    found = answer(linear(samples=20))
+    assert [one.rule for one in found.advice] == ["rows"]
+    assert found.advice[0].rows == 64
+    assert "Compute about 64 rows instead of 20: no ranking of the inputs" in found.advice[0].text
+
+
 def test_an_assumed_law_that_matters_is_measured_first(lifetime):
     ds, found = lifetime
     assert [one.rule for one in found.advice] == ["measure", "tighten"]
@@ -99,12 +107,12 @@ def with_valley(samples=400):
 def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_input():
     ds = with_valley()
     found = answer(ds)
-    assert [one.rule for one in found.advice][:1] == ["keep"]
+    assert [one.rule for one in found.advice][:2] == ["known", "keep"]
     event = found.lead.events[0]
     assert event.share.value > 0.5
     share, low, high = numbers(
         r"So that more exceed 10 mm, keep x4 [^:]*: # % \(# to # %\) do there\.",
-        found.advice[0].text,
+        found.advice[1].text,
     )
     most = event.curve.shares[event.curve.most]
     assert [share, low, high] == pytest.approx([100 * one for one in most.numbers], abs=0.05)

@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from computed import asking, computed, linear, study_of, summarised, with_output
 from noisy_studies import noisy
@@ -59,10 +60,13 @@ def test_units_promise_a_quantile_with_the_reason(nested):
 
 def test_lives_that_never_end_are_said_in_the_range(nested):
     _, found, said = nested
-    low, median = numbers(
-        r"5 % end within # days; more than 5 % never end; median # days\.",
+    low, median, *never = numbers(
+        r"5 % end within # days; median # days; # % \(# to # %\) never end\.",
         found.lead.range.sentence,
     )
+    known = found.lead.range.never
+    assert never == pytest.approx([100 * one for one in known.numbers], abs=0.06)
+    assert known.value == said["never"] / 2400 and known.low < known.value < known.high
     assert said["quantiles"]["0.95"]["never"] and said["never"] > 0.05 * 2400
     shown = [said["quantiles"][p]["value"] / DAY for p in ("0.05", "0.5")]
     assert [low, median] == pytest.approx(shown, rel=5e-3)
@@ -155,7 +159,18 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
 def test_a_missing_ranking_is_explained_once():
     ds = with_output(linear(samples=32), "z", linear(samples=32)["y"].values)
     found = answer(asking(ds, outputs=["z"], thresholds={"z": "5 m"}))
-    reason = "only 32 rows have a value; 64 are needed"
+    reason = "only 32 rows with a value; 64 are needed"
     assert repr(found).count(reason) == 1
     alone = replace(found.lead, events=())
     assert reason in alone.ranking_sentence
+
+
+def test_a_regime_that_no_first_row_of_a_sample_has_is_not_ranked(nested):
+    ds = nested[0]
+    rare = np.arange(ds.sizes["sample"]) % 8 == 5  # one of the other rows of each sample
+    attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
+    attrs |= {"may_be_undefined": 0}
+    attrs |= {"flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
+    found = answer(ds.assign(regime=("sample", rare.astype(np.int8), attrs)))
+    (rough,) = [one for one in found.regimes if one.said == "rough"]
+    assert rough.decided_by == "No ranking of the inputs: no row that it could rest on is rough."

@@ -1,5 +1,7 @@
 """Sentences of the answer that few studies need, each against the numbers under it."""
 
+import re
+
 import numpy as np
 import pytest
 from answered import numbers
@@ -15,10 +17,13 @@ from computed import (
     with_status,
 )
 from nested_studies import nested_result
+from scipy.stats import binomtest
 
 from uq.analysis.findings import Findings
+from uq.cli.tables import show_answer
 from uq.conclusions.advice import advise, verdict
 from uq.conclusions.answer import answer
+from uq.conclusions.page import fragment
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.remedies import Tightened
 from uq.contract import Status
@@ -37,13 +42,16 @@ def test_lives_of_which_some_never_end():
     ended = np.linspace(1, 10, 150)
     ds = days(np.r_[ended, np.full(50, np.inf)], quantiles=[0.05, 0.5])
     found = answer(ds).lead.range.sentence
-    low, median = numbers(r"5 % end within # days; more than 5 % never end; median # days\.", found)
+    pattern = r"5 % end within # days; median # days; # % \(# to # %\) never end\."
+    low, median, *never = numbers(pattern, found)
+    exact = 100 * np.array(binomtest(50, 200).proportion_ci(method="wilson"))
+    assert never == pytest.approx([25, *exact], abs=0.05)
     known = summarised(ds)["outputs"]["life"]["quantiles"]
     assert low == pytest.approx(known["0.05"]["value"] / DAY, rel=5e-3)
     assert median == pytest.approx(known["0.5"]["value"] / DAY, rel=5e-3)
     assert 1 + 9 * 9 / 149 <= low <= 1 + 9 * 10 / 149  # between the tenth life and the next
     mostly = answer(days(np.r_[ended[:50], np.full(150, np.inf)])).lead
-    assert mostly.range.sentence.endswith("more than 5 % never end; at least half never end.")
+    assert re.search(r"; 75\.0 % \(\S+ to \S+ %\) never end\.$", mostly.range.sentence)
     assert mostly.promise.sentence.startswith("With 95 % confidence, at least 95 % last longer")
 
 
@@ -74,7 +82,7 @@ def test_a_success_succeeds():
     never = np.r_[times[:150], np.full(50, np.inf)]
     ds = ds.assign(locking=ds["locking"].copy(data=never))
     said = answer(asking(ds, outputs=["locking"])).lead.range.sentence
-    assert "5 % succeed within" in said and "more than 5 % never succeed" in said
+    assert "5 % succeed within" in said and said.endswith("(19.5 to 31.4 %) never succeed.")
 
 
 def test_where_nothing_can_be_promised_a_probability_comes_first():
@@ -193,6 +201,20 @@ def test_no_single_input_explains_much():
     leads = found.leader is not None and found.leads
     assert not leads
     assert found.sentence.startswith(("No single input", "Which inputs matter is not settled"))
+
+
+def test_a_study_that_names_the_regime_first_is_about_the_regimes(capsys):
+    by_value = kinds(samples=64, analysis={"outputs": ["work", "regime"]})
+    by_regime = kinds(samples=64, analysis={"outputs": ["regime", "work"]})
+    for ds, first in ((by_value, False), (by_regime, True)):
+        found = answer(ds)
+        assert (found.regimes[0].sentence in found.lines[0]) == first
+        show_answer(found)
+        printed = capsys.readouterr().out
+        assert printed.startswith(found.regimes_sentence[:20]) == first
+        page = fragment(found)
+        places = [page.index(words) for words in ("slow", "answer-promise")]
+        assert (places == sorted(places)) == first
 
 
 def test_the_rarer_regimes_say_what_decides_them():

@@ -1,5 +1,7 @@
 """Indices of events and regimes that few rows decide."""
 
+import re
+
 import numpy as np
 import pytest
 from asked_indices import sensitivities
@@ -32,7 +34,9 @@ def of_event(share, samples=128, method=None, design="saltelli"):
 def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
     refusal = of_event(0.013)["refused"]
     assert "hits in 2048 rows" in refusal and "5 are needed" in refusal
-    assert "times the samples" in refusal
+    hits = int(re.match(r"only (\d+) hits", refusal)[1])
+    wanted = int(re.search(r"about (\d+) samples instead of 128 would give 20", refusal)[1])
+    assert wanted == pytest.approx(128 * 20 * 8 / hits, rel=0.05)
     assert "'regional' of a 'monte-carlo' design needs 10 in all" in refusal
 
 
@@ -89,3 +93,38 @@ def test_an_output_of_two_values_is_an_event(hits, refused, values):
     found = sensitivities(with_output(ds, "hit", np.where(some, values[1], values[0])), "sobol")
     (entry,) = [one for name, one in found["outputs"].items() if "hit" in name]
     assert ("needed for an index" in entry.get("refused", "")) is refused
+
+
+def of_paths(values, samples=33):
+    ds = linear("shapley", samples=samples)
+    found = sensitivities(with_output(ds, "z", values(ds)), None, "z")
+    (entry,) = found["outputs"].values()
+    return entry
+
+
+def test_an_event_that_only_rows_between_the_independent_ones_see_has_no_indices():
+    entry = of_paths(lambda ds: ds["block"].values == 1)
+    assert "in all independent rows, though not in those between" in entry["refused"]
+    ds = linear("saltelli", samples=64, replicates=4)
+    ds = with_output(ds, "z", ds["block"].values == 1)
+    assert "though not in those between" in sensitivities(ds, None, "z")["outputs"]["z"]["refused"]
+
+
+def test_shares_of_a_variance_that_may_be_zero_are_refused():
+    ds = linear("shapley", samples=40, seed=5)
+    y = ds["y"].values
+    (entry,) = sensitivities(with_output(ds, "z", y > np.quantile(y, 0.93)), None, "z")[
+        "outputs"
+    ].values()
+    assert entry["refused"].startswith("40 paths do not tell the variance from zero")
+
+
+def test_one_path_is_too_few_and_its_output_no_event():
+    assert of_paths(lambda ds: ds["y"].values, samples=1)["refused"] == (
+        "only 1 whole path; 32 are needed"
+    )
+
+
+def test_one_hit_is_singular():
+    entry = of_paths(lambda ds: ds["sample"].values == 5)
+    assert entry["refused"].startswith("only 1 hit in 66 rows: 5 are needed")

@@ -139,5 +139,5 @@ def test_given_data_refuses_what_it_cannot_judge():
     for method in ("rbd-fast", "delta", "pawn"):
         found = indices(ds, method)["outputs"]
         assert "same value" in found["flat"]["refused"]
-        assert "63 of 200 rows" in found["short"]["refused"]
+        assert "63 rows with a value (of 200)" in found["short"]["refused"]
         assert ("refused" in found["event"]) == (method == "delta")

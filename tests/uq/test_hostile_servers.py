@@ -103,6 +103,15 @@ def test_a_server_that_answers_nonsense_costs_a_status(uq, hostile, what):
     assert (ds["y"].values[~lost] == 1.5).all()
 
 
+def test_a_server_that_fails_at_zero_is_given_other_values(uq, hostile):
+    address = hostile(INFO | {"Evaluate": WRONG["500"][0]})
+    at_zero, elsewhere = (
+        " ".join(uq("simulate", address, *more).out.split()) for more in ((), ("--set", "x1=1"))
+    )
+    assert "so all inputs are 0: give others, --set x1=1" in at_zero
+    assert "with status 500" in elsewhere and "all inputs are 0" not in elsewhere
+
+
 def test_an_answer_that_comes_twice_is_never_that_of_the_next_row(uq, hostile):
     def twice(count):
         text = json.dumps({"output": [[float(count)]]})

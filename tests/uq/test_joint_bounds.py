@@ -119,7 +119,7 @@ def test_bounds_that_lack_rows_are_not_settled():
     }
     few = Findings(computed(study_of(tables)))
     said = "the joint bounds that the study asks for need 93 rows"
-    assert f"Not enough rows: {said}; about 93 rows would settle it." in verdict(few)
+    assert f"Not enough rows: {said}; about 93 rows in all would settle it." in verdict(few)
     failing = computed(study_of(tables | {"settings": {"fail_above": 0.9}}))
     assert failed(failing).mean() > 0.05  # as many rows as may lie outside
     joint = summarised(failing)["outputs"]["y"]["joint_bounds"]

@@ -105,7 +105,7 @@ def test_what_cannot_be_fitted_is_refused():
     never = np.where(np.arange(400) < 7, np.inf, good)
     zero = np.where(np.arange(400) < 3, 0.0, good)
     for values, censored, sentence in (
-        (never, None, "7 of 400 rows never end"),
+        (never, None, "of 400 rows 7 never end"),
         (zero, None, "3 rows have no positive life"),
         (good, np.arange(400) >= 19, "only 19 rows ended"),
         (np.full(400, 5.0), None, "share fewer than 20 values"),

@@ -39,6 +39,7 @@ def test_a_unit_stays_with_its_number():
         "30",
         "rows",
     ]
+    assert printed("13 312 rows").split(" ") == ["13\u00a0312", "rows"]
     assert printed("-") == "–"
 
 

@@ -155,7 +155,7 @@ def test_a_failed_row_takes_its_path_along_and_order_does_not_matter():
     again = sensitivities(mixed)["outputs"]["y"]["shapley"]
     assert values(again) == pytest.approx(values(found["outputs"]["y"]["shapley"]))
     few = sensitivities(linear("shapley", 16))["outputs"]["y"]
-    assert few["refused"] == "only 16 paths are whole; 32 are needed"
+    assert few["refused"] == "only 16 whole paths; 32 are needed"
 
 
 def test_steps_between_equal_values_have_no_effect():

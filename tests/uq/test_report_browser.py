@@ -163,3 +163,15 @@ def test_the_answer_fits_the_first_screen_or_two_of_a_phone(
     assert bottom <= screens * height
     for part in (".answer-promise", "svg", ".bar", ".answer-todo"):
         assert browser.value(f"{answer}.querySelector('{part}') !== null"), part
+
+
+def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(browser, tmp_path):
+    path = tmp_path / "crossed.html"
+    path.write_text(page(linear("saltelli", samples=16, replicates=4), "crossed.nc"), "utf-8")
+    browser.open(path)
+    tables = "[...document.querySelectorAll('.subject table')]"
+    bars = "[...t.querySelectorAll('td:nth-child(2) .bar')]"
+    place = "b => [b.getBoundingClientRect().left, b.getBoundingClientRect().width].join()"
+    places = browser.value(f"{tables}.map(t => {bars}.map({place}))")
+    signs = browser.value(f"{tables}.map(t => t.textContent).join(' ')").count("\u2212")
+    assert signs and all(len(set(one)) == 1 for one in places if one)

@@ -213,6 +213,7 @@ def test_a_card_takes_the_focus_from_the_keyboard_and_gives_it_back(shown):
     assert browser.value(cards) == 0 and browser.value(at) == "canvas"
     assert browser.value(tip).startswith(f"Row {row}\n")  # the arrows go on from there
     browser.click(*place_of_a_point(browser))
+    browser.painted()
     assert browser.value(cards) == 1 and browser.value(at) == "canvas"
 
 

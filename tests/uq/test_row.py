@@ -87,7 +87,7 @@ def test_lives_are_ordered_ended_censored_never():
     ds = with_lives()
     lowest = row_again(ds, lowest="life")
     assert lowest.number == 0
-    assert lowest.choice.words == "the lowest life; 1 rows were censored earlier"
+    assert lowest.choice.words == "the lowest life; 1 row was censored earlier"
     assert row_again(ds.isel(sample=[2, 3, 5]), lowest="life").number == 3
     assert row_again(ds.isel(sample=[2, 4, 6]), lowest="life").number == 2
     with pytest.raises(InputError, match="no row has a value of 'life'"):

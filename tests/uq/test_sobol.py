@@ -110,8 +110,8 @@ def test_constant_failed_and_missing_rows_are_refused_not_zero():
     few = np.where(ds["group"].values + ds["replicate"].values > 1, np.nan, ds["y"].values)
     found = indices(with_output(ds, "few", few))["outputs"]
     assert "same value" in found["flat"]["refused"]
-    assert "0 of 64 groups" in found["gone"]["refused"]
-    assert "3 of 64 groups" in found["few"]["refused"]
+    assert "only 0 whole groups (of 64)" in found["gone"]["refused"]
+    assert "3 whole groups (of 64)" in found["few"]["refused"]
     for name in ("flat", "gone", "few"):
         assert "S1" not in found[name]
     assert found["y"]["ST"]["x4"]["value"] == pytest.approx(16 / 30, abs=0.1)

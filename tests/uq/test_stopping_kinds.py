@@ -1,5 +1,7 @@
 """Runs that stop when a B-life, an index, or the difference between two indices is known."""
 
+import re
+
 import numpy as np
 import pytest
 from computed import UNIFORM, computed, kinds, study_of, summarised
@@ -73,6 +75,42 @@ def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
     ds = runner.run(fixed, tmp_path / "out.nc", workers=0)
     (note,) = summarised(ds)["notes"]
     assert "budget of 64 samples is spent: B90 of life is never; the required half-width" in note
+
+
+@pytest.mark.parametrize(
+    ("until", "more", "line"),
+    [
+        ({"b_life": "B90"}, {"fixed": {"threshold": 1e-9}}, "B90 of life is never, which no"),
+        ({}, {"fixed": {"threshold": 1e-9}}, r"mean of life has no interval \(some rows never end"),
+    ],
+)
+def test_a_life_that_has_no_such_number_is_announced_once(tmp_path, until, more, line):
+    design = tables({"output": "life", "half_width": "1 days", **until}, samples=512)
+    given = design | {"uncertain": {"rate": WEAR["rate"]}} | more
+    said = []
+    runner.run(study_of(given, "exponential-wear"), tmp_path / "out.nc", workers=0, say=said.append)
+    (one,) = [one for one in said if "budget" in one]
+    assert re.match(f"after 256 samples {line}.*; while that is so .* its budget of 512", one)
+
+
+@pytest.mark.parametrize("method", ["saltelli", "shapley"])
+def test_an_input_without_effect_that_a_run_waits_for_is_announced(tmp_path, method):
+    of_method = {"saltelli": ("ST", 128, 8), "shapley": ("shapley", 512, 1)}
+    index, samples, replicates = of_method[method]
+    until = {"output": "y", "index": index, "input": "x2", "half_width": 0.1}
+    given = tables(until, samples, method, replicates)
+    of = study_of(given | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}, "sample_models:PLAIN")
+    said = []
+    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
+    (line,) = [one for one in said if "budget" in one]
+    words = f"{index} x2 of y is 0 and has no interval (no row shows an effect)"
+    assert words in line and words in summarised(ds)["notes"][0]
+
+
+def test_the_shapley_effect_of_a_single_input_is_refused_before_the_run():
+    given = tables({"output": "y", "index": "shapley", "half_width": 0.1}, 512, "shapley")
+    with pytest.raises(InputError, match="is 1 in every study of one input, x1: no interval"):
+        study_of(given | {"uncertain": {"x1": UNIFORM}})
 
 
 def test_times_are_said_in_the_unit_that_people_use(tmp_path):

@@ -150,10 +150,12 @@ def test_other_designs_have_the_intervals_of_their_replicates():
     assert found["mean_high"] - found["mean_low"] < 0.1
 
 
-def test_a_refusal_names_the_rows_to_add(result):
+def test_a_refusal_names_the_samples_that_it_takes(result):
     with pytest.raises(RunError, match=r"run it as a study of its own.*Pareto k [0-9.]+\)"):
         what_if(result, {"uncertain.z.mean": 4.0})
-    with pytest.raises(RunError, match=r"add about \d+ samples \(Pareto k 0\.\d+, limit 0\.44\)"):
+    with pytest.raises(
+        RunError, match=r"takes about \d+ samples instead of 60 \(Pareto k 0\.\d+, limit 0\.44\)"
+    ):
         what_if(computed(study(samples=60)), {"uncertain.z.sd": 1.05})
     assert largest_shape(100) == 0.5 and largest_shape(10**6) == 0.7
 

@@ -11,12 +11,15 @@ from uq.methods.morris import MU, MU_STAR
 from uq.wording import (
     brief,
     capitalized,
+    counted,
     duration,
     estimated,
     interval,
     known,
     law,
     percent,
+    percent_interval,
+    percent_with_interval,
     quantity,
 )
 from uq.written import read_quantity
@@ -141,3 +144,20 @@ def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
 )
 def test_a_name_that_is_a_symbol_keeps_its_case_at_the_head_of_a_sentence(text, title):
     assert capitalized(text) == title
+
+
+def test_what_is_counted_is_singular_where_it_is_one():
+    assert [counted(n, "row") for n in (0, 1, 2)] == ["0 rows", "1 row", "2 rows"]
+    assert counted(1, "life is", "lives are") == "1 life is"
+    assert counted(3, "life is", "lives are") == "3 lives are"
+
+
+def test_an_interval_whose_ends_read_alike_is_none():
+    assert percent_interval(0.5, 0.625) == "50.0 to 62.5 %"
+    assert percent_interval(1.0, 1.0) == "exact to these digits"
+    assert percent_interval(0.0, 1e-4) == "0 to 0.01 %"
+    sure, bounds = Estimate(1.0, 1.0, 1.0), Estimate(nan, 1.0, 1.0)
+    assert percent_with_interval(sure) == "100 % (exact to these digits)"
+    assert percent_with_interval(sure, bounds).endswith("digits; with failed rows 100 %)")
+    known = percent_with_interval(Estimate(0.5, 0.4, 0.6), bounds)
+    assert known == "50.0 % (95 % interval 40.0 to 60.0 %; with failed rows 100 %)"

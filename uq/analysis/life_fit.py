@@ -14,6 +14,7 @@ from uq.estimate import Estimate
 from uq.intervals import CONFIDENCE, upper_probability
 from uq.order_statistics import is_within
 from uq.rows.elements import Element, Floats, Mask
+from uq.wording import counted
 
 MIN_ENDED = 20
 """With fewer ended lives than this every law fits."""
@@ -138,11 +139,12 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
         return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
-        return f"{never} of {len(life)} rows never end, and under this law all do"
-    if (life <= 0).any():
-        return f"{int((life <= 0).sum())} rows have no positive life, and under this law all have"
+        known = counted(never, "never ends", "never end")
+        return f"of {len(life)} rows {known}, and under this law all do"
+    if none := int((life <= 0).sum()):
+        return f"{counted(none, 'row has', 'rows have')} no positive life; under this law all have"
     if ended.sum() < MIN_ENDED:
-        return f"only {int(ended.sum())} rows ended; {MIN_ENDED} are needed"
+        return f"only {counted(int(ended.sum()), 'row')} ended; {MIN_ENDED} are needed"
     if len(np.unique(life[ended])) < MIN_ENDED:
         return f"the rows that ended share fewer than {MIN_ENDED} values"
     return ""

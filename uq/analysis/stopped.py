@@ -1,6 +1,6 @@
 """What is said of a run that may stop: why it did, or how far it is from that."""
 
-from math import isfinite, isnan
+from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -10,7 +10,7 @@ from uq.estimate import Estimate
 from uq.population.means import EXACT
 from uq.rows.nesting import first_samples
 from uq.units import Unit, beside, unit_of
-from uq.wording import brief, in_unit, rows_in_words, threshold
+from uq.wording import brief, counted, in_unit, rows_in_words, threshold
 from uq.written import Written
 
 if TYPE_CHECKING:
@@ -34,17 +34,16 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     assert until is not None
     size, seen = _stop(design, ds)
     found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
-    if isnan(found.low) and isnan(found.high) and found.reason != EXACT:
-        why = f" ({found.reason})" * bool(found.reason)
-        return f"the budget of {samples} samples is spent, and {seen.what} has no interval{why}"
+    if _has_none(seen):
+        return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
     known = f"{seen.what} {_in_words(found, unit)}"
     if seen.lost:
-        lost = "groups with failed rows" if until.index else "failed rows"
-        known += f" (without {seen.lost} {lost})"
+        of_groups = ("group with failed rows", "groups with failed rows")
+        known += f" (without {counted(seen.lost, *of_groups if until.index else ('failed row',))})"
     wanted = _wanted(until.half_width, unit)
     if not seen.reached:
         needed = _needed(seen, samples)
-        more = f"; it needs about {needed} samples" * bool(needed)
+        more = f": by the scatter of all rows it needs about {needed} samples" * bool(needed)
         spent = f"the budget of {samples} samples is spent: {known}"
         return f"{spent}; the {wanted} was not reached{more}"
     sizes = interim_sizes(design)
@@ -58,7 +57,7 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
 
 
 def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> str:
-    """State that a run will spend its budget in vain; "" where it may stop before.
+    """State that a run will probably spend its budget in vain; "" where it may stop before.
 
     Parameters
     ----------
@@ -70,14 +69,34 @@ def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> 
         Of each replicate, so far.
     """
     assert design.until is not None
+    began = f"after {samples} samples"
+    if _has_none(seen) or seen.estimate.value == inf:
+        rest = f"while that is so the run goes on, to its budget of {design.samples} samples"
+        return f"{began} {_without_interval(seen)}; {rest}"
     if not isfinite(seen.half_width) or seen.rows_factor * samples <= HOPELESS * design.samples:
         return ""
     unit = unit_of(seen.units, seen.estimate.value)
     return (
-        f"after {samples} samples {seen.what} {_in_words(seen.estimate, unit)}: the"
+        f"{began} {seen.what} {_in_words(seen.estimate, unit)}: by the scatter so far, the"
         f" {_wanted(design.until.half_width, unit)} needs about {_needed(seen, samples)} samples,"
         f" more than the budget of {design.samples}, which this run will spend"
     )
+
+
+def _has_none(seen: InterimEstimate) -> bool:
+    """Whether an estimate has no end of an interval, and is not exact either."""
+    found = seen.estimate
+    return isnan(found.low) and isnan(found.high) and found.reason != EXACT
+
+
+def _without_interval(seen: InterimEstimate) -> str:
+    """State that an estimate has no interval that can become narrow, and why."""
+    found = seen.estimate
+    if found.value == inf:
+        return f"{seen.what} is {brief(found)[0]}, which no interval narrows"
+    value = f"is {in_unit(found.value, unit_of(seen.units, found.value))} and "
+    why = f" ({found.reason})" * bool(found.reason)
+    return f"{seen.what} {value * isfinite(found.value)}has no interval{why}"
 
 
 def _needed(seen: InterimEstimate, samples: int) -> str:

@@ -236,7 +236,11 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
         label = until.label
         asked = {label: values.get(label, NOTHING)} if label else dict(values)
         alive = {name: one for name, one in asked.items() if one.value != 0 or one.has_interval}
-        for name, one in (alive or {label: Estimate(reason=found.refused)}).items():
+        if not alive:
+            why = found.refused or "no row shows an effect"
+            value = next((one.value for one in asked.values()), np.nan)
+            alive = {label: Estimate(value, reason=why)}
+        for name, one in alive.items():
             what = " ".join(filter(None, (until.index, name, "of", target.name)))
             yield InterimEstimate(what, one, until.half_width, found.groups_dropped)
 

@@ -13,7 +13,7 @@ from uq.running.loading import load_study
 from uq.study.definition import Study
 from uq.study.file import DesignTable
 from uq.units import powers, typical, unit_of
-from uq.wording import in_brackets, law, listed, threshold
+from uq.wording import counted, in_brackets, law, listed, threshold
 
 
 def check(path: str, model: str | None) -> None:
@@ -28,7 +28,7 @@ def check(path: str, model: str | None) -> None:
         "units": design.units,
         "repeats": design.repeats,
     }
-    parts = [f"{design.samples} samples"]
+    parts = [counted(design.samples, "sample")]
     parts += [f"{count} {name}" for name, count in factors.items() if count > 1]
     stated = ", stated to be independent" * design.independent
     if design.rows_of_a_sample > 1 and kind.independent:
@@ -89,7 +89,7 @@ def _show_sampled(study: Study) -> None:
         return
     nested = study.design.rows_of_a_sample > 1
     heading(
-        f"\nIn {count} rows{', one of each sample' * nested}",
+        f"\nIn {counted(count, 'row')}{', one of each sample' * nested}",
         f"(independent rows would be less than {1.36 / count**0.5:.2g} off in 19 of 20 cases)",
     )
     lines = []

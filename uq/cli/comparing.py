@@ -12,7 +12,7 @@ from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.units import Unit, typical, unit_of
-from uq.wording import compared, estimated, in_brackets, in_unit, interval, known, number
+from uq.wording import compared, counted, estimated, in_brackets, in_unit, interval, known, number
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -62,7 +62,7 @@ _POINTWISE = "The intervals are pointwise: one in twenty misses."
 
 def _about(side: Side) -> str:
     one = side.summary
-    rows = f"{one.samples} rows"
+    rows = counted(one.samples, "row")
     if one.rows_used < one.samples:
         rows += f", {one.rows_used} independent"
     lost = ", ".join(f"{count} {label}" for label, count in one.status.items() if label != "ok")

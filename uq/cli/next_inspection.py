@@ -9,7 +9,7 @@ from uq import json_form
 from uq.cli.printing import grid, heading, note, print_json
 from uq.learning.next_inspection import Worth, worth
 from uq.rows.results import open_result
-from uq.wording import duration, number, percent
+from uq.wording import counted, duration, number, percent
 
 
 def next_inspection(
@@ -31,7 +31,7 @@ def next_inspection(
     heading(f"\n{found.life}", f"expected narrowing by inspecting {found.output}")
     grid(
         [(_when(t), *(_share(found, t, n) for n in units)) for t in times or (None,)],
-        header=("", *(f"{n} unit{'s' * (n > 1)}" for n in units)),
+        header=("", *(counted(n, "unit") for n in units)),
     )
     note(
         f"What units share scatters this life by a factor of {exp(found.spread):.3g} (one standard"

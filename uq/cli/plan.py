@@ -13,7 +13,7 @@ from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import Study
 from uq.units import typical, unit_of
-from uq.wording import in_brackets, threshold
+from uq.wording import counted, in_brackets, threshold
 
 _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
@@ -71,7 +71,7 @@ def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed])
             ("time", _clock(cost.seconds), f"with {processes}{compiled}{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
             *(
-                (name.replace("_", " "), f"{one.rows} rows", _why_needed(one, cost))
+                (name.replace("_", " "), counted(one.rows, "row"), _why_needed(one, cost))
                 for name, one in needed.items()
             ),
         ]

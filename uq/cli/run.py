@@ -21,6 +21,7 @@ from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
 from uq.study.definition import Study
 from uq.upkeep.amending import study_of
+from uq.wording import counted
 
 
 def loaded(
@@ -69,7 +70,7 @@ def carried_out(
         ds = action(replace(options, progress=report, say=say))
     before = f"; {found} had been computed before" if found else ""
     seconds = time.monotonic() - began
-    return ds, f"{target}: {computed} rows computed in {seconds:.1f} s{before}"
+    return ds, f"{target}: {counted(computed, 'row')} computed in {seconds:.1f} s{before}"
 
 
 def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixed: bool) -> int:

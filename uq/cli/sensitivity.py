@@ -10,13 +10,14 @@ from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities
 from uq.methods.indices import BY_CORRELATION, S1, IndexKind, Indices
 from uq.units import typical, unit_of
-from uq.wording import in_brackets
+from uq.wording import counted, in_brackets
 
 
 def show(ds: xr.Dataset, found: Sensitivities) -> None:
     """Print the indices of each target, or why there are none."""
     dropped = found.groups_dropped
-    more = f"of {found.rows_used} rows" + (f", {dropped} groups dropped" if dropped else "")
+    lost = f", {counted(dropped, 'group')} dropped" if dropped else ""
+    more = f"of {counted(found.rows_used, 'row')}{lost}"
     heading(f"Sensitivity by {found.method}", more)
     for name, one in found.targets.items():
         target = Target(ds, name)

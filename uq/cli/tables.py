@@ -23,6 +23,7 @@ from uq.rows.variables import outputs_of
 from uq.units import Unit, typical, unit_of
 from uq.wording import (
     compared,
+    counted,
     estimated,
     failed_interval,
     in_brackets,
@@ -44,7 +45,7 @@ def show_findings(findings: Findings) -> None:
 
 def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = None) -> None:
     """Print a summary, and how intermingled its regimes are."""
-    design = f"{ds.attrs['design']}, {summary.samples} rows"
+    design = f"{ds.attrs['design']}, {counted(summary.samples, 'row')}"
     if summary.rows_used < summary.samples:
         some = summary.rows_used
         design += f", statistics from the {some} independent ones" if some else ", none independent"
@@ -79,16 +80,21 @@ def show_answer(found: Answer) -> None:
     lead = found.lead
     if found.failed or lead is None:
         paragraph(found.rows_sentence, indent=0)
-    if lead is not None:
-        for line in filter(None, (*lead.head, *(one.with_cause for one in lead.others))):
-            paragraph(line, indent=0)
-    if found.regimes:
-        paragraph(found.regimes_sentence, indent=0)
+    of_lead = [] if lead is None else [*lead.head, *(one.with_cause for one in lead.others)]
+    if found.regimes_first:
+        causes = (one.decided_by for one, with_cause in found.told_regimes if with_cause)
+        lines = [found.regimes_sentence, *causes, *of_lead]
+    else:
+        lines = [*of_lead, found.regimes_sentence]
+    for line in filter(None, lines):
+        paragraph(line, indent=0)
     if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
         paragraph(ranking.sentence, indent=0)
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
                 paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    if lead is not None and lead.repeated.sentence:
+        paragraph(lead.repeated.sentence, indent=0)
     if lead is not None and lead.earliest is not None:
         for line in lead.earliest.lines:
             paragraph(line, indent=0)
@@ -155,7 +161,7 @@ def _line(one: Statistic, block: Block) -> Line:
         more = f"of its {form}"
     elif undefined := one.facts.get("undefined"):
         more = f"{percent(undefined)} undefined"
-    return block.label(one), one.words(per), interval(one.estimate, per), more
+    return block.label(one), one.words(per), one.interval(per), more
 
 
 def _failed(one: Statistic, block: Block) -> Iterator[Line]:

@@ -10,6 +10,7 @@ from uq.rows import results
 from uq.running.again import other_versions
 from uq.upkeep import verification
 from uq.upkeep.status import RunStatus, run_status
+from uq.wording import counted
 
 
 def status(path: Path, json: bool) -> None:
@@ -35,7 +36,8 @@ def _show_status(found: RunStatus) -> None:
         ]
     )
     if found.state != "complete" and found.complete_rows is not None:
-        console.print(f"\nUntil then the result with {found.complete_rows} rows is kept.")
+        rows = counted(found.complete_rows, "row")
+        console.print(f"\nUntil then the result with {rows} is kept.")
 
 
 def verify(path: Path, model: str | None) -> int:

@@ -8,6 +8,7 @@ Reading order; a module imports only those above it:
     promises        what can be promised of an output, and its likely range
     bounds          which bounds of an output are promised
     contributions   what inputs contribute, with direction and size
+    repeated        what the same study with another seed would most likely find
     remedies        what a tighter tolerance would change, and each piece of advice
     earliest        which rows end first, and what distinguishes them
     parts           what the answer consists of; each part writes its sentence from its numbers

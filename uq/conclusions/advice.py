@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isfinite, isinf
+from math import ceil, isfinite, isinf
 
 import xarray as xr
 
@@ -23,13 +23,13 @@ from uq.conclusions.words import (
     twin_of,
 )
 from uq.keys import key_of
-from uq.rows.commands import model_option
+from uq.rows.commands import file_of, model_option
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested
 from uq.rows.results import failed
 from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
-from uq.wording import grouped, rows_in_words
+from uq.wording import capitalized, counted, grouped, rows_in_words
 
 
 def advise(
@@ -55,7 +55,8 @@ def advise(
         *([*tighten(findings, answered)] or _keep(answered)),
         *_add_rows(findings, answered),
     ]
-    if answered and not any(one.rule not in ("tighten", "keep") for one in found):
+    if answered and all(one.rule in ("known", "tighten", "keep") for one in found):
+        found = [one for one in found if one.rule != "known"]  # it says so, too
         nothing = "Nothing else" if found else "Nothing"
         settled = "what the study asks is settled, and no law that matters is an assumption"
         found.append(Advice("nothing", f"{nothing}: {settled}."))
@@ -71,8 +72,8 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     if why:
         yield Advice(
             "failed",
-            f"Mend the {lost} failed rows first: {why[0]};"
-            f" 'uq rerun OUT --failed{model_option(ds)}' computes them again,"
+            f"Mend the {counted(lost, 'failed row')} first: {why[0]};"
+            f" 'uq rerun {file_of(ds)} --failed{model_option(ds)}' computes failed rows again,"
             " if necessary with other settings.",
         )
 
@@ -93,16 +94,24 @@ def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
         return
     ds = findings.ds
     assumed = tuple(n for n in leader.inputs if mark(str(ds[n].attrs["source"])) == ASSUMED)
-    if assumed:
-        one = len(assumed) == 1
-        words = called_together(assumed)
-        to_what = f" to how many {event.said}" if event else ""
+    if not assumed:
+        one = len(leader.inputs) == 1
         yield Advice(
-            "measure",
-            f"Measure {words} first: {'it matters' if one else 'they matter'} most{to_what}, and"
-            f" {'its law is' if one else 'their laws are'} assumed.",
-            assumed,
+            "known",
+            f"Measure nothing first: {'the law' if one else 'the laws'} of {leader.words},"
+            f" which {'matters' if one else 'matter'} most, {'is' if one else 'are'} not assumed.",
+            leader.inputs,
         )
+        return
+    one = len(assumed) == 1
+    words = called_together(assumed)
+    to_what = f" to how many {event.said}" if event else ""
+    yield Advice(
+        "measure",
+        f"Measure {words} first: {'it matters' if one else 'they matter'} most{to_what}, and"
+        f" {'its law is' if one else 'their laws are'} assumed.",
+        assumed,
+    )
 
 
 def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
@@ -152,7 +161,8 @@ def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
         return
     given = " ".join(f"--set {name}={value:.6g}" for name, value in changes.items())
     words = called_together(inputs)
-    text = f"See what half the scatter of {words} would change: uq what-if OUT {given}"
+    command = f"uq what-if {file_of(findings.ds)} {given}"
+    text = f"See what half the scatter of {words} would change: {command}"
     yield Advice("tighten", text, inputs)
 
 
@@ -173,11 +183,16 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     if not open_ones:
         return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
-        f"Not enough rows: {one.what}; {_needed(one, findings.ds)} would settle it."
+        f"Not enough rows: {_settled(one, findings.ds)}"
         if isfinite(one.factor)
         else f"{sentence(one.what)} More rows would not help."
         for one in open_ones
     ]
+
+
+def _settled(one: Unsettled, ds: xr.Dataset) -> str:
+    """Return what is not settled, and how many rows in all would settle it."""
+    return f"{one.what}; {_needed(one, ds)} in all would settle it."
 
 
 def _no_intervals(ds: xr.Dataset) -> str:
@@ -216,11 +231,15 @@ def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advi
     open_ones = [one for one in _open(findings, answered) if isfinite(one.factor)]
     if not open_ones or not rows:
         return
-    worst = open_ones[0]
-    others = len(open_ones) - 1
-    more = f"; {others} more {'is' if others == 1 else 'are'} not settled" if others else ""
+    worst, *less = open_ones
+    more = ""
+    if less:
+        are, them = ("is", "it") if len(less) == 1 else ("are", "them")
+        listed = f"'uq convergence {file_of(findings.ds)}' lists {them}"
+        more = f"; {len(less)} more {are} not settled ({listed})"
     yield Advice(
         "rows",
         f"Compute {_needed(worst, findings.ds)} instead of {grouped(rows)}: {worst.what}{more}.",
-        rows=int(min(worst.factor, MOST) * rows) + 1,
+        rows=ceil(min(worst.factor, MOST) * rows),
+        others=tuple(capitalized(_settled(one, findings.ds)) for one in less),
     )

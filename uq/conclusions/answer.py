@@ -6,9 +6,11 @@ from weakref import WeakKeyDictionary
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.analysis.summary import REGIME
 from uq.conclusions.advice import advise
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.quantities import event, quantities
+from uq.rows.elements import analysis_of
 from uq.rows.results import failed
 
 
@@ -64,6 +66,7 @@ def _concluded(findings: Findings, weighed: bool) -> Answer:
         regimes,
         tuple(advise(findings, found, weighed)),
         tuple(findings.summary.notes),
+        regimes_first=bool(regimes) and analysis_of(ds).outputs[:1] == (REGIME,),
     )
 
 

@@ -1,6 +1,7 @@
 """The answer as the command line prints it with ``--json``: for each sentence, its numbers."""
 
 from collections.abc import Iterator
+from math import isnan
 from typing import Any
 
 from uq import json_form
@@ -10,6 +11,7 @@ from uq.conclusions.earliest import Earliest
 from uq.conclusions.parts import Answer, Event, Quantity
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
+from uq.conclusions.repeated import Repeated
 
 
 def answer_json(found: Answer) -> dict[str, Any]:
@@ -19,8 +21,9 @@ def answer_json(found: Answer) -> dict[str, Any]:
     -------
     dict
         ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
-        ``range``, ``events`` (target -> event), ``earliest`` (of lives) and ``ranking``;
-        ``regimes``: label -> event; ``advice``: rule -> ``text``, ``inputs``, ``rows``. The numbers
+        ``range``, ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
+        ``ranking``; ``regimes``: label -> event; ``advice``: rule -> ``text``, ``inputs``,
+        ``rows`` and ``others``, what else they would settle. The numbers
         of a sentence stand side by side, with the sentence, under a key of their own. An event has
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
         input ``over``. A ranking has ``contributions``: ``inputs`` -> index, ``effects`` -> change
@@ -43,6 +46,8 @@ def _quantity(one: Quantity) -> dict[str, Any]:
     found |= {} if one.range is None else {"range": _range(one.range)}
     found["events"] = {event.name: _event(event) for event in one.events}
     found |= {} if one.earliest is None else {"earliest": _earliest(one.earliest)}
+    if one.repeated.sentence:
+        found["another_seed"] = _repeated(one.repeated)
     return found | _of_ranking(one.ranking)
 
 
@@ -97,7 +102,15 @@ def _range(one: Range) -> dict[str, Any]:
         estimate = getattr(one, name)
         found[name] = json_form.number(estimate.value)
         found |= json_form.flag(f"{name}_", estimate, "value")
+    if not isnan(one.never.value):
+        ends = {f"never_{name}": end for name, end in json_form.ends(one.never).items()}
+        found |= {"never": one.never.value} | ends
     return found
+
+
+def _repeated(one: Repeated) -> dict[str, Any]:
+    ends = {"low": json_form.number(one.low), "high": json_form.number(one.high)}
+    return {"sentence": one.sentence} | ({"expected": ends} if one.what else {})
 
 
 def _event(one: Event) -> dict[str, Any]:
@@ -164,4 +177,5 @@ def _change(one: Change, name: str) -> dict[str, Any]:
 
 def _advice(one: Advice) -> dict[str, Any]:
     rows = {} if one.rows is None else {"rows": one.rows}
-    return {"text": one.text, "inputs": list(one.inputs)} | rows
+    others = {"others": list(one.others)} if one.others else {}
+    return {"text": one.text, "inputs": list(one.inputs)} | rows | others

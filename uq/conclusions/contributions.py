@@ -125,6 +125,8 @@ class Ranking:
         How many times the rows would settle it; NaN where that does not apply.
     is_flat : bool
         Whether it is settled that no input contributes measurably.
+    rivals : tuple of str
+        Inputs of which one would contribute most with another seed, with 95 %; none if not known.
     """
 
     target: str
@@ -135,6 +137,7 @@ class Ranking:
     reason: str = ""
     rows_factor: float = float("nan")
     is_flat: bool = False
+    rivals: tuple[str, ...] = ()
 
     @property
     def leader(self) -> Contribution | None:

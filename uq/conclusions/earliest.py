@@ -18,7 +18,7 @@ from uq.analysis.findings import Findings
 from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
 from uq.errors import InputError
 from uq.intervals import Replicates
-from uq.rows.commands import model_option
+from uq.rows.commands import file_of, model_option
 from uq.rows.elements import Element
 from uq.rows.row_choice import lowest_rows
 from uq.wording import grouped, percent
@@ -130,7 +130,8 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
     if not rows:
         return None
-    command = f"uq row OUT --lowest {shlex.quote(element.name)}{model_option(findings.ds)}"
+    ds, lowest = findings.ds, shlex.quote(element.name)
+    command = f"uq row {file_of(ds)} --lowest {lowest}{model_option(ds)}"
     found = Earliest(element.name, rows, lives, unit, command)
     places = earliest_rows(element)
     if len(places) < FEWEST:

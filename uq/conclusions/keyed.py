@@ -1,6 +1,6 @@
 """Sentences of the answer as HTML, each with the keys of its numbers for ``uq trace``."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup, escape
 
@@ -38,6 +38,14 @@ def promise(one: Quantity) -> Markup:
 def likely(one: Quantity) -> Markup:
     """Return the likely range; "" where it is not known."""
     return keyed("" if one.range is None else one.range.sentence, _key(one, "range"))
+
+
+def repeated(one: Quantity) -> Markup:
+    """Return what another seed would find; "" where that is not known."""
+    known = one.repeated
+    if known.what:
+        return keyed(known.sentence, _key(one, "another_seed", "expected"))
+    return escape(plain(printed(known.sentence)))
 
 
 def events(one: Quantity) -> list[Markup]:
@@ -124,8 +132,16 @@ def advice(one: Advice) -> Markup:
     if one.key:
         return keyed(one.text, one.key)
     if one.rows is not None:
-        return keyed(one.text, _answer("advice", one.rule, "rows"))
+        return keyed(one.text, _answer("advice", one.rule, "rows")) + _folded(one.others)
     return escape(plain(printed(one.text)))
+
+
+def _folded(texts: Sequence[str]) -> Markup:
+    """Return what is not settled either, to be unfolded; "" where there is nothing."""
+    items = Markup("").join(Markup("<li>{}</li>").format(plain(printed(one))) for one in texts)
+    title = "What else is not settled"
+    whole = Markup("<details><summary>{}</summary><ul>{}</ul></details>").format(title, items)
+    return whole if items else Markup()
 
 
 def _key(one: Quantity, *path: str) -> str:

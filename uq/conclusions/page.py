@@ -71,7 +71,8 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     for one in quantities:
         why = "" if one.promise is None else plain(printed(one.promise.why))
         lines = [keyed.promise(one), why, keyed.likely(one)]
-        lines += [*keyed.events(one), keyed.leader(one), *keyed.earliest(one)]
+        lines += [*keyed.events(one), keyed.leader(one), keyed.repeated(one)]
+        lines += keyed.earliest(one)
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
         title = capitalized(one.words)
         found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
@@ -87,7 +88,8 @@ def regimes(answer: Answer) -> Markup:
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    parts += [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
+    told = [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
+    parts = [*told, *parts] if answer.regimes_first else [*parts, *told]
     if answer.failed or lead is None:
         parts.insert(0, _line(keyed.rows(answer)))
     return _block("verdict", parts)
@@ -108,6 +110,8 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     if likely := keyed.likely(lead):
         yield _line(likely)
     yield from map(_line, keyed.others(lead))
+    if again := keyed.repeated(lead):
+        yield _small(again)
     elements = [one for one in answer.quantities[1:] if one.output == lead.output]
     promised = [one for one in elements if one.promise is not None and one.promise.sentence]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:

@@ -8,9 +8,10 @@ from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import Earliest
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
+from uq.conclusions.repeated import Repeated, repeated_quantile, repeated_share
 from uq.conclusions.words import Unit, called_together, sentence, share_text
 from uq.estimate import Estimate
-from uq.wording import percent, percent_interval
+from uq.wording import percent, percent_range
 
 RARE = 0.01
 MOST_REGIMES = 3
@@ -60,7 +61,7 @@ class Event:
             return sentence(f"how many {self.said} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
-            ends = percent_interval(self.failed.low, self.failed.high)
+            ends = percent_range(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
         if self.undefined > 0:
             text += f"; {percent(self.undefined)} are undefined"
@@ -174,6 +175,13 @@ class Quantity:
         return next((one for one in self.events if one.sentence), None)
 
     @property
+    def repeated(self) -> Repeated:
+        """What the study would find with another seed."""
+        if self.first is None:
+            return repeated_quantile(self.promise, self.ranking)
+        return repeated_share(self.first.said, self.first.share, self.ranking)
+
+    @property
     def others(self) -> list[Event]:
         """The events that do not stand first."""
         return [one for one in self.events if one is not self.first]
@@ -204,6 +212,8 @@ class Answer:
     advice : tuple of Advice
     notes : tuple of str
         What could not be said, and why.
+    regimes_first : bool
+        Whether the study is about the regimes: it names them before all other outputs.
     """
 
     title: str
@@ -213,6 +223,7 @@ class Answer:
     regimes: tuple[Event, ...]
     advice: tuple[Advice, ...]
     notes: tuple[str, ...] = ()
+    regimes_first: bool = False
 
     @property
     def rows_sentence(self) -> str:
@@ -251,10 +262,12 @@ class Answer:
         """The answer in a few sentences."""
         lead = self.lead
         found = [] if not self.failed and lead else [self.rows_sentence]
-        found += [] if lead is None else lead.head
-        events = [*([] if lead is None else lead.others), *self.main_regimes]
-        found += [one.with_cause for one in events]
-        found += [] if lead is None else [lead.ranking_sentence]
+        regimes = [one.with_cause for one in self.main_regimes]
+        of_lead = []
+        if lead is not None:
+            of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
+        found += [*regimes, *of_lead] if self.regimes_first else [*of_lead, *regimes]
+        found += [] if lead is None else [lead.ranking_sentence, lead.repeated.sentence]
         if lead is not None and lead.earliest is not None:
             found += lead.earliest.lines
         return [*filter(None, found), *(one.text for one in self.advice)]

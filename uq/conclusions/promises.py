@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from math import inf, isfinite
 
-from uq.conclusions.words import Unit, sentence
+from uq.conclusions.words import Unit, sentence, share_text
 from uq.estimate import NOTHING, Estimate
-from uq.wording import listed
+from uq.wording import listed, percent
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,10 @@ class Promise:
 
 @dataclass(frozen=True)
 class Range:
-    """The likely range: quantiles of 5, 50 and 95 %; ``ends`` is what a life does at its end."""
+    """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
+
+    ``ends`` is what a life does at its end.
+    """
 
     low: Estimate
     median: Estimate
@@ -109,22 +112,28 @@ class Range:
     unit: Unit
     of_magnitude: bool = False
     ends: str = "end"
+    never: Estimate = NOTHING
 
     @property
     def sentence(self) -> str:
-        """Range and median, as far as they are known."""
+        """Range, median, and how many never end, as far as they are known."""
         parts = []
         what = "of the magnitudes " if self.of_magnitude else ""
         if isfinite(self.low.value) and isfinite(self.high.value):
             ends = self.unit.between(self.low.value, self.high.value, " and ")
             parts.append(f"90 % {what}lie between {ends}")
         elif isfinite(self.low.value) and self.high.value == inf:
-            never = f"never {self.ends}"
-            most = never if "value" not in self.high.beyond else "exceed the horizon"
-            low = self.unit.text(self.low.value)
-            parts.append(f"5 % {self.ends} within {low}; more than 5 % {most}")
+            parts.append(f"5 % {self.ends} within {self.unit.text(self.low.value)}")
+            if "value" in self.high.beyond:
+                parts.append("more than 5 % exceed the horizon")
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
-        elif self.median.value == inf and "value" not in self.median.beyond:
-            parts.append(f"at least half never {self.ends}")
-        return sentence("; ".join(parts)) if parts else ""
+        parts.append(self._never)
+        return sentence("; ".join(filter(None, parts))) if any(parts) else ""
+
+    @property
+    def _never(self) -> str:
+        """How many never end; "" where that is not known, or it is no life."""
+        if self.never.value == 0 and self.never.has_interval:
+            return f"at most {percent(self.never.high)} never {self.ends} (no row does)"
+        return f"{share_text(self.never)} never {self.ends}" if self.never.value > 0 else ""

@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.analysis.event_curve import EventCurve, event_curve
 from uq.analysis.findings import Findings
+from uq.analysis.statistics.counts import never_ending
 from uq.analysis.statistics.quantiles import quantiles
 from uq.analysis.statistics.statistic import Context, Statistic
 from uq.analysis.statistics.tolerance import tolerance
@@ -28,6 +29,7 @@ from uq.conclusions.promises import Range
 from uq.conclusions.rankings import method_for, ranking_of
 from uq.conclusions.words import Unit, element_called, unit_for
 from uq.errors import InputError
+from uq.estimate import NOTHING
 from uq.greek import readable
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
@@ -143,6 +145,7 @@ def _quantity(
             unit,
             element.is_angle,
             end_of(element),
+            never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
         ),
         tuple(_events(findings, described, element, unit)),
         _as_computed(_ranking(findings, element, unit), described),
@@ -165,12 +168,14 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
     target = number_of(element)
     name = (target if METHODS[method].scale_free else lightened(target)).name
     verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
-    if element.is_angle:  # all else that is said is of its magnitude
+    if element.is_angle:  # of all that is said, this alone is not of its magnitude
         verb = ("lowers its signed value", "raises its signed value")
     try:
         found = ranking_of(findings, name, method, verb)
     except InputError as refused:
         return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
+    if element.is_angle and found.what:
+        found = replace(found, what=f"{found.what}, of the angle with its sign")
     if split_name(name)[0]:
         return found
     # Changes of the output itself are in its unit.
@@ -225,7 +230,10 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
     try:
         ranking = ranking_of(findings, target, method, verb)
     except InputError as refused:
-        return replace(found, ranking=Ranking(target, method, reason=str(refused)))
+        why = str(refused)
+        if not split_name(target)[2]:  # a regime, of which the rows that could rank have none
+            why = f"no ranking of the inputs: no row that it could rest on is {said}"
+        return replace(found, ranking=Ranking(target, method, reason=why))
     found = replace(found, ranking=ranking)
     if ranking.leader is None:
         return found

@@ -10,6 +10,7 @@ import xarray as xr
 from uq.analysis.effects import Effect, effects
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Change, Contribution, Ranking
+from uq.conclusions.repeated import AGAIN
 from uq.conclusions.words import Unit, called, twin_of
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
@@ -36,6 +37,9 @@ GOAL = 0.1
 
 MOST_TIED = 3
 """With more indistinguishable inputs than this, there is no ranking."""
+
+ALIKE = 0.5
+"""Twins stand together if the index of one is at least this part of that of the other."""
 
 LEAST = 0.01
 """A smaller index is not listed."""
@@ -116,7 +120,8 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
 def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
     found = findings.indices(method, name)
     if found.refused:
-        return Ranking(name, method, reason=f"no ranking of the inputs: {found.refused}")
+        why = f"no ranking of the inputs: {found.refused}"
+        return Ranking(name, method, reason=why, rows_factor=found.rows_factor)
     kinds = found.kinds()
     kind = list(kinds)[-1]
     measured = list(_measured(findings.ds, method, name, kind, found))
@@ -143,7 +148,18 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         for group in groups
         if group[0].index.value >= LEAST
     )
-    return Ranking(name, method, kind.key, what, contributions)
+    return Ranking(name, method, kind.key, what, contributions, rivals=_rivals(measured))
+
+
+def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
+    """Return the inputs of which one would contribute most with another seed, with 95 %.
+
+    None where there is no other, or nothing tells them apart.
+    """
+    first = measured[0]
+    if len(measured) == 1 or not all(isfinite(one.half) for one in measured):
+        return ()
+    return tuple(one.name for one in measured if _are_tied(first, one, AGAIN))
 
 
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
@@ -228,7 +244,8 @@ def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]
     }
 
     def are_twins(one: Measured, other: Measured) -> bool:
-        same = twin_of(one.name) == twin_of(other.name)
+        less, more = sorted((one.index.value, other.index.value))
+        same = twin_of(one.name) == twin_of(other.name) and less >= ALIKE * more
         return same and laws[one.name] is not None and laws[one.name] == laws[other.name]
 
     left = list(measured)
@@ -243,9 +260,9 @@ def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]
         left = [one for one in left if one not in group]
 
 
-def _are_tied(first: Measured, other: Measured) -> bool:
-    """Return whether the index of another input may be as large."""
-    return first.index.value - other.index.value <= hypot(first.half, other.half)
+def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
+    """Return whether another input may have as large an index, errors multiplied by `times`."""
+    return first.index.value - other.index.value <= times * hypot(first.half, other.half)
 
 
 def _effects(findings: Findings, method: str, name: str) -> dict[str, Effect]:

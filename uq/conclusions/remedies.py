@@ -72,15 +72,17 @@ class Advice:
 
     Attributes
     ----------
-    rule : {"rows", "measure", "tighten", "keep", "nothing", "failed"}
+    rule : {"rows", "measure", "known", "tighten", "keep", "nothing", "failed"}
     text : str
         The sentence.
     inputs : tuple of str
     rows : int or None
-        To be added to, or reached, where more rows help.
+        How many there should be in all, where more help.
     tightened : Tightened or None
     key : str
         Of its number, for ``uq trace``; "" if it has none.
+    others : tuple of str
+        What else is not settled, in sentences.
     """
 
     rule: str
@@ -89,3 +91,4 @@ class Advice:
     rows: int | None = None
     tightened: Tightened | None = None
     key: str = ""
+    others: tuple[str, ...] = ()

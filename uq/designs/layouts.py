@@ -25,8 +25,8 @@ class Layout:
 
     Attributes
     ----------
-    needs : str
-        What a group needs for an estimate to use it, as in "3 of 8 *paths are whole*".
+    group : tuple of str
+        What an estimate can use of it, where it is one and where several: "only 3 *whole paths*".
     labels : callable
         ``labels(parameters, second_order, random)`` -> the names of the blocks of rows, in order.
     shared_seeds : callable
@@ -40,7 +40,7 @@ class Layout:
         have not (`uq.inputs.conditional`).
     """
 
-    needs: str
+    group: tuple[str, str]
     labels: Callable[[tuple[str, ...], bool, bool], tuple[str, ...]]
     shared_seeds: Rule
     one_at_a_time: bool = False
@@ -95,8 +95,12 @@ def _curves(parameters: tuple[str, ...], second_order: bool, random: bool) -> tu
     return tuple(f"curve_{name}" for name in parameters)
 
 
-PLAIN = Layout("rows have a value", _sample, own_seeds)
-CROSSED = Layout("groups are whole", _crossed, _of_ends)
-TRAJECTORIES = Layout("trajectories are whole", _steps, _of_groups, one_at_a_time=True)
-PATHS = Layout("paths are whole", _places, _of_groups, one_at_a_time=True, given_the_rest=True)
-CURVES = Layout("curves are whole", _curves, _of_curves, by_block=True)
+PLAIN = Layout(("row with a value", "rows with a value"), _sample, own_seeds)
+CROSSED = Layout(("whole group", "whole groups"), _crossed, _of_ends)
+TRAJECTORIES = Layout(
+    ("whole trajectory", "whole trajectories"), _steps, _of_groups, one_at_a_time=True
+)
+PATHS = Layout(
+    ("whole path", "whole paths"), _places, _of_groups, one_at_a_time=True, given_the_rest=True
+)
+CURVES = Layout(("whole curve", "whole curves"), _curves, _of_curves, by_block=True)

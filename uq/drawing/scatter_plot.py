@@ -35,6 +35,7 @@ from uq.rows.elements import (
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 from uq.units import unit_of
+from uq.wording import counted
 
 _MOST_INPUTS = 3
 _MOST_POINTS = 3000
@@ -272,7 +273,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
                 panel.set_xlabel(labelled(rows[across], units[across].name, 38 if alone else 17))
             if j == 0:
                 panel.set_ylabel(labelled(rows[down], units[down].name, 30 if alone else 20))
-    panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
+    panels[0, 0].set_title(f"{counted(len(codes), 'row')} by regime", loc="left")
     return finish(panels[0, 0])
 
 

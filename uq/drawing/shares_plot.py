@@ -15,6 +15,7 @@ from uq.errors import InputError
 from uq.population.smoothing import weights_of
 from uq.rows.elements import category_codes, independent_rows
 from uq.rows.variables import is_category
+from uq.wording import counted
 
 
 @styled
@@ -66,6 +67,6 @@ def shares(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
         panel.hlines(y, low, high, color=INK, lw=0.8)
     panel.set_yticks(np.arange(len(labels))[::-1], list(map(literal, labels)))
     panel.set(xlim=(0, 1), xlabel="Share of rows, with 95 % interval")
-    known = f"{rows.sizes['sample']} rows"
+    known = counted(rows.sizes["sample"], "row")
     title(panel, as_label(str(ds[name].attrs["long_name"]), width=46), known)
     return finish(panel)

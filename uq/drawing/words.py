@@ -13,7 +13,7 @@ from uq.literals import plain
 from uq.printed import minus
 from uq.rows.elements import Element
 from uq.units import powers as powers
-from uq.wording import capitalized, percent, quantity
+from uq.wording import capitalized, counted, percent, quantity
 
 
 def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
@@ -67,7 +67,7 @@ def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
 
 def rows_in_words(chosen: Sequence[Element]) -> str:
     """Return how many rows there are, and how many failed or have no value."""
-    counts = [f"{len(chosen[0].values)} rows"]
+    counts = [counted(len(chosen[0].values), "row")]
     for state in ("failed", "undefined", "censored"):
         most = max(int(getattr(element, state).sum()) for element in chosen)
         if most:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from uq.contract import Floats, Output, Status, censored_name
+from uq.element_names import place_of, places
 from uq.errors import InputError, nearest
 from uq.inputs.values import unknown_name
-from uq.rows.element import places
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, physical, row_seeds
 from uq.rows.workload import Workload
@@ -162,8 +162,9 @@ def find_element(study: Study, name: str) -> tuple[Output, int]:
     if declared.is_category:
         raise InputError(f"'{output}' is a category: it has shares, not thresholds")
     coordinates = model.coordinates(study.settings)
-    labels = [label for label, *_ in places(output, {d: coordinates[d] for d in declared.dims})]
-    if name not in labels:
+    axes = {dim: coordinates[dim] for dim in declared.dims}
+    labels, chosen = [label for label, *_ in places(output, axes)], place_of(name, axes)
+    if not chosen:
         choice = f"; choose one, such as '{labels[0]}'" if name == output else ""
         raise InputError(f"'{name}': no such element{choice or nearest(name, labels)}")
-    return declared, labels.index(name)
+    return declared, labels.index(chosen[0][0])

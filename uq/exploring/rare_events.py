@@ -17,6 +17,7 @@ from uq.intervals import Ends, binomial_interval, log_scatter_interval
 from uq.running.loading import load_study
 from uq.running.options import RunOptions
 from uq.study.definition import Study
+from uq.wording import counted
 
 _FEWEST = 100  # rows of a level: 10 chains
 _Generators = list[np.random.Generator]
@@ -242,6 +243,7 @@ def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
         )
     if margin.undefined:
         notes.append(
-            f"{margin.undefined} rows have no such output in their regime and lie on neither side"
+            f"{counted(margin.undefined, 'row has', 'rows have')} no such output in the regime"
+            " there, on neither side of the threshold"
         )
     return notes

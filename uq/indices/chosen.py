@@ -109,12 +109,19 @@ def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
         every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
     found = list(targets_of(ds, output_in(inside), every=True))
+    name = _as_stored(name, output_in(inside), found)
     if form:
         return [target for target in found if target.name == name]
     own = [target for target in found if split_name(target.name)[0] == ""]
     has_whole = aggregated and name in ds and len(_elements(ds, name)) > 1
     whole = _named(ds, whole_name(name), aggregated) if has_whole else []
     return [*(own or targets_of(ds, name)), *whole]
+
+
+def _as_stored(name: str, element: str, found: Sequence[Target]) -> str:
+    """Return a name with that of its element, of which some targets are, as the result has it."""
+    one = found[0].element if found else None
+    return name if one is None or "[" not in element else name.replace(element, one.name)
 
 
 def output_in(inside: str) -> str:

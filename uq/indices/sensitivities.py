@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 import xarray as xr
@@ -26,6 +27,7 @@ from uq.rows.nesting import is_nested, one_of_each_sample
 from uq.rows.results import refuse_empty
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
+from uq.wording import counted, grouped, rows_in_words
 
 FEWEST_HITS = 5
 """With fewer in each replicate an event has no indices."""
@@ -54,6 +56,8 @@ class TargetIndices:
         Empty where there are none.
     refused : str
         Why there are none, or "".
+    rows_factor : float
+        How many times the rows would give some; NaN where that is not known.
     """
 
     name: str
@@ -61,6 +65,7 @@ class TargetIndices:
     groups_dropped: int
     indices: Indices = Indices({})
     refused: str = ""
+    rows_factor: float = nan
 
     def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
         """Return the indices of single inputs, or those of pairs."""
@@ -195,10 +200,13 @@ def indices_of_target(
             raise RefusedError(target.refused)
         if method.of_variance and not target.event and lacks_variance(target.sizes):
             raise RefusedError(_no_variance(target))
+        asked = _conditioned(target, sample) if method.conditional else sample
+        method.refuse_few_groups(asked)  # in them even a continuous output may have two values
         few = few_hits(ds, target)
-        found = method.indices(_conditioned(target, sample) if method.conditional else sample)
+        found = method.indices(asked)
     except RefusedError as refusal:
-        return TargetIndices(target.name, *counts, refused=str(refusal))
+        factor = refusal.rows_factor
+        return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)
     combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
     return TargetIndices(target.name, *counts, replace(found, notes=combined))
 
@@ -214,7 +222,7 @@ def _conditioned(target: Target, sample: Sample) -> Sample:
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
-    """Return the warning for an event with few hits or misses; any two values are an event.
+    """Return the warning for an event with few hits or misses; any two values make one.
 
     Parameters
     ----------
@@ -235,19 +243,21 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     if target.values.ndim > 1:
         return ()
     values, replicates = target.values, int(ds.attrs.get("replicates", 1))
+    if not (target.event or len(np.unique(values[np.isfinite(values)])) == 2):
+        return ()
     if not why_no_statistics(ds):
         values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values
     known = values[np.isfinite(values)]
     hits = known > known.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))
-    two_values = target.event or bool((known[hits] == known.max(initial=-np.inf)).all())
-    if not two_values or not 0 < rarer < ENOUGH_HITS * replicates:
+    if not 0 < rarer < ENOUGH_HITS * replicates:
         return ()  # without any the method refuses
-    side = "hits" if rarer == hits.sum() else "misses"
+    side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
     each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
-    more = ENOUGH_HITS * replicates / rarer
-    remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
-    seen = f"only {rarer} {side} in {len(hits)} rows{each}"
+    samples = int(ds.attrs["samples"])
+    needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
+    remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
+    seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{each}"
     if rarer < FEWEST_HITS * replicates:
         if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
             remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"

@@ -11,6 +11,7 @@ import xarray as xr
 from uq.indices.transforms import heaviness, logarithm, rank, rate
 from uq.rows.elements import Element, Floats, category_codes, flags
 from uq.rows.results import failed
+from uq.wording import counted
 from uq.written import read_quantity
 
 
@@ -157,7 +158,9 @@ def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Tar
     """Return the ``log``, ``rank`` or ``rate`` of an element."""
     values, refused = _TRANSFORMS[form](element)
     if form == "rank" and (top := int((element.never | element.censored).sum())):
-        notes += (f"{top} rows that never end or are censored share the highest rank",)
+        several = "rows that never end or are censored share"
+        rows = counted(top, "row that never ends or is censored has", several)
+        notes += (f"{rows} the highest rank",)
     return Target(f"{form}({element.name})", element, values, refused, notes=notes)
 
 

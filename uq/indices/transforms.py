@@ -11,7 +11,7 @@ import numpy as np
 from uq.order_statistics import mid_ranks
 from uq.rows.elements import Element, Floats
 from uq.tails import heavier_tail
-from uq.wording import percent
+from uq.wording import counted, percent
 
 LARGEST = 0.01
 """Share of the rows that a heavy tail is judged by: those farthest from the mean."""
@@ -79,11 +79,11 @@ def logarithm(element: Element) -> Transformed:
     """Return the natural logarithm of an output; refused if a row has none."""
     nothing = np.full(len(element.values), np.nan)
     counts = {
-        "never end": int(element.never.sum()),
-        "are censored": int(element.censored.sum()),
-        "are not positive": int((element.values <= 0).sum()),
+        ("never ends", "never end"): int(element.never.sum()),
+        ("is censored", "are censored"): int(element.censored.sum()),
+        ("is not positive", "are not positive"): int((element.values <= 0).sum()),
     }
-    excluded = [f"{count} {what}" for what, count in counts.items() if count]
+    excluded = [counted(count, *words) for words, count in counts.items() if count]
     if excluded:
         rows = f"of {int(element.present.sum())} rows {' and '.join(excluded)}"
         return Transformed(nothing, f"{rows}: no logarithm; ask for rank({element.name})")
@@ -117,8 +117,8 @@ def rank(element: Element) -> Transformed:
     if unknown:
         return Transformed(
             np.full(len(values), np.nan),
-            f"the ranks of {unknown} rows are not known: they were censored before the last life"
-            " ended; ask for P(T < t) by a threshold in [analysis], or lengthen the horizon",
+            f"{counted(unknown, 'row')} censored before the last life ended: the order of the rows"
+            " is not known; ask for P(T < t) by a threshold in [analysis], or lengthen the horizon",
         )
     ranks = np.full(len(values), np.nan)
     ranks[present] = mid_ranks(np.where(beyond, np.inf, values)[present])
@@ -131,11 +131,11 @@ def rate(element: Element) -> Transformed:
         inverse = 1 / element.values
     if censored := int(element.censored.sum()):
         refused = (
-            f"the rate of {censored} rows is not known because their lifetimes are censored; ask"
-            " for P(T < t) by a threshold in [analysis], or lengthen the horizon"
+            f"{counted(censored, 'lifetime is', 'lifetimes are')} censored, and the rate not known;"
+            " ask for P(T < t) by a threshold in [analysis], or lengthen the horizon"
         )
     elif zero := int(np.isinf(inverse).sum()):
-        refused = f"{zero} of {inverse.size} rows have lifetime zero: no rate"
+        refused = f"{counted(zero, 'row has', 'rows have')} lifetime zero: no rate"
     else:
         refused = ""
     return Transformed(inverse, refused)

@@ -20,6 +20,7 @@ from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.literals import key
 from uq.places import node
+from uq.wording import counted
 
 MAX_NUMBERS = 1_000_000
 """Most numbers in a column: they become part of every result."""
@@ -174,7 +175,7 @@ def _names(lines: TextIO, mark: str) -> list[str]:
 def _number(row: list[str], names: list[str], place: int, line: int) -> float:
     """Return the number in one cell of a row; a `ValueError` says what is wrong."""
     if len(row) != len(names):
-        cells = "1 cell" if len(row) == 1 else f"{len(row)} cells"
+        cells = counted(len(row), "cell")
         raise ValueError(
             f"line {line}: has {cells}, the first line {len(names)}; all rows must have as many, "
             "and numbers a decimal point, not a comma"

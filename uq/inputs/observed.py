@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from uq.contract import Floats
 from uq.inputs.law import LIST, Law, Positive
+from uq.wording import counted
 
 Numbers = Annotated[tuple[float, ...], LIST]
 
@@ -99,7 +100,8 @@ class DiscreteChoice(Listed):
         if len(set(self.values)) < 2:
             raise ValueError("takes one value only; put the parameter into [fixed]")
         if self.weights is not None and len(self.weights) != len(self.values):
-            raise ValueError(f"has {len(self.values)} values but {len(self.weights)} weights")
+            values = counted(len(self.values), "value")
+            raise ValueError(f"has {values} but {counted(len(self.weights), 'weight')}")
         return self
 
     def frozen(self) -> Steps:

@@ -26,6 +26,7 @@ from uq.rows.weights import (
     WEIGHT,
     has_weights,
 )
+from uq.wording import counted
 
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
@@ -94,7 +95,7 @@ def as_result(
         ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
     units, count = len(found.units), len(inspections)
-    given = f"given {count} inspection{'s' * (count > 1)} of {units} unit{'s' * (units > 1)}"
+    given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
     if found.only_inspected:
         ds = ds.assign_attrs({ONLY_INSPECTED: found.only_inspected})
     found_attrs = {

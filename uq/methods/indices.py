@@ -103,7 +103,19 @@ BY_CORRELATION = "by correlation alone"
 
 
 class RefusedError(Exception):
-    """An output has no indices; the message is the sentence that says why."""
+    """An output has no indices.
+
+    Parameters
+    ----------
+    why : str
+        A sentence.
+    rows_factor : float
+        How many times the rows would give indices; NaN where that is not known.
+    """
+
+    def __init__(self, why: str, rows_factor: float = nan):
+        super().__init__(why)
+        self.rows_factor = rows_factor
 
 
 ALL_NOISE = "no input changes it at one seed: all of its variance is noise"

@@ -8,6 +8,7 @@ from uq.contract import Floats, Mask
 from uq.methods.indices import RefusedError
 from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts
 from uq.quantile_functions import normal
+from uq.wording import counted
 
 MIN_SIDE = 10
 """With fewer rows than this with the event, or without it, distributions are not compared."""
@@ -173,7 +174,8 @@ def as_event(values: Floats) -> Mask:
         )
     least = int(min(happens.sum(), (~happens).sum()))
     if least < MIN_SIDE:
-        raise RefusedError(f"only {least} rows on one side of the event; {MIN_SIDE} are needed")
+        seen = counted(least, "row")
+        raise RefusedError(f"only {seen} on one side of the event; {MIN_SIDE} are needed")
     return np.asarray(happens)
 
 

@@ -8,9 +8,14 @@ import numpy as np
 from uq.designs.layouts import PLAIN, Layout
 from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.sample import Sample
+from uq.wording import counted
 
 NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
 NO_VARIANCE = "the same value in all rows: there is no variance to apportion"
+UNSEEN = (
+    "the same value in all independent rows, though not in those between them: they show no"
+    " variance to apportion; more samples are needed"
+)
 
 
 @dataclass(frozen=True)
@@ -100,17 +105,13 @@ class Method:
         RefusedError
             Too few groups have a value in each row, or the method finds no indices in them.
         """
-        whole = sample.whole
-        kept = int(whole.sum())
-        if kept < self.least:
-            of_all = f" of {whole.size}" if kept < whole.size else ""
-            reason = f"only {kept}{of_all} {self.layout.needs}"
-            raise RefusedError(f"{reason}; {self.least} are needed")
+        self.refuse_few_groups(sample)
         if self.layout is not PLAIN:
             return self.estimate(sample)
-        rows, note = np.flatnonzero(whole), ""
+        rows, note = np.flatnonzero(sample.whole), ""
         if sample.is_constant(sample.values[rows]):
             raise RefusedError(NO_EFFECT)
+        kept = len(rows)
         if self.most_rows is not None and kept > self.most_rows:
             # At random: imported rows may come in a meaningful order.
             rows = np.sort(np.random.default_rng(0).choice(rows, self.most_rows, replace=False))
@@ -119,3 +120,10 @@ class Method:
             )
         found = self.estimate(sample.rows(rows))
         return replace(found, notes=(note, *found.notes) if note else found.notes)
+
+    def refuse_few_groups(self, sample: Sample) -> None:
+        """Refuse a sample in which too few groups have a value in each row."""
+        kept, every = int(sample.whole.sum()), sample.whole.size
+        if kept < self.least:
+            seen = counted(kept, *self.layout.group) + f" (of {every})" * (kept < every)
+            raise RefusedError(f"only {seen}; {self.least} are needed", self.least / max(kept, 1))

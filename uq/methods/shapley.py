@@ -8,7 +8,7 @@ from uq.estimate import Estimate
 from uq.intervals import UNKNOWN, is_constant, scatter_interval
 from uq.methods.controlled import controlled
 from uq.methods.indices import ALL_NOISE, SHAPLEY, Indices, RefusedError
-from uq.methods.method import NO_VARIANCE
+from uq.methods.method import NO_VARIANCE, UNSEEN
 from uq.methods.paths import parts_of, paths_without_effect
 from uq.methods.sample import Sample
 
@@ -36,7 +36,8 @@ def shapley_indices(sample: Sample) -> Indices:
     Raises
     ------
     RefusedError
-        A constant output, or one that is constant along each path.
+        A constant output, or one that is constant along each path. Too few paths to tell the
+        variance from zero: a ratio to it then has no bounded interval [5]_.
 
     Notes
     -----
@@ -61,15 +62,21 @@ def shapley_indices(sample: Sample) -> Indices:
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
     .. [4] J. G. MacKinnon, H. White, "Some heteroskedasticity-consistent covariance matrix
        estimators with improved finite sample properties", J. Econometrics 29, 305-325 (1985).
+    .. [5] E. C. Fieller, "Some problems in interval estimation", J. R. Stat. Soc. B 16, 175-185
+       (1954).
     """
     y = sample.grouped[sample.whole]
     if sample.is_constant(y):
         raise RefusedError(NO_VARIANCE)
     if is_constant(y - y[:, :1]):
         raise RefusedError(ALL_NOISE)
+    if sample.is_constant(y[:, -1] - y[:, 0]):
+        raise RefusedError(UNSEEN)
     plain = parts_of(sample, y)
     seen = _linearised(plain)
-    shares, errors = _linearised(*controlled(sample, plain))
+    parts = controlled(sample, plain)
+    _refuse_unknown_variance(*parts, sample.confidence)
+    shares, errors = _linearised(*parts)
     names, single = list(sample.inputs), np.eye(plain.shape[1])
     contrasts = dict(zip(names, single, strict=True))
     if sample.difference:
@@ -97,3 +104,13 @@ def _linearised(parts: Floats, leverage: Floats | float = 0.0) -> tuple[Floats, 
     mean = parts.mean(axis=0)
     shares, scatter = mean / mean.sum(), (parts - mean) / (1 - leverage)
     return shares, (scatter - shares * scatter.sum(axis=1, keepdims=True)) / mean.sum()
+
+
+def _refuse_unknown_variance(parts: Floats, leverage: Floats, confidence: float) -> None:
+    mean = parts.mean(axis=0)
+    variance, errors = float(mean.sum()), ((parts - mean) / (1 - leverage)).sum(axis=1)
+    if variance <= 0 or scatter_interval(variance, errors, confidence)[0] <= 0:
+        raise RefusedError(
+            f"{len(parts)} paths do not tell the variance from zero, and shares of it are not"
+            " known: more samples are needed"
+        )

@@ -16,7 +16,7 @@ from uq.methods.groups import (
     with_difference,
 )
 from uq.methods.indices import S1, S2, ST, IndexKind, Indices, RefusedError
-from uq.methods.method import NO_VARIANCE
+from uq.methods.method import NO_VARIANCE, UNSEEN
 from uq.methods.sample import Floats, Sample
 
 MIN_GROUPS = 8
@@ -79,7 +79,7 @@ def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices
     ends = [sample.blocks.index("A"), sample.blocks.index("B")]
     independent = y[whole][:, ends]
     if sample.is_constant(independent):
-        raise RefusedError(NO_VARIANCE)
+        raise RefusedError(NO_VARIANCE if sample.is_constant(y[whole]) else UNSEEN)
     # The estimators lose digits, and scatter more, for values far from zero (Sobol' 2001).
     y = (y - independent.mean(axis=(0, 1))) / np.sqrt(independent.var(axis=(0, 1)).sum())
 

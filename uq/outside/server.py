@@ -140,6 +140,9 @@ def _names(sizes: tuple[int, ...]) -> list[str]:
     return [f"x{v + 1}_{i + 1}" for v, size in enumerate(sizes) for i in range(size)]
 
 
+_ZEROS = "the server states no nominal values, so all inputs are 0: give others, --set x1=1"
+
+
 @dataclass(frozen=True)
 class _Evaluate:
     """One call for a row."""
@@ -170,7 +173,12 @@ class _Evaluate:
         body = {"name": self.known.name, "input": vectors, "config": config}
         turn = next(_turns) % len(self.servers)
         servers = self.servers[turn:] + self.servers[:turn]
-        answer = call(servers, "Evaluate", body, limit=self.limit)
+        try:
+            answer = call(servers, "Evaluate", body, limit=self.limit)
+        except ServerError as error:
+            if self.outputs or any(flat):
+                raise
+            raise ServerError(f"{error}; {_ZEROS}") from None
         output = answer.get("output") if isinstance(answer, dict) else None
         if not isinstance(output, list) or not all(isinstance(one, list) for one in output):
             raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")

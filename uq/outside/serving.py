@@ -10,6 +10,7 @@ import numpy as np
 
 from uq.contract import Model, Status
 from uq.outside.um_bridge import DESCRIBED, VERSION
+from uq.wording import counted
 
 _LONGEST = 10_000_000  # bytes of a question
 
@@ -59,7 +60,8 @@ class _Offered:
     def _row(self, vectors: Any, config: Any) -> dict[str, Any]:
         x = np.array([np.concatenate([np.asarray(one, float) for one in vectors])])
         if x.shape[1] != len(self.model.parameter_names):
-            raise ValueError(f"{x.shape[1]} inputs, expected {len(self.model.parameter_names)}")
+            given, expected = counted(x.shape[1], "input"), len(self.model.parameter_names)
+            raise ValueError(f"{given}, expected {expected}")
         seed = np.array([int(config.get("seed", 0))], np.uint64)
         with self._one_at_a_time, np.errstate(all="ignore"):
             outputs, status, *said = self.model.batch(x, seed, self._settings)

@@ -187,7 +187,8 @@ def _read(server: str, what: str, status: int, text: bytes) -> Any:
             ) from None
         said = " ".join(text[:80].decode(errors="replace").split())
         raise ServerError(
-            f"{server} answers {what} with status {status} and no JSON ({said})"
+            f"{server} answers {what} with status {status} and no JSON ({said}); its own output may"
+            " say why"
         ) from None
     if isinstance(answer, dict) and "error" in answer:
         error = answer["error"]

@@ -21,6 +21,7 @@ from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.element import Element
 from uq.rows.elements import elements_of
 from uq.rows.weights import has_weights, stand_for_any_unit
+from uq.wording import counted
 
 NOT_POSITIVE = "it is not always positive"
 
@@ -254,7 +255,8 @@ def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
     if element.censored.any():
         names = ", ".join(exponents)
         count = int(element.censored.sum())
-        return f"{names} not integrated: {count} lives are censored, which gives bounds only"
+        lives = counted(count, "life is", "lives are")
+        return f"{names} not integrated: {lives} censored, which gives bounds only"
     kept = integrated(rows, element.declared, inputs).kept
     return not_integrated({name: why for name, why in kept.items() if name != learnt_input(rows)})
 

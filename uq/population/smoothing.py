@@ -209,13 +209,16 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
         parts = "part" if rows == 1 else "parts"
         return f"weights rest on {rows} independent {parts}, and more than 10 are needed"
     if k < DOUBTFUL:
-        more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
+        needed = max(ceil(10 ** (1 / (1 - max(k, 0.0)))), rows + 1)
         return (
-            f"the rows of this study cannot tell: add about {more} samples"
+            f"the rows of this study cannot tell: it takes about {needed} samples instead of {rows}"
             f" (Pareto k {k:.2f}, limit {most:.2f})"
         )
     if k == inf:
-        return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
+        return (
+            f"fewer than {_FEWEST} samples have weight there: it takes {2 * rows} samples or more"
+            f" instead of {rows}"
+        )
     return f"{hopeless} (Pareto k {k:.2f})"
 
 

@@ -98,7 +98,7 @@ def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     text = one.words(per) + (f", of the {form}" if form else "")
     worst = wording.failed_interval(one.failed, per)
     small = (
-        wording.interval(estimate, per).replace(" to ", " to\u00a0"),  # breaks in two, not three
+        one.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
         f"with failed rows {worst}" if worst else "",
         one.more,
     )

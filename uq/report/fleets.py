@@ -11,7 +11,7 @@ from uq.estimate import Estimate
 from uq.keys import key_of
 from uq.report.cells import Cell, Table
 from uq.units import typical, unit_of
-from uq.wording import in_brackets, interval, known, threshold
+from uq.wording import counted, in_brackets, interval, known, threshold
 
 HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
 
@@ -22,7 +22,7 @@ def fleet_table(findings: Findings) -> Table | None:
     if not found:
         return None
     rows = [row for one in found for row in _rows(one)]
-    return Table(f"Fleets of {found[0].size} units, with 95 % intervals", HEADER, rows)
+    return Table(f"Fleets of {counted(found[0].size, 'unit')}, with 95 % intervals", HEADER, rows)
 
 
 def fleet_notes(findings: Findings) -> list[str]:

@@ -20,7 +20,7 @@ from uq.indices.targets import split_name
 from uq.keys import key_of
 from uq.methods.indices import BY_CORRELATION, S1, IndexKind, Indices
 from uq.report.cells import SHARE, Cell, Table
-from uq.wording import capitalized
+from uq.wording import capitalized, counted
 
 
 class Subject(NamedTuple):
@@ -84,9 +84,9 @@ def _method(findings: Findings, name: str) -> Method:
         found = findings.sensitivities(name)
     except InputError as error:
         return Method(name, refused=str(error))
-    used = f"from {found.rows_used} rows"
+    used = f"from {counted(found.rows_used, 'row')}"
     if found.groups_dropped:
-        used += f"; {found.groups_dropped} groups with missing values dropped"
+        used += f"; {counted(found.groups_dropped, 'group')} with missing values dropped"
     subjects = (_subject(findings.ds, name, one) for one in found.targets.values())
     return Method(name, used=used, subjects=tuple(subjects))
 

@@ -25,7 +25,7 @@ from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_tables, status_table
 from uq.report.pictures import pictures
 from uq.report.references import references
-from uq.rows.commands import model_option
+from uq.rows.commands import file_of, model_option, named
 from uq.rows.results import failed, open_result
 from uq.store.files import check_target, whole
 
@@ -51,7 +51,7 @@ def write_report(
         When the result cannot be read or the report cannot be written.
     """
     result, path = Path(result), Path(path)
-    ds = open_result(result)
+    ds = named(open_result(result), result.name)
     check_target(path, 0)
     if path.exists() and path.samefile(result):
         raise InputError(f"{path}: is the result itself; give the report another name")
@@ -112,6 +112,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
+        "result_file": file_of(ds),
         "model_option": model_option(ds),
         "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
         "references": references(ds),

@@ -156,10 +156,10 @@ def category_codes(ds: xr.Dataset, name: str) -> dict[str, NDArray[np.int8]]:
     output = name.partition("[")[0]
     axes = {str(dim): ds[dim].values for dim in ds[output].dims[1:]}
     values: Any = ds[output].values
-    found = {label: values[(slice(None), *index)] for label, index, _ in places(output, axes)}
-    if name != output and name not in found:
-        raise _no_such_element(name, found)
-    return found if name == output else {name: found[name]}
+    chosen = list(places(output, axes)) if name == output else place_of(name, axes)
+    if not chosen:
+        raise _no_such_element(name, [label for label, *_ in places(output, axes)])
+    return {label: values[(slice(None), *index)] for label, index, _ in chosen}
 
 
 def _no_such_element(name: str, known: Collection[str]) -> InputError:

@@ -16,6 +16,7 @@ from uq.contract import Floats
 from uq.designs.levels import CHANCE, LEVELS
 from uq.study.file import Tied
 from uq.study.reading import read_study_text
+from uq.wording import counted
 
 
 class Nesting(NamedTuple):
@@ -98,13 +99,14 @@ def nesting_of(ds: xr.Dataset) -> Nesting:
 def size_in_words(samples: int, units: int, repeats: int) -> str:
     """Return the size of a design: ``20 samples of 3 units, 2 repeats of each``."""
     if units == 1:
-        return f"{samples} samples" + f" of {repeats} repeats" * (repeats > 1)
-    return f"{samples} samples of {units} units" + f", {repeats} repeats of each" * (repeats > 1)
+        return counted(samples, "sample") + f" of {repeats} repeats" * (repeats > 1)
+    several = f", {repeats} repeats of each" * (repeats > 1)
+    return f"{counted(samples, 'sample')} of {units} units{several}"
 
 
 def samples_have(count: int) -> str:
     """Return the beginning of a sentence: ``1 sample has``, ``2 samples have``."""
-    return "1 sample has" if count == 1 else f"{count} samples have"
+    return counted(count, "sample has", "samples have")
 
 
 def is_nested(ds: xr.Dataset) -> bool:

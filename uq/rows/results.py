@@ -21,6 +21,7 @@ from uq.errors import InputError, choices, nearest
 from uq.places import node
 from uq.provenance import provenance
 from uq.rows.columns import failed_rows
+from uq.rows.commands import named
 from uq.rows.soundness import unsound
 from uq.rows.variables import (
     SCHEMA_VERSION,
@@ -169,7 +170,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
         if variable.attrs.get("kind") == "lifetime":
             # The assumption when files did not state it.
             variable.attrs.setdefault("never_known_at_once", 0)
-    return ds
+    return named(ds, str(path))
 
 
 def _opened(path: Path) -> xr.Dataset:

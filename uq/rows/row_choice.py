@@ -12,6 +12,7 @@ from uq.order_statistics import quantile, rows_to_reach
 from uq.rows.elements import Element, independent_rows, named_elements, why_no_statistics
 from uq.rows.results import failed
 from uq.rows.weights import refuse_weights
+from uq.wording import counted
 
 _MANY = 10**9
 
@@ -57,7 +58,7 @@ def lowest_row(ds: xr.Dataset, name: str) -> Choice:
     earlier = int((element.censored & (element.values < element.values[place])).sum())
     words = f"the lowest {element.name}"
     if earlier:
-        words += f"; {earlier} rows were censored earlier"
+        words += f"; {counted(earlier, 'row was', 'rows were')} censored earlier"
     return Choice(int(ds["sample"].values[place]), words)
 
 

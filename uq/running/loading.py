@@ -24,7 +24,7 @@ from uq.running.environment import started
 from uq.running.options import Say, ignore
 from uq.study.registry import code_of, find_model, located, with_returns
 from uq.study.sources import DISTRIBUTION
-from uq.wording import duration
+from uq.wording import counted, duration
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -127,8 +127,11 @@ def _found(
     """Return what a function returns, from the rows tried, the nominal one first."""
     from platformdirs import user_cache_path
 
+    from uq.provenance import __version__
+
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
-    key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
+    code = f"{__version__}\n{reference}\n{code_of(reference)}"
+    key = hashlib.sha256(code.encode() + numbers).hexdigest()
     kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
@@ -165,8 +168,8 @@ def _returned(
         more = seconds / done * left if done else 0.0
         about = f": about {duration(more) or f'{more:.0f} s'}" if done else ""
         say(
-            f"running {left} rows, once, to see what the model returns{about}; 'returns' in"
-            " @uq.machine states it"
+            f"running {counted(left, 'row')}, once, to see what the model returns{about}; 'returns'"
+            " in @uq.machine states it"
         )
 
     while done < len(tried):

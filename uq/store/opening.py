@@ -28,6 +28,7 @@ from uq.store.tally import Failures, row_bytes
 from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.definition import Study
 from uq.study.registry import is_other_code, made_here
+from uq.wording import counted
 
 _ROWS = 100_000  # of a result, at a time
 _REMEDY = "choose another output, or start over with --fresh"
@@ -133,7 +134,8 @@ def _find(store: DiskStore, found: History, say: Callable[[str], object]) -> Non
             f"{_REMEDY}"
         )
     if damaged := store.find(without_overlap(found.chunks, store.total)):
-        say(f"{store.folder}: {damaged} rows are damaged and will be computed again")
+        rows = counted(damaged, "row is", "rows are")
+        say(f"{store.folder}: {rows} damaged and will be computed again")
 
 
 def _run_record(study: Study, store: DiskStore, again: bool) -> RunRecord:

@@ -9,7 +9,7 @@ from uq.designs.design import Design
 from uq.designs.layouts import PATHS
 from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.designs.registry import DESIGNS
-from uq.element_names import places, whole_name
+from uq.element_names import place_of, places, whole_name
 from uq.errors import choices, nearest
 from uq.inputs.faults import Fault, unknown
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
@@ -105,7 +105,7 @@ def _element_faults(
         if "index" not in until:
             problem = f"all elements together have only an index; '{name}' is each of them"
             yield Fault(("design", "until", "output"), problem, element)
-    elif element not in names:
+    elif not place_of(element, axes):
         problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
         yield Fault(("design", "until", "output"), problem, element)
 
@@ -248,6 +248,9 @@ def _index_faults(
     elif index not in known:
         yield Fault((*path, "index"), unknown("index with an interval", index, known), index)
     inputs = [name for name, law in uncertain.items() if "equals" not in law]
+    if len(inputs) == 1 and design.layout is PATHS:
+        problem = f"is 1 in every study of one input, {inputs[0]}: no interval to wait for"
+        yield Fault((*path, "index"), problem, index)
     for key in ("input", "difference"):
         given = until.get(key, [])
         for name in [given] if isinstance(given, str) else given:

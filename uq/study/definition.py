@@ -20,6 +20,7 @@ from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
 from uq.study.reading import parse, shape_faults, sound_entries
 from uq.study.registry import find_model
+from uq.wording import counted
 
 _LONGEST = 1_000_000  # bytes of a study file
 
@@ -149,7 +150,7 @@ class Study:
         problem = DESIGNS[self.design.method].size_problem(samples)
         for column in self.imported.values():
             if samples > (most := len(numbers(column))):
-                problem = f"the file has {most} rows"
+                problem = f"the file has {counted(most, 'row')}"
         if problem:
             raise InputError(f"samples = {samples}: {problem} for '{self.design.method}'")
         return replace(self, design=self.design.model_copy(update={"samples": samples}))

@@ -26,6 +26,7 @@ from uq.inputs.values import bounds_of
 from uq.methods.registry import fed_by
 from uq.study.file import ENTRY, Tied
 from uq.study.reading import parse, shape_faults, sound_entries
+from uq.wording import counted
 
 Entries = Mapping[str, Any]
 """Parameter -> `Law` or `Tied`."""
@@ -197,7 +198,7 @@ def import_faults(
         text = ", ".join(f"{name} {size}" for name, size in sizes.items())
         yield Fault(("design", "file"), f"columns of different lengths: {text}", table["file"])
     elif sizes and table.get("samples", 0) > (rows := min(sizes.values())):
-        problem = f"the file has {rows} row{'s' * (rows != 1)}; samples must not exceed that"
+        problem = f"the file has {counted(rows, 'row')}; samples must not exceed that"
         yield Fault(("design", "samples"), problem, table["samples"])
 
 

@@ -10,17 +10,21 @@ from uq.analysis.effects import effects
 from uq.analysis.event_curve import event_curve
 from uq.analysis.findings import Findings
 from uq.analysis.joint_bounds import SIDES
+from uq.analysis.statistics.counts import never_ending
 from uq.analysis.summary import status_counts, summarise
 from uq.conclusions.answer import conclude, regimes_of
 from uq.conclusions.as_json import answer_json
 from uq.conclusions.parts import Answer
 from uq.conclusions.quantities import LOW, quantities, with_bounds
+from uq.conclusions.repeated import found_again
 from uq.conclusions.settling import unsettled
 from uq.indices.targets import split_name
 from uq.intervals import share_interval
 from uq.keys import Json, Options, Path, value_at
+from uq.population.functionals import Population
 from uq.rows.elements import analysis_of, independent_rows, named_elements
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 from uq.tracing.citations import Citation, cited
 from uq.tracing.of_indices import estimator_of
 from uq.tracing.of_summary import functions_of, states_of
@@ -61,15 +65,24 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         found = summarise(ds, analysis_of(ds)).regimes[names[0]]
         return Origin(tuple(map(cited, found.by)), rows)
     states = states_of(named_elements(rows, names[0])[0])
-    return Origin(tuple(dict.fromkeys(_estimators(ds, *names))), rows, states)
+    return Origin(
+        tuple(dict.fromkeys(_estimators(ds, said["quantities"][names[0]], *names))), rows, states
+    )
 
 
-def _estimators(ds: xr.Dataset, name: str, part: str, *rest: str) -> Iterator[Citation]:
-    """Yield what computes a promise, a likely range, or the probability of an event."""
+def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
+    """Yield what computes a number of a promise, a range, an event, or of another seed."""
     asked = with_bounds(analysis_of(ds, name.partition("[")[0]), Findings(ds))
     found = summarise(ds, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]
-    if part == "promise":
+    if part == "another_seed":
+        yield cited(found_again)
+        promised = said["promise"]["sentence"] if "promise" in said else ""
+        part, rest = ("range", ()) if promised else ("events", tuple(said["events"]))
+    if part == "range" and "".join(rest).startswith("never"):
+        yield from map(cited, (never_ending, Population if has_weights(ds) else share_interval))
+        keys = []
+    elif part == "promise":
         joint = asked.joint_bounds.get(name.partition("[")[0])
         bound = ("joint_bounds", SIDES[joint][0]) if joint else ("tolerance", "lower")
         keys = [bound] * ("quantile" not in "".join(rest)) + keys

@@ -7,6 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.rows.elements import flags
+from uq.wording import counted
 
 
 class Run(NamedTuple):
@@ -52,7 +53,7 @@ def in_words(runs: list[Run], most: int = 4) -> str:
     blocks = list(dict.fromkeys(run.block for run in runs))
     shown = ", ".join(run.words for run in runs[:most])
     if len(runs) > most:
-        shown += f" and {len(runs) - most} more runs"
+        shown += f" and {counted(len(runs) - most, 'more run')}"
     if blocks == ["sample"] or not blocks:
         return shown
     named = ", ".join(blocks[:most]) + (f" and {len(blocks) - most} more" if blocks[most:] else "")

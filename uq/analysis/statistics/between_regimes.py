@@ -22,7 +22,7 @@ from uq.intervals import (
 from uq.quantile_functions import normal
 from uq.rows.elements import Element, output_names
 from uq.tails import lacks_variance
-from uq.wording import number
+from uq.wording import percent, percent_interval
 
 MIN_IN_REGIME = 2
 """A regime with fewer rows has no variance of its own, and is skipped."""
@@ -30,10 +30,14 @@ MIN_IN_REGIME = 2
 
 def _shown(share: float) -> str:
     """Return the share in words; it is corrected for chance, so it may be negative."""
-    return number(share) if share > 0 else "none seen"
+    return percent(share) if share > 0 else "none seen"
 
 
-_KIND = Kind(shown=_shown, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT)
+def _ends(share: Estimate, per: float) -> str:
+    return percent_interval(share.low, share.high) if share.has_interval else ""
+
+
+_KIND = Kind(shown=_shown, ends=_ends, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT)
 
 
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:

@@ -9,12 +9,14 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.statistics.statistic import COUNT, FACT, Context, Kind, Reader, Statistic
+from uq.analysis.statistics.thresholds import share_of
 from uq.estimate import Estimate
-from uq.intervals import replicates_of_some
+from uq.intervals import Replicates, replicates_of_some
+from uq.population.functionals import Population
 from uq.population.smoothing import effective_rows, per_sample
 from uq.rows.elements import Element, elements_of, output_names
 from uq.rows.variables import error_name
-from uq.wording import percent
+from uq.wording import counted, percent
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
@@ -31,6 +33,20 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
+
+
+def never_ending(element: Element, replicate: Replicates) -> Estimate:
+    """Estimate the probability that a life never ends; unknown where censored rows may not end."""
+    if element.censored.any() and not element.declared.never_known_at_once:
+        return Estimate(reason="censored rows may never end")
+    if element.weights is None:
+        kept = ~element.failed
+        return share_of(element.never[kept], replicates_of_some(replicate, kept))
+    certain = np.where(element.present, element.never, np.nan)
+    flags = np.zeros(len(certain), dtype=bool)
+    return Population(replace(element, values=certain, censored=flags, law=None), replicate).above(
+        0.5
+    )
 
 
 def effective(element: Element, context: Context) -> Iterator[Statistic]:
@@ -62,8 +78,8 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     kept = np.abs(error.values[known]) <= asked * np.abs(element.values[known])
     rows, missed = len(kept), int((~kept).sum())
     share = missed / rows if rows else None
-    lost, plural = percent(share) if missed and share else "", "s" if missed > 1 else ""
-    words = f"accuracy {asked:g} not reached in {missed} row{plural} ({lost})"
+    lost = percent(share) if missed and share else ""
+    words = f"accuracy {asked:g} not reached in {counted(missed, 'row')} ({lost})"
     readers = FACT.readers | Reader.REPORT if missed else FACT.readers
     yield Statistic(
         ("accuracy",),

@@ -17,7 +17,7 @@ from uq.intervals import Replicates, replicates_of_some
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
 from uq.study.file import AnalysisTable
-from uq.wording import known, number
+from uq.wording import interval, known, number
 
 
 class Reader(Flag):
@@ -131,6 +131,8 @@ class Kind:
         Statistics whose keys differ only in the last part -> their JSON.
     shown : callable
         Value -> words.
+    ends : callable
+        Estimate, length of the unit -> its interval in words.
     is_count : bool
         Whether it is a number of rows.
     has_interval : bool
@@ -144,6 +146,7 @@ class Kind:
     entry: Callable[["Statistic"], dict[str, Any]] = entry
     write: Callable[[Sequence["Statistic"]], dict[str, Any]] = entries
     shown: Callable[[float], str] = number
+    ends: Callable[[Estimate, float], str] = interval
     is_count: bool = False
     has_interval: bool = True
     listing: Listing = field(default_factory=Listing)
@@ -242,6 +245,10 @@ class Statistic:
             never = isinf(self.rows_needed)
             return "too many failed" if never else f"needs {self.rows_needed:.0f} rows"
         return "-" if self.otherwise else known(self.estimate)  # it may be within the horizon
+
+    def interval(self, per: float = 1.0) -> str:
+        """Return its interval in units of length `per`; "" where it has none."""
+        return self.kind.ends(self.estimate, per)
 
 
 Maker = Callable[[Element, Context], Iterable[Statistic]]

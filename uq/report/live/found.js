@@ -108,7 +108,9 @@ function countedOf(column, words) {
 }
 
 function cellOf({share, low, high, more}) {
-  const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to ${percent(high)}` : "";
+  const first = percent(low), last = percent(high);
+  const both = first === last ? "exact to these digits" : `${first.replace("\u00a0%", "")} to ${last}`;
+  const ends = isFinite(low) ? both : "";
   return intervalCell(isNaN(share) ? "\u2013" : data(share, percent(share)), low, high, ends, more);
 }
 

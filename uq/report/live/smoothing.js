@@ -124,10 +124,13 @@ function refusal(k, rows) {
   const most = rows > 10 ? Math.min(HOPELESS, 1 - 1 / Math.log10(rows)) : -Infinity;
   if (k <= most || k === -Infinity) return "";
   if (most === -Infinity) return `weights rest on ${rows} independent part${rows > 1 ? "s" : ""}, and more than 10 are needed`;
-  if (k === Infinity) return `fewer than ${FEWEST} samples have weight there: add ${rows} or more`;
+  if (k === Infinity) {
+    return `fewer than ${FEWEST} samples have weight there: it takes ${2 * rows} samples or more instead of ${rows}`;
+  }
   if (k < HOPELESS) {
-    const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);
-    return `the rows of this study cannot tell: add about ${more} samples (Pareto k ${k.toFixed(2)}, limit ${most.toFixed(2)})`;
+    const needed = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))), rows + 1);
+    return `the rows of this study cannot tell: it takes about ${needed} samples instead of ${rows}`
+      + ` (Pareto k ${k.toFixed(2)}, limit ${most.toFixed(2)})`;
   }
   return "the rows hardly visit what the other laws would; run it as a study of its own, or with many times the rows"
     + ` (Pareto k ${k.toFixed(2)})`;

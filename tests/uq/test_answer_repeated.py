@@ -1,0 +1,98 @@
+"""What the answer says of another seed, against studies with other seeds."""
+
+import numpy as np
+import pytest
+from answered import lifetime, numbers
+from computed import asking, kinds, linear, with_output
+
+from uq import order_statistics
+from uq.conclusions.answer import answer
+from uq.conclusions.contributions import Contribution, Ranking
+from uq.conclusions.repeated import Repeated, found_again, repeated_quantile
+from uq.conclusions.words import Unit
+from uq.estimate import Estimate
+from uq.intervals import share_interval
+
+SEEDS = 2000
+
+
+def held(estimates, is_positive):
+    """Return how often the estimate from one seed lies where that from another says."""
+    both = zip(estimates[::2], estimates[1::2], strict=True)
+    ends = [(*found_again(one, is_positive), other.value) for one, other in both]
+    return np.mean([low <= value <= high for low, high, value in ends])
+
+
+def test_other_seeds_find_a_quantile_where_the_answer_says():
+    lives = np.random.default_rng(1).lognormal(size=(SEEDS, 400))
+    found = [
+        Estimate(order_statistics.quantile(x, 0.1), *order_statistics.quantile_interval(x, 0.1))
+        for x in lives
+    ]
+    assert 0.93 < held(found, True) < 0.98
+
+
+def test_other_seeds_find_a_share_where_the_answer_says():
+    rows = np.random.default_rng(2).uniform(size=(SEEDS, 300)) < 0.2
+    found = [Estimate(float(hits.mean()), *share_interval(hits)) for hits in rows]
+    assert 0.93 < held(found, False) < 0.98
+
+
+def test_an_estimate_without_an_interval_says_nothing_of_other_seeds():
+    assert all(map(np.isnan, found_again(Estimate(1.0), True)))
+    (quantity,) = answer(asking(linear(samples=5), outputs=["y"])).quantities
+    assert quantity.repeated.what == ""
+
+
+def test_the_quantile_and_the_input_that_contributes_most_are_said():
+    _, found = lifetime()
+    low, high = numbers(
+        r"With another seed, the 5 % quantile would lie between # and # days \(95 %\);"
+        r" rate would again contribute most\.",
+        found.lead.repeated.sentence,
+    )
+    one, day = found.lead.promise.quantiles[0], 86400.0
+    ends = [one.value * (end / one.value) ** 2**0.5 / day for end in (one.low, one.high)]
+    assert [low, high] == pytest.approx(ends, rel=5e-3)
+    assert found.lead.repeated.sentence in found.lines
+
+
+def test_where_nothing_is_promised_the_share_is_said():
+    lives = np.where(np.arange(200) < 150, 1.0 + np.arange(200), np.inf)
+    ds = with_output(linear(samples=200), "locking", lives, "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    lead = answer(asking(ds, outputs=["locking"], thresholds={"locking": 100.0})).lead
+    low, high = numbers(
+        r"With another seed, # to # % would succeed within 100 s \(95 %\).*",
+        lead.repeated.sentence,
+    )
+    share = lead.first.share
+    ends = [share.value + 2**0.5 * (end - share.value) for end in (share.low, share.high)]
+    assert [low, high] == pytest.approx([100 * end for end in ends], abs=0.06)
+
+
+@pytest.mark.slow
+def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
+    """x4 explains 16/30 of the variance, x3 9/30."""
+    studies = [linear(samples=100, seed=seed) for seed in range(40)]
+    found = [answer(asking(ds, outputs=["y"])).lead.ranking for ds in studies]
+    leaders = [one.contributions[0].inputs[0] for one in found if one.contributions]
+    named = [one.rivals for one in found if one.rivals]
+    assert named and set(leaders) <= {"x4", "x3"}
+    assert np.mean([leader in one for leader in leaders for one in named]) > 0.95
+
+
+def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
+    unit = Unit("rad s⁻¹")
+    one = Repeated("the 5 % quantile", 153.8, 154.2, unit=unit)
+    assert one.sentence == "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
+    index = Estimate(0.5, 0.4, 0.6)
+    leader = Contribution(("a",), (index,), True)
+    ranking = Ranking("y", "sobol", contributions=(leader,), rivals=("a_1", "b", "c"))
+    said = repeated_quantile(None, ranking).sentence
+    assert said == "With another seed, a 1, b or c would contribute most."
+
+
+def test_quantiles_of_an_angle_are_said_to_be_of_magnitudes():
+    ds = kinds(samples=400, analysis={"outputs": ["angle"], "thresholds": {"angle": 0.5}})
+    assert "of the magnitudes would lie" in answer(ds).lead.repeated.sentence
