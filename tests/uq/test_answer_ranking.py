@@ -64,3 +64,16 @@ def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_i
     (rows,) = [one for one in found.advice if one.rule == "rows"]
     said = re.match(r"Compute (?:about|more than) ([\d ]+) rows instead of (\d+): ", rows.text)
     assert int(said[1].replace(" ", "")) >= rows.rows - 1 > int(said[2])
+
+
+def test_what_decides_that_an_angle_is_too_large_is_that_of_its_magnitude():
+    ds = linear(samples=600)
+    sign = np.where(ds["x1"].values > 0.5, 1.0, -1.0)
+    ds = with_output(ds, "turn", sign * (0.2 + 0.3 * ds["x4"].values), "angle")
+    ds["turn"].attrs["units"] = "rad"
+    lead = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
+    assert lead.ranking.leader.inputs == ("x1",)  # of the signed value, as it says
+    assert lead.ranking.what.endswith("of the angle with its sign")
+    assert "raises its signed value" in lead.ranking.leader.effect
+    (event,) = lead.events
+    assert event.decided_by.startswith("Decided most by x4: from 0 % where it is below 0.")

@@ -7,7 +7,9 @@ from computed import asking, kinds, linear, with_output
 
 from uq import order_statistics
 from uq.conclusions.answer import answer
-from uq.conclusions.repeated import found_again
+from uq.conclusions.contributions import Contribution, Ranking
+from uq.conclusions.repeated import Repeated, found_again, repeated_quantile
+from uq.conclusions.words import Unit
 from uq.estimate import Estimate
 from uq.intervals import share_interval
 
@@ -80,6 +82,17 @@ def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
     assert np.mean([leader in one for leader in leaders for one in named]) > 0.95
 
 
-def test_regimes_need_no_other_seed():
+def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
+    unit = Unit("rad s⁻¹")
+    one = Repeated("the 5 % quantile", 153.8, 154.2, unit=unit)
+    assert one.sentence == "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
+    index = Estimate(0.5, 0.4, 0.6)
+    leader = Contribution(("a",), (index,), True)
+    ranking = Ranking("y", "sobol", contributions=(leader,), rivals=("a_1", "b", "c"))
+    said = repeated_quantile(None, ranking).sentence
+    assert said == "With another seed, a 1, b or c would contribute most."
+
+
+def test_quantiles_of_an_angle_are_said_to_be_of_magnitudes():
     ds = kinds(samples=400, analysis={"outputs": ["angle"], "thresholds": {"angle": 0.5}})
     assert "of the magnitudes would lie" in answer(ds).lead.repeated.sentence

@@ -5,6 +5,7 @@ import io
 import matplotlib as mpl
 import numpy as np
 import pytest
+from answered import lifetime
 from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
@@ -141,3 +142,14 @@ def test_of_many_points_the_ends_are_drawn():
     places = thinned(5000, 100)
     assert (places[0], places[-1], len(places)) == (0, 4999, 100)
     assert thinned(3).tolist() == [0, 1, 2]
+
+
+def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer():
+    ds, found = lifetime()
+    (event,) = found.lead.events
+    figure = plots.event_probability(ds, event.name)
+    (panel,) = figure.axes
+    assert event.decided_by.startswith("Decided most by rate")
+    assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
+    drawn = panel.patches[-1].get_data().values
+    assert np.allclose(drawn, [one.value for one in event.curve.shares])

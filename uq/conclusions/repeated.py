@@ -45,10 +45,16 @@ class Repeated:
         if self.what and self.is_share:
             number = f"{percent_interval(self.low, self.high)} would {self.what} (95 %)"
         elif self.what:
-            ends = self.unit.between(self.low, self.high, " and ")
-            number = f"{self.what} would lie between {ends} (95 %)"
+            number = f"{self.what} would {self._lie} (95 %)"
         text = "; ".join(filter(None, (number, self.ranking)))
         return f"With another seed, {text}." if text else ""
+
+    @property
+    def _lie(self) -> str:
+        first, last = self.unit.text(self.low), self.unit.text(self.high)
+        if first == last:  # to the digits shown
+            return f"again be {first}"
+        return f"lie between {self.unit.between(self.low, self.high, ' and ')}"
 
 
 def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
@@ -109,4 +115,5 @@ def _ranked_again(one: Ranking | None) -> str:
     if len(names) > MOST_NAMED:
         return "the order of the inputs could differ"
     again = "again " if len(names) == 1 else ""
-    return f"{' or '.join(names)} would {again}contribute most" if names else ""
+    words = " or ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+    return f"{words} would {again}contribute most" if names else ""

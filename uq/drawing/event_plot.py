@@ -7,9 +7,10 @@ from matplotlib.figure import Figure
 
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Event
+from uq.conclusions.words import called
 from uq.drawing.panel import column, finish, title
 from uq.drawing.style import INK, styled
-from uq.drawing.words import as_label, labelled
+from uq.drawing.words import as_label, symbol_of
 from uq.errors import InputError
 
 
@@ -54,7 +55,8 @@ def event_probability(
     panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9)
     panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
     title(panel, as_label(f"share: {event.said}", width=46))
-    panel.set_xlabel(labelled(ds[event.over], event.over_unit.name))
+    over = called(event.over)  # as the sentence beside the figure does
+    panel.set_xlabel(as_label(over, event.over_unit.name, symbol=symbol_of(ds[event.over])))
     return finish(panel)
 
 
