@@ -82,6 +82,6 @@ def test_intervals_hold_the_closed_form(case):
                 held[what].append(found.low <= exact <= found.high)
     for what, those in held.items():
         assert len(those) > 0.85 * REPETITIONS, what  # others have a reason, not an interval
-        # Values of an input that units share are spread evenly: they scatter less than at random.
-        cautious = case != "own rows" and what in ("by", "median")
+        # Eight repetitions show their scatter roughly.
+        cautious = case == "new rows" and what in ("by", "median")
         assert 0.93 <= np.mean(those) <= (0.995 if cautious else 0.97), what

@@ -8,6 +8,7 @@ from scipy import stats
 from uq.exploring.updating import update
 from uq.learning.remaining import remaining
 from uq.learning.result import as_unit
+from uq.learning.unchanged import unchanged
 from uq.population.learnt_scale import LearntScale
 from uq.population.row_inputs import inputs_of
 from uq.population.scale_laws import ConditionalScale
@@ -68,3 +69,13 @@ def test_without_inspections_it_is_the_law_of_the_study(exponent):
     study = ConditionalScale(*of, mean=np.zeros(50))
     for time in (4e5, 1e6, 3e6):
         np.testing.assert_allclose(found.below(lives, time), study.below(lives, time), atol=1e-8)
+
+
+def test_outputs_that_depend_on_the_integrated_input_otherwise_are_named():
+    """Here the life itself, without the declaration that it scales."""
+    rows = wear(samples=500)
+    assert not list(unchanged(rows, "depth"))
+    kept = {name: one for name, one in rows["life"].attrs.items() if name != "scales"}
+    rows["life"].attrs = kept
+    assert list(unchanged(rows, "depth")) == ["life"]
+    assert not list(unchanged(rows, ""))
