@@ -128,3 +128,12 @@ def test_one_path_is_too_few_and_its_output_no_event():
 def test_one_hit_is_singular():
     entry = of_paths(lambda ds: ds["sample"].values == 5)
     assert entry["refused"].startswith("only 1 hit in 66 rows: 5 are needed")
+
+
+def test_shares_that_all_paths_agree_on_say_why_they_have_no_interval():
+    entry = of_paths(lambda ds: ds["x1"].values)
+    assert entry["shapley"]["x1"] == {"value": 1.0, "low": None, "high": None}
+    assert entry["notes"][-2:] == [
+        "no effect in any row, hence no interval: x2, x3, x4",
+        "the same share along each path, hence no interval: x1",
+    ]

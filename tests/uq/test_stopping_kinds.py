@@ -272,3 +272,36 @@ def test_what_all_elements_together_do_not_have_is_refused(until, line):
     given = tables({"output": "front[:]", "half_width": 0.1} | until, 64, "saltelli", 4)
     with pytest.raises(InputError, match=line):
         study_of(given | {"uncertain": whole.LAWS}, whole.NAME)
+
+
+class Interrupted(Exception):
+    """What ends a run in these tests."""
+
+
+SHAPLEY = {"method": "shapley", "samples": 2048}
+SALTELLI = {"method": "saltelli", "samples": 256, "replicates": 8}
+KINDS = {
+    "mean": ({"half_width": 0.1}, {}),
+    "probability": ({"above": 5.0, "half_width": 0.04}, {}),
+    "quantile": ({"quantile": 0.9, "half_width": 0.2}, {}),
+    "shapley": ({"index": "shapley", "half_width": 1e-6}, SHAPLEY),
+    "difference": ({"index": "ST", "difference": ["x4", "x1"], "half_width": 0.1}, SALTELLI),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_run_killed_between_looks_ends_as_one_that_was_not(tmp_path, kind):
+    until, more = KINDS[kind]
+    of = study_of(tables({"output": "y", **until}, **more))
+    whole_run = runner.run(of, tmp_path / "whole.nc", workers=0)
+    size = stopping.interim_sizes(of.design)[0] * (7 if more is SHAPLEY else 1)
+
+    def kill(progress):
+        if progress.done > size:
+            raise Interrupted
+
+    with pytest.raises(Interrupted):
+        runner.run(of, tmp_path / "out.nc", workers=0, chunk_rows=64, progress=kill)
+    resumed = runner.run(of, tmp_path / "out.nc", workers=0)
+    assert resumed.equals(whole_run) and resumed.attrs["samples"] == whole_run.attrs["samples"]
+    assert summarised(resumed) == summarised(whole_run)

@@ -184,3 +184,14 @@ def test_intervals_cover_the_indices_of_curves(method):
     for line in lines:
         print(line.problem, line.what, line.coverage)
     assert lines and not any(line.unexplained for line in lines)
+
+
+def test_an_element_that_no_row_has_is_named():
+    ds = curves("shapley", samples=64, replicates=1, outputs=["worn"])
+    one = ds["worn"].values[:, 2]
+    found = indices(with_elements(ds, "worn", one, np.full(len(one), np.nan)))["outputs"]
+    assert (
+        found["worn[:]"]["refused"]
+        == "no row has a worn[place=b]; ask for the other elements by name"
+    )
+    assert "shapley" in found["worn[place=a]"]

@@ -66,7 +66,10 @@ def _together(elements: Sequence[Element], form: str) -> Target:
     ]
     name = whole_name(elements[0].output)
     values = np.column_stack([one.values for one in parts])
+    lacking = [one.name for one in parts if not np.isfinite(one.values).any()]
     refused = next((one.refused for one in parts if one.refused), "")
+    if lacking and not refused:
+        refused = f"no row has a {lacking[0]}; ask for the other elements by name"
     notes = _weights(elements, values[np.isfinite(values).all(axis=1)])
     return Target(f"{form}({name})" if form else name, None, values, refused, notes=notes)
 

@@ -82,11 +82,12 @@ def shapley_indices(sample: Sample) -> Indices:
     if sample.difference:
         one, other = (contrasts[name] for name in sample.difference)
         contrasts[" - ".join(sample.difference)] = one - other
-    found = {}
+    found, alike = {}, []
     for name, contrast in contrasts.items():
         share, error = float(shares @ contrast), errors @ contrast
         # Where every path shows the same, scatter is rounding.
         certain = is_constant(seen[0] @ contrast + seen[1] @ contrast)
+        alike += [name] * certain
         low, high = scatter_interval(share, error, sample.confidence)
         ends = np.fmin(low, share - EXACT), np.fmax(high, share + EXACT)
         found[name] = Estimate(share, *(UNKNOWN if certain else ends))
@@ -96,6 +97,11 @@ def shapley_indices(sample: Sample) -> Indices:
         f" its correlation with {choices(sample.correlated[name])}"
         for name, paths in idle.items()
     )
+    inert = [name for name in alike if found[name].value == 0 and name not in idle]
+    if inert:
+        notes += (f"no effect in any row, hence no interval: {', '.join(inert)}",)
+    if others := [name for name in alike if found[name].value != 0]:
+        notes += (f"the same share along each path, hence no interval: {', '.join(others)}",)
     return Indices({SHAPLEY: found}, notes, by_correlation=tuple(idle))
 
 
