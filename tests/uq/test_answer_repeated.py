@@ -89,8 +89,22 @@ def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
     index = Estimate(0.5, 0.4, 0.6)
     leader = Contribution(("a",), (index,), True)
     ranking = Ranking("y", "sobol", contributions=(leader,), rivals=("a_1", "b", "c"))
-    said = repeated_quantile(None, ranking).sentence
+    said = repeated_quantile(None, None, ranking).sentence
     assert said == "With another seed, a 1, b or c would contribute most."
+
+
+def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
+    x = np.random.default_rng(3).uniform(size=300)
+    ds = with_output(
+        linear(samples=300), "speed", np.where(x < np.sort(x)[17], 90.0 + x, 156.0 + x)
+    )
+    lead = answer(asking(ds, outputs=["speed"])).lead
+    low, high = numbers(
+        r"With another seed, the 5 % quantile would lie between # and # mm? \(95 %\).*",
+        lead.repeated.sentence.replace("\N{NO-BREAK SPACE}", " "),
+    )
+    one = lead.promise.quantiles[0]
+    assert one.value + 2**0.5 * (one.high - one.value) > 170 > 157 >= high >= one.high - 0.5
 
 
 def test_quantiles_of_an_angle_are_said_to_be_of_magnitudes():

@@ -82,5 +82,6 @@ def test_intervals_hold_the_closed_form(case):
                 held[what].append(found.low <= exact <= found.high)
     for what, those in held.items():
         assert len(those) > 0.85 * REPETITIONS, what  # others have a reason, not an interval
-        # Lives with an integrated input of their own scatter less than rows drawn at random.
-        assert 0.93 <= np.mean(those) <= (0.97 if what in ("mean", "sd") else 0.995), what
+        # Eight repetitions show their scatter roughly.
+        cautious = case == "new rows" and what in ("by", "median")
+        assert 0.93 <= np.mean(those) <= (0.995 if cautious else 0.97), what

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from computed import asking, computed, study_of, summarised
-from learnt_studies import measured, wear
+from learnt_studies import exactly, measured, wear
+from scipy.stats import lognorm
 
 import uq as api
 from uq import plots
@@ -33,7 +34,7 @@ def of_weights(ds, numbers):
 
 def test_every_statistic_counts_rows_by_their_weight(unit):
     life = unit["life"].values
-    found = summarised(unit)
+    found = summarised(unit, plain=True)
     assert found["effective_rows"] < 1500 and found["pareto_k"] < 0.7
     one = found["outputs"]["life"]
     assert one["effective_rows"] == pytest.approx(found["effective_rows"])
@@ -47,6 +48,20 @@ def test_every_statistic_counts_rows_by_their_weight(unit):
         assert of_weights(unit, life < at["value"]) < p <= of_weights(unit, life <= at["value"])
         assert at["low"] < at["value"] < at["high"]
     assert one["tolerance"] is None
+
+
+def test_lives_of_an_inspected_unit_are_integrated(unit):
+    """Against the closed form, with intervals several times narrower than those of lives drawn."""
+    mean, cov = exactly([5e5])
+    sd = (cov[0, 0] + cov[1, 1] - 2 * cov[0, 1]) ** 0.5
+    law = lognorm(sd, scale=np.exp(mean[1] - mean[0]))
+    life, drawn = (summarised(unit, plain=plain)["outputs"]["life"] for plain in (False, True))
+    assert life["integrated"]["inputs"] == ["depth"]
+    below, counted = (one["thresholds"]["520000.0"]["below"] for one in (life, drawn))
+    assert below["low"] < law.cdf(5.2e5) < below["high"]
+    assert below["high"] - below["low"] < (counted["high"] - counted["low"]) / 4
+    for name, p in (("B10", 0.1), ("B50", 0.5)):
+        assert life["b_lives"][name]["low"] < law.ppf(p) < life["b_lives"][name]["high"]
 
 
 def test_the_survival_curve_counts_rows_by_their_weight(unit):
@@ -68,7 +83,7 @@ def test_censored_lives_leave_no_number_after_them(unit):
         of_weights(unit, unit["life"].values > 5.4e5), abs=0.01
     )
     assert summarised(cut)["outputs"]["life"]["b_lives"]["B50"]["value"] == pytest.approx(
-        summarised(unit)["outputs"]["life"]["b_lives"]["B50"]["value"]
+        summarised(unit, plain=True)["outputs"]["life"]["b_lives"]["B50"]["value"]
     )
     late = summarised(asking(cut, outputs=["life"], thresholds={"life": [6e5]}))
     assert late["outputs"]["life"]["thresholds"]["600000.0"]["below"]["value"] is None

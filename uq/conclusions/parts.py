@@ -178,7 +178,7 @@ class Quantity:
     def repeated(self) -> Repeated:
         """What the study would find with another seed."""
         if self.first is None:
-            return repeated_quantile(self.promise, self.ranking)
+            return repeated_quantile(self.promise, self.range, self.ranking)
         return repeated_share(self.first.said, self.first.share, self.ranking)
 
     @property

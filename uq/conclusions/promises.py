@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from math import inf, isfinite
 
-from uq.conclusions.words import Unit, sentence, share_text
+from uq.conclusions.words import Unit, rounded, sentence, share_text
 from uq.estimate import NOTHING, Estimate
-from uq.wording import listed, percent
+from uq.wording import listed
 
 
 @dataclass(frozen=True)
@@ -135,5 +135,6 @@ class Range:
     def _never(self) -> str:
         """How many never end; "" where that is not known, or it is no life."""
         if self.never.value == 0 and self.never.has_interval:
-            return f"at most {percent(self.never.high)} never {self.ends} (no row does)"
+            most = rounded(100 * self.never.high, inf)
+            return f"at most {most} % never {self.ends} (no row does)"
         return f"{share_text(self.never)} never {self.ends}" if self.never.value > 0 else ""

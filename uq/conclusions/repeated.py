@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from math import isfinite, nan, sqrt
 
 from uq.conclusions.contributions import Ranking
-from uq.conclusions.promises import Promise
+from uq.conclusions.promises import Promise, Range
 from uq.conclusions.words import Unit, called
 from uq.estimate import Estimate
 from uq.wording import percent_interval
@@ -85,13 +85,23 @@ def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
     return value - AGAIN * (value - low), value + AGAIN * (high - value)
 
 
-def repeated_quantile(promise: Promise | None, ranking: Ranking | None) -> Repeated:
-    """Return what would be found of the quantile that a promise bounds, and of the ranking."""
+def repeated_quantile(
+    promise: Promise | None, likely: Range | None, ranking: Ranking | None
+) -> Repeated:
+    """Return what would be found of the quantile that a promise bounds, and of the ranking.
+
+    A low quantile is no larger than the upper end of the likely range, which matters where values
+    jump, and a high one no smaller than its lower end.
+    """
     order = _ranked_again(ranking)
     if promise is not None:
         for p, one in zip((1 - promise.coverage, promise.coverage), promise.quantiles, strict=True):
             low, high = found_again(one, promise.is_life)
             if isfinite(low):
+                if likely is not None and p < 0.5:
+                    high = min(high, max(likely.high.value, one.high))
+                elif likely is not None:
+                    low = max(low, min(likely.low.value, one.low))
                 of = " of the magnitudes" if promise.of_magnitude else ""
                 what = f"the {100 * p:.3g} % quantile{of}"
                 return Repeated(what, low, high, False, promise.unit, order)

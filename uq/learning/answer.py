@@ -9,14 +9,22 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.as_json import quality_json
-from uq.errors import InputError
+from uq.errors import InputError, choices
 from uq.learning.inputs_learnt import Confounded, InputLearnt, Spread, confounded, inputs_learnt
 from uq.learning.inspections import Inspection
 from uq.learning.posterior import Posterior, posterior
 from uq.learning.remaining import ANY, Remaining, remaining
-from uq.learning.result import MODEL_ERROR, as_table, inspections_of, prior_of, unit_quality
+from uq.learning.result import (
+    INTEGRATED,
+    MODEL_ERROR,
+    as_table,
+    inspections_of,
+    prior_of,
+    unit_quality,
+)
 from uq.learning.strangeness import STRANGE, strangeness
 from uq.learning.taught import Taught, taught
+from uq.learning.unchanged import unchanged
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import independent_rows
 from uq.rows.weights import has_weights
@@ -70,7 +78,8 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         raise InputError("this result has not been updated with inspections: see 'uq update'")
     quality, inspections = unit_quality(ds), inspections_of(ds)
     cv = float(ds.attrs[MODEL_ERROR])
-    found = posterior(independent_rows(prior_of(ds)), inspections, cv)
+    rows, name = independent_rows(prior_of(ds)), str(ds.attrs[INTEGRATED])
+    found = posterior(rows, inspections, cv)
     strange = strangeness(found, int(ds.attrs["seed"]), cv)
     return Learnt(
         inspections,
@@ -80,7 +89,12 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         list(remaining(ds, by)),
         list(taught(found)),
         strange,
-        [*_warnings(strange), *_interpolated(found), *filter(None, [found.only_inspected])],
+        [
+            *_warnings(strange),
+            *_left_as_computed(list(unchanged(rows, name)), name),
+            *_interpolated(found),
+            *filter(None, [found.only_inspected]),
+        ],
     )
 
 
@@ -89,6 +103,15 @@ def _warnings(strange: float) -> Iterator[str]:
         yield (
             f"Warning: inspections as strange as these had a probability of {percent(strange)}"
             " before; a law, the model (--model-error) or an inspection may be wrong."
+        )
+
+
+def _left_as_computed(outputs: list[str], name: str) -> Iterator[str]:
+    if outputs:
+        yield (
+            f"Warning: {name} is integrated, but does more than scale {choices(outputs)}: there the"
+            " posterior holds values for the input as drawn before the inspections; do not use"
+            " them."
         )
 
 

@@ -168,10 +168,10 @@ def _scores(low: float, high: float) -> Floats:
 def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> Grid:
     """Return the grid whose values lie between some probabilities."""
     edges = np.unique(np.concatenate(parts))
-    return Grid(edges, quantiles(_centres(edges)), np.log(np.diff(edges)))
+    return Grid(edges, quantiles(centres(edges)), np.log(np.diff(edges)))
 
 
-def _centres(edges: Floats) -> Floats:
+def centres(edges: Floats) -> Floats:
     """Return the probabilities of the mean normal score between some probabilities."""
     scores = special.ndtri(edges)
     width, middle = np.diff(scores), (scores[1:] + scores[:-1]) / 2

@@ -47,9 +47,12 @@ class Scale:
         return ppf_within(self.inputs.laws[self.name], probability, self.inputs.bounds[self.name])
 
     def longer(self, look: Look, rows: NDArray[np.intp], values: Floats) -> Floats:
-        """Return by which factor lives of some rows are longer with other values, shape (m, g)."""
+        """Return by which factor lives of some rows are longer with other values, shape (m, g).
+
+        These are the same in all rows, shape (g,), or differ, shape (m, g).
+        """
         if look.name not in self.exponents:
-            return np.ones((len(rows), len(values)))
+            return np.ones((len(rows), values.shape[-1]))
         return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
 
 

@@ -9,18 +9,20 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import special
 
-from uq.contract import Floats
+from uq.contract import Floats, Mask
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.drawn_scale import drawn_scale, in_order, in_order_of_weight
+from uq.learning.cut_cells import edges_of_rows
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at
 from uq.learning.own_rows_out import log_worth
+from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
 from uq.learning.unit_likelihood import UnitLikelihoods
+from uq.population.learnt_scale import SCORES
 from uq.population.smoothing import Smoothed, smoothed
 from uq.rows.elements import replicates_of
 from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
@@ -45,11 +47,14 @@ class Weighted:
     weights : Smoothed
     scale : ndarray, shape (m,), or None
         What the integrated input is in each row.
+    scores : ndarray, shape (m, q), or None
+        Its law in each row of an inspected unit (`LearntScale`).
     """
 
     rows: Rows
     weights: Smoothed
     scale: Floats | None
+    scores: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -228,7 +233,9 @@ def _uninspected(
         return Weighted(rows, weights, None if scale is None else scale.drawn)
     worth = np.exp(log_rows - log_rows.max())
     at = in_order(place.samples)[place.sample]
-    return Weighted(rows, weights, drawn_scale(found.grids[0], worth, scale, at))
+    edges = np.broadcast_to(found.grids[0].edges, (len(rows), len(found.grids[0].edges)))
+    drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
+    return Weighted(rows, weights, scale.quantiles(drawn))
 
 
 def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
@@ -255,10 +262,18 @@ def _inspected(
     """
     rows, grid = likelihoods.blocks[unit], found.grids[unit]
     size = np.bincount(world[rows], minlength=len(found.rest[unit]))
-    joint = found.rest[unit][world[rows]] + likelihoods.of(unit, grid.values)
-    joint -= np.log(size[world[rows]])[:, None]
+    of_unit = likelihoods.of(unit, grid.values)
+    joint = found.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
     top = joint.max()
     worth = np.exp(joint - top)
+    edges = np.broadcast_to(grid.edges, (len(rows), len(grid.edges)))
+    if scale is not None and np.isneginf(of_unit).any():
+
+        def allowed(places: Floats) -> Mask:
+            return likelihoods.of(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
+
+        edges = edges_of_rows(grid, of_unit > -np.inf, allowed)
+        worth *= np.diff(edges) / np.diff(grid.edges)
     of_rows = worth.sum(axis=1)
     most = np.inf
     if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
@@ -268,5 +283,9 @@ def _inspected(
     kept = np.isin(np.arange(len(world)), rows)
     with np.errstate(divide="ignore"):
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
-    at = in_order_of_weight(of_rows)
-    return Weighted(rows, weights, drawn_scale(grid, worth, scale, at) if scale else None)
+    if scale is None:
+        return Weighted(rows, weights, None)
+    of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
+    places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
+    scores = np.asarray(special.ndtri(places[:, 1:]))
+    return Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)

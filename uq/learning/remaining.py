@@ -12,8 +12,10 @@ from uq.learning.inspections import Inspection, Kind
 from uq.learning.over_shared import over_shared
 from uq.learning.result import as_unit, inspections_of
 from uq.population.functionals import Population
+from uq.population.scaling import population
 from uq.population.smoothing import effective_rows, per_sample
-from uq.rows.elements import Element, analysis_of, elements_of, replicates_of, shown_outputs
+from uq.population.surviving import Surviving
+from uq.rows.elements import Element, analysis_of, replicates_of, shown_outputs
 from uq.rows.weights import ONLY_INSPECTED, WEIGHT
 
 PROBABILITIES = (0.05, 0.5, 0.95)
@@ -86,7 +88,7 @@ def _of_unit(rows: xr.Dataset, label: str, seen: float, by: Sequence[float]) -> 
     analysis = analysis_of(rows)
     rows = rows.isel(sample=rows[WEIGHT].values > 0)
     part = replicates_of(rows)
-    for element in elements_of(rows, shown_outputs(rows, analysis)):
+    for element in population(rows, shown_outputs(rows, analysis)):
         if element.is_lifetime and not element.declared.success:
             times = [*by] or [t for t in analysis.thresholds.get(element.output, ()) if t > seen]
             found = _of_life(element, part, label, seen, times)
@@ -100,23 +102,31 @@ def _of_life(
 ) -> Remaining:
     runs = Population(element, part).outliving(seen) if seen > 0 else Estimate(1.0)
     assert element.weights is not None
-    still = element.present & (element.values > seen)
+    alive = np.where(element.censored & (element.values <= seen), 0.0, element.above(seen))
+    weights, still = element.weights * alive, alive > 0
     nothing = Remaining(label, element.name, seen, runs, {}, {}, 0.0)
-    if not element.weights[still].sum() > _LEAST * element.weights.sum():
+    share = float(weights.sum() / element.weights.sum())
+    if not share > _LEAST:
         return replace(nothing, runs=Estimate(runs.value, reason=_GONE))
-    left = replace(
+    running = replace(
         element,
-        values=np.where(still, element.values - seen, np.nan),
+        values=np.where(still, element.values, np.nan),
         censored=element.censored & still,
         failed=~still,
-        weights=np.where(still, element.weights, 0.0),
+        law=None if element.law is None else Surviving(element.law, element.below(seen)),
+        weights=weights,
+        most=element.most * still.mean() / share,
     )
-    of = Population(left, part)
+    of = Population(running, part)
     return replace(
         nothing,
-        life={p: of.quantile(p) for p in PROBABILITIES},
-        by={time: of.below(time - seen) if time > seen else Estimate(0.0) for time in times},
-        effective_rows=effective_rows(
-            per_sample(element.weights[still], replicates_of_some(part, still))
-        ),
+        life={p: _after(seen, of.quantile(p)) for p in PROBABILITIES},
+        by={time: of.below(time) if time > seen else Estimate(0.0) for time in times},
+        effective_rows=effective_rows(per_sample(weights[still], replicates_of_some(part, still))),
     )
+
+
+def _after(seen: float, life: Estimate) -> Estimate:
+    """Return what remains of a life."""
+    ends = {name: max(getattr(life, name) - seen, 0.0) for name in ("value", "low", "high")}
+    return replace(life, **ends)

@@ -12,16 +12,26 @@ from uq.errors import InputError, choices, nearest
 from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
+from uq.population.learnt_scale import SCORES
 from uq.population.row_inputs import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
-from uq.rows.weights import MOST, OF_UNIT, ONLY_INSPECTED, WEIGHT, has_weights
+from uq.rows.weights import (
+    INPUT,
+    MOST,
+    OF_UNIT,
+    ONLY_INSPECTED,
+    SCALE_SCORES,
+    WEIGHT,
+    has_weights,
+)
 from uq.wording import counted
 
 PRIOR = "prior_"
-UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
-_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST)
+UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
+UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
 WORLDS = "worlds"
@@ -49,7 +59,9 @@ def as_result(
         sample), as each inspected one. An integrated input has the values that the inspections
         leave, and the lives that it scales are those for these values; as computed they are kept
         with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
-        of each inspected unit. Attributes: ``inspections``, and ``ledger``, a digest of each.
+        of each inspected unit, one value of its law in each row; ``unit_scale_scores``
+        (inspected, sample, score): that law. Attributes: ``inspections``, and ``ledger``, a digest
+        of each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
@@ -75,6 +87,12 @@ def as_result(
         of_scale = {"role": WEIGHT, "units": rows[found.scale.name].attrs["units"]}
         of_scale["long_name"] = f"{found.scale.name} of the inspected unit"
         variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
+        laws = [_spread_out(one, one.scores, n, SCORES) for one in _units(found)]
+        meaning = f"normal score before, of {found.scale.name} of the inspected unit"
+        of_law = attrs | {"long_name": meaning}
+        variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
+        meaning = "normal score given the inspections and the rest of the row"
+        ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
     units, count = len(found.units), len(inspections)
     given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
@@ -103,7 +121,7 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
     for name in kept:
         own = name.removeprefix(PRIOR)
         back[own] = ds[own].copy(data=ds[name].values)
-    gone = [*kept, *(one for one in (*_WEIGHTS, "inspected") if one in ds)]
+    gone = [*kept, *(one for one in (*_WEIGHTS, "inspected", SCORE) if one in ds)]
     found = ds.assign(back).drop_vars(gone)
     attrs = {name: value for name, value in ds.attrs.items() if name not in _OF_POSTERIOR}
     found.attrs = attrs | {"title": _prior_title(ds)}
@@ -146,9 +164,12 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
     place = known.index(label)
     rows, name = prior_of(ds), ds.attrs[INTEGRATED]
     if name:
-        scale = ds[UNIT_SCALE].values[place]
-        drawn = rows[name].values
+        scale, drawn = ds[UNIT_SCALE].values[place], rows[name].values
         rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
+        if UNIT_SCORES in ds:  # posteriors of older versions have none
+            law = ds[UNIT_SCORES]
+            attrs = law.attrs | {INPUT: name}
+            rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
     if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
         # Rows of one sample have nothing in common: each has a value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
@@ -182,10 +203,11 @@ def _units(found: Posterior) -> list[Weighted]:
     return list(found.units.values())
 
 
-def _spread_out(one: Weighted, values: Floats | None, n: int, other: float) -> Floats:
+def _spread_out(one: Weighted, values: Floats | None, n: int, other: float | Floats) -> Floats:
     """Return values of the rows of a unit among all rows."""
-    found = np.full(n, other)
-    found[one.rows] = other if values is None else values
+    found = np.full((n, *np.shape(other)), other)
+    if values is not None:
+        found[one.rows] = values
     return found
 
 

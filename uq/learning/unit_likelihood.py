@@ -50,8 +50,11 @@ class UnitLikelihoods:
         self._truths: dict[tuple[str, float | None, int], Floats] = {}
 
     def of(self, unit: int, values: Floats) -> Floats:
-        """Return the logarithm of the likelihood and of what each row counts, shape (rows, g)."""
-        total = np.repeat(self.log_before(unit)[:, None], len(values), axis=1)
+        """Return the logarithm of the likelihood and of what each row counts, shape (rows, g).
+
+        Values of the integrated input are the same in all rows, shape (g,), or differ.
+        """
+        total = np.repeat(self.log_before(unit)[:, None], values.shape[-1], axis=1)
         for one in self.of_unit[unit]:
             total += self.of_one(one, unit, values)
         return total
@@ -96,7 +99,7 @@ class UnitLikelihoods:
             self._values, self._truths = values, {}
         key = look.name, time, int(rows[0])
         if key not in self._truths:
-            none = np.ones((len(rows), len(values)))
+            none = np.ones((len(rows), values.shape[-1]))
             longer = none if self._scale is None else self._scale.longer(look, rows, values)
             self._truths[key] = look.truth(time, rows, longer)
         return self._truths[key]

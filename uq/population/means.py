@@ -174,7 +174,8 @@ def rows_of_few(numbers: Floats, weights: Floats | None, part: Replicates) -> fl
     if effective_rows(carried) >= FEW:
         return inf
     heaviest = of_samples[carried.argmax()] if carried.any() else of_samples.max()
-    return min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
+    with np.errstate(over="ignore"):  # of a row that hardly has a weight
+        return min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
 
 
 def moments_of_rows(

@@ -14,6 +14,7 @@ from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import support
 from uq.inputs.dependence import normal_correlations
 from uq.inputs.law import Law
+from uq.population.learnt_scale import learnt_input, learnt_scale
 from uq.population.row_inputs import Inputs, inputs_of
 from uq.population.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.population.sums import LogTerm, law_of_sum
@@ -239,8 +240,9 @@ def population(
     for element in elements_of(rows, outputs):
         if not plain and element.declared.scales and not element.censored.any():
             inputs = inputs or inputs_of(rows)
-            found = integrated(rows, element.declared, inputs)
-            element = replace(element, law=found.law)
+            learnt = learnt_scale(rows, inputs, scalers(inputs, element.declared))
+            law = learnt or integrated(rows, element.declared, inputs).law
+            element = replace(element, law=law)
         yield element
 
 
@@ -255,7 +257,8 @@ def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
         count = int(element.censored.sum())
         lives = counted(count, "life is", "lives are")
         return f"{names} not integrated: {lives} censored, which gives bounds only"
-    return not_integrated(integrated(rows, element.declared, inputs).kept)
+    kept = integrated(rows, element.declared, inputs).kept
+    return not_integrated({name: why for name, why in kept.items() if name != learnt_input(rows)})
 
 
 def not_integrated(kept: Mapping[str, str]) -> str:

@@ -16,6 +16,10 @@ ONLY_INSPECTED = "only_inspected"
 OF_UNIT = "of_unit"
 """Attribute of a result: the inspected unit that all its rows stand for."""
 
+SCALE_SCORES, INPUT = "scale_scores", "input"
+"""The variable of rows of an inspected unit with the law of the integrated input in each, and its
+attribute: which input."""
+
 MOST = "largest_possible"
 """Its attribute: the largest weight that a row can have, where that is known."""
 

@@ -1,0 +1,81 @@
+"""Lives of an inspected unit: the law of each row, given the inspections, against closed form."""
+
+import numpy as np
+import pytest
+from learnt_studies import DEPTH, measured, wear
+from scipy import stats
+
+from uq.exploring.updating import update
+from uq.learning.remaining import remaining
+from uq.learning.result import as_unit
+from uq.learning.unchanged import unchanged
+from uq.population.learnt_scale import LearntScale
+from uq.population.row_inputs import inputs_of
+from uq.population.scale_laws import ConditionalScale
+from uq.population.scaling import population
+
+SEEN = 1.5e6
+
+
+def element_of(told, samples=2000):
+    unit = as_unit(update(wear(samples=samples), told), "A")
+    return next(population(unit, ["life"])), unit["rate"].values
+
+
+def truncated(rate):
+    """Return the law of the depth of a unit with some rate that ran at `SEEN`, as P(T < t)."""
+    law = stats.lognorm(DEPTH[1], scale=DEPTH[0])
+    gone = law.cdf(SEEN * rate)
+    return lambda time: np.maximum(law.cdf(time * rate) - gone, 0) / (1 - gone)
+
+
+@pytest.mark.parametrize("time", [1.55e6, 1.6e6, 2e6, 3e6])
+def test_each_row_is_the_law_of_its_life_given_that_it_runs(time):
+    told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
+    element, rate = element_of([told])
+    assert element.law.inputs == ("depth",)
+    counts = element.weights > 0.01
+    exact, found = truncated(rate)(time), element.below(time)
+    assert np.abs(found - exact)[counts].max() < 2e-3
+    assert np.average(found - exact, weights=element.weights) == pytest.approx(0, abs=4e-4)
+
+
+def test_a_unit_seen_running_has_not_ended_before():
+    told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
+    ds = update(wear(samples=2000), [told])
+    unit = next(one for one in remaining(ds, [SEEN, 2e6]) if one.unit == "A")
+    assert unit.runs.value == 1.0 and unit.by[SEEN].value == 0.0
+    assert unit.life[0.05].value < unit.life[0.5].value < unit.life[0.95].value
+
+
+@pytest.mark.parametrize("time", [4.5e5, 5e5, 5.2e5, 6e5])
+def test_each_row_is_the_law_of_its_life_given_a_measurement(time):
+    """The depth of a row has a lognormal law, given its rate and the life measured."""
+    element, rate = element_of(measured(5e5))
+    error, prior = np.log1p(0.1**2), DEPTH[1] ** 2
+    sd = (error * prior / (error + prior)) ** 0.5
+    mean = (np.log(DEPTH[0]) / prior + np.log(5e5 * rate) / error) * sd**2
+    exact = stats.norm.cdf((np.log(time * rate) - mean) / sd)
+    difference = element.below(time) - exact
+    assert np.average(difference, weights=element.weights) == pytest.approx(0, abs=2e-4)
+
+
+@pytest.mark.parametrize("exponent", [-1.0, 2.0])
+def test_without_inspections_it_is_the_law_of_the_study(exponent):
+    inputs = inputs_of(wear(samples=50))
+    of = ("rate",), inputs.laws["rate"], inputs.bounds["rate"], exponent, inputs.values["rate"]
+    lives = np.append(np.linspace(5e5, 2e6, 48), [np.inf, np.nan])
+    found = LearntScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
+    study = ConditionalScale(*of, mean=np.zeros(50))
+    for time in (4e5, 1e6, 3e6):
+        np.testing.assert_allclose(found.below(lives, time), study.below(lives, time), atol=1e-8)
+
+
+def test_outputs_that_depend_on_the_integrated_input_otherwise_are_named():
+    """Here the life itself, without the declaration that it scales."""
+    rows = wear(samples=500)
+    assert not list(unchanged(rows, "depth"))
+    kept = {name: one for name, one in rows["life"].attrs.items() if name != "scales"}
+    rows["life"].attrs = kept
+    assert list(unchanged(rows, "depth")) == ["life"]
+    assert not list(unchanged(rows, ""))

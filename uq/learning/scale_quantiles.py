@@ -1,0 +1,79 @@
+"""Quantiles of the integrated input in each row, of its law given the inspections."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats
+
+Places = NDArray[np.intp]
+
+_GOLDEN = (5**0.5 - 1) / 2
+_TINY = 2.0**-53
+_FLAT, _STEEPEST = 1e-6, 30.0
+
+
+def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
+    """Return prior probabilities of quantiles of the integrated input given the inspections.
+
+    Parameters
+    ----------
+    edges : ndarray, shape (n, g + 1)
+        The prior probabilities between which each of its values stands, in each row.
+    worth : ndarray, shape (n, g)
+        The probability of each value.
+    at : ndarray, shape (n, q)
+        The probabilities of the quantiles of each row.
+
+    Returns
+    -------
+    ndarray, shape (n, q)
+    """
+    above, row = np.cumsum(worth, axis=1), np.arange(len(worth))[:, None]
+    total = above[:, -1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(total > 0, above / total, 1.0)
+        # One search for all rows, each a step higher than the row before.
+        node = np.searchsorted((share + row).ravel(), at + row) - row * worth.shape[1]
+        node = node.clip(0, worth.shape[1] - 1)
+        here = worth[row, node]
+        within = (at * total - (above[row, node] - here)) / here
+    within = _tilted(np.nan_to_num(within).clip(0.0, 1.0), edges, worth, row, node)
+    start = edges[row, node]
+    places = start + within * (edges[row, node + 1] - start)
+    return np.where(total > 0, places.clip(_TINY, 1 - _TINY), at)
+
+
+def in_order(count: int) -> Floats:
+    """Return numbers between 0 and 1, of which any successive ones are spread evenly."""
+    return np.asarray(np.modf((np.arange(count) + 1) * _GOLDEN)[0])
+
+
+def in_order_of_weight(weights: Floats) -> Floats:
+    """Return numbers between 0 and 1, spread evenly over the rows that count, shape (n,)."""
+    found = np.empty(len(weights))
+    found[np.argsort(-weights, kind="stable")] = in_order(len(weights))
+    return found
+
+
+def _tilted(within: Floats, edges: Floats, worth: Floats, row: Places, node: Places) -> Floats:
+    """Return places within nodes, 0 to 1, drawn to the side on which the density is higher.
+
+    By half its slope: evenly spread places would add the variance of a node to that of the density,
+    of which the values at the middles of nodes, equally spaced, have all. Where a neighbour is
+    impossible, the slope is that to the other.
+    """
+    sides = [np.clip(node + step, 0, worth.shape[1] - 1) for step in (-1, 1)]
+    low, high = (np.where(worth[row, side] > 0, side, node) for side in sides)
+    lengths, middles = zip(*(_length_and_middle(edges, row, i) for i in (low, high)), strict=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = (worth[row, high] / worth[row, low]) * (lengths[0] / lengths[1])
+        rise = np.log(ratio) / (middles[1] - middles[0])
+        wide = edges[row, node + 1] - edges[row, node]
+        tilt = (wide * rise / 2).clip(-_STEEPEST, _STEEPEST)
+        moved = np.log1p(within * np.expm1(tilt)) / tilt
+    return np.where(np.isfinite(tilt) & (np.abs(tilt) > _FLAT), moved, within)
+
+
+def _length_and_middle(edges: Floats, row: Places, node: Places) -> tuple[Floats, Floats]:
+    low, high = edges[row, node], edges[row, node + 1]
+    return high - low, (high + low) / 2

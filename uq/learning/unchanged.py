@@ -1,0 +1,52 @@
+"""Outputs that inspections leave as computed, although the integrated input has moved."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from uq.learning.integrated import free_scales
+from uq.population.row_inputs import inputs_of
+from uq.rows.elements import elements_of
+from uq.rows.nesting import nesting_of
+from uq.rows.variables import outputs_of
+
+_CHANCE = 1e-6
+_FEWEST = 20
+
+
+def unchanged(rows: xr.Dataset, name: str) -> Iterator[str]:
+    """Yield the outputs that depend on an input but do not scale with it.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Before the inspections.
+    name : str
+        The integrated input; "" for none.
+
+    Yields
+    ------
+    str
+        Those with an element whose ranks, of the means of samples if units share the input, follow
+        those of the input more closely than one in a million that do not.
+    """
+    from scipy import stats
+
+    if not name:
+        return
+    inputs, place = inputs_of(rows), nesting_of(rows)
+    shared = len(np.unique(inputs.values[name])) <= place.samples < len(place.sample)
+    for output, declared in outputs_of(rows).items():
+        if declared.is_category or name in free_scales(inputs, declared):
+            continue
+        for element in elements_of(rows, [output]):
+            of, values = inputs.values[name], np.where(element.censored, np.nan, element.values)
+            if shared:
+                of, values = place.means(of), place.means(values)
+            known = np.isfinite(of) & np.isfinite(values)
+            if known.sum() < _FEWEST or np.ptp(values[known]) == 0:
+                continue
+            if stats.spearmanr(of[known], values[known]).pvalue < _CHANCE:
+                yield output
+                break

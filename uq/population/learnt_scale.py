@@ -1,0 +1,100 @@
+"""The law of a life in each row, of which an input is integrated as inspections leave it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from uq.contract import Floats
+from uq.inputs.conditioning import cdf_within
+from uq.inputs.law import Law
+from uq.population.row_inputs import Inputs
+from uq.rows.weights import INPUT, SCALE_SCORES
+
+SCORES = np.linspace(-6.0, 6.0, 25)
+"""Normal scores of the quantiles that are kept of the law of the input."""
+
+_FINE = np.linspace(-6.0, 6.0, 97)
+
+
+@dataclass(frozen=True)
+class LearntScale:
+    """An input that scales lives, given the inspections and all else in a row.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+        Its name.
+    law : Law
+        Of the input before the inspections.
+    bounds : tuple of float
+    exponent : float
+    drawn : ndarray, shape (n,)
+        The values of the rows.
+    scores : ndarray, shape (n, 97)
+        Normal scores, by the law before the inspections, of evenly spread scores from -6 to 6 given
+        them: linear between these, and nothing beyond.
+    """
+
+    inputs: tuple[str, ...]
+    law: Law
+    bounds: tuple[float, float]
+    exponent: float
+    drawn: Floats
+    scores: Floats
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the logarithms of lives that it causes."""
+        return float(abs(self.exponent) * np.log(self.drawn).std())
+
+    def below(self, lives: Floats, time: float) -> Floats:
+        """Return P(T < time) of each row, shape (n,)."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            reached = self.drawn * (time / lives) ** (1 / self.exponent)
+            before = cdf_within(self.law, reached, self.bounds)
+            share = self._given_inspections(special.ndtri(before))
+        if self.exponent < 0:
+            share = 1 - share
+        return np.where(np.isnan(lives), 0.0, share)
+
+    def _given_inspections(self, score: Floats) -> Floats:
+        """Return the probability that the input of each row lies below a score before them."""
+        passed = (self.scores <= score[:, None]).sum(axis=1)
+        after = np.clip(passed, 1, len(_FINE) - 1)
+        row = np.arange(len(score))
+        low, high = self.scores[row, after - 1], self.scores[row, after]
+        part = (score - low) / (high - low)
+        found = special.ndtr(_FINE[after - 1] + part * (_FINE[after] - _FINE[after - 1]))
+        return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, found))
+
+
+def learnt_scale(
+    rows: xr.Dataset, inputs: Inputs, exponents: Mapping[str, float]
+) -> LearntScale | None:
+    """Return the law that inspections left of the integrated input, if it scales lives.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Those of an inspected unit; others have no such law.
+    inputs : Inputs
+        Of these rows.
+    exponents : dict of str to float
+        Of the inputs that only scale the lives.
+    """
+    name = learnt_input(rows)
+    if name not in exponents:
+        return None
+    from scipy.interpolate import PchipInterpolator  # late: it takes a while to import
+
+    of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
+    scores = PchipInterpolator(SCORES, rows[SCALE_SCORES].values, axis=1)(_FINE)
+    return LearntScale((name,), *of, scores)
+
+
+def learnt_input(rows: xr.Dataset) -> str:
+    """Return the input whose law in each row is what inspections of a unit left, or ""."""
+    return str(rows[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows else ""
