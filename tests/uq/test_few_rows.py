@@ -137,3 +137,10 @@ def test_shares_that_all_paths_agree_on_say_why_they_have_no_interval():
         "no effect in any row, hence no interval: x2, x3, x4",
         "the same share along each path, hence no interval: x1",
     ]
+
+
+def test_few_rows_with_an_event_are_told_from_few_rows():
+    ds = linear("monte-carlo", samples=256, analysis={"thresholds": {"y": [7.0]}})
+    (entry,) = sensitivities(ds, "hsic-conditional", "P(y>7.0)")["outputs"].values()
+    hits = int((ds["y"].values > 7).sum())
+    assert entry["refused"].startswith(f"only {hits} rows with a value where the event happens (of")

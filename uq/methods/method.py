@@ -125,5 +125,6 @@ class Method:
         """Refuse a sample in which too few groups have a value in each row."""
         kept, every = int(sample.whole.sum()), sample.whole.size
         if kept < self.least:
-            seen = counted(kept, *self.layout.group) + f" (of {every})" * (kept < every)
+            where = " where the event happens" * self.conditional
+            seen = counted(kept, *self.layout.group) + where + f" (of {every})" * (kept < every)
             raise RefusedError(f"only {seen}; {self.least} are needed", self.least / max(kept, 1))
