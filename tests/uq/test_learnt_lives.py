@@ -6,9 +6,12 @@ from learnt_studies import DEPTH, measured, wear
 from scipy import stats
 
 from uq.exploring.updating import update
+from uq.learning.dependent_outputs import dependent_outputs
+from uq.learning.inspections import read_tables
+from uq.learning.integrated import not_integrated
+from uq.learning.posterior import posterior
 from uq.learning.remaining import remaining
 from uq.learning.result import as_unit
-from uq.learning.unchanged import unchanged
 from uq.population.learnt_scale import LearntScale
 from uq.population.row_inputs import inputs_of
 from uq.population.scale_laws import ConditionalScale
@@ -71,11 +74,22 @@ def test_without_inspections_it_is_the_law_of_the_study(exponent):
         np.testing.assert_allclose(found.below(lives, time), study.below(lives, time), atol=1e-8)
 
 
-def test_outputs_that_depend_on_the_integrated_input_otherwise_are_named():
-    """Here the life itself, without the declaration that it scales."""
-    rows = wear(samples=500)
-    assert not list(unchanged(rows, "depth"))
-    kept = {name: one for name, one in rows["life"].attrs.items() if name != "scales"}
-    rows["life"].attrs = kept
-    assert list(unchanged(rows, "depth")) == ["life"]
-    assert not list(unchanged(rows, ""))
+def test_an_input_on_which_other_outputs_depend_is_not_integrated():
+    """They would keep the values for the input as drawn: here the life, as another output."""
+    rows, told = wear(samples=500).copy(), read_tables(measured(5e5))
+    assert posterior(rows, told).scale.name == "depth"
+    rows["power"] = rows["life"] * 2
+    rows["power"].attrs = {k: v for k, v in rows["life"].attrs.items() if k != "scales"}
+    assert list(dependent_outputs(rows, "depth")) == ["power"]
+    found = posterior(rows, told)
+    assert found.scale is None
+    (why,) = not_integrated(rows, list(found.looks.values()))
+    assert why == "depth is not integrated: power depends on it otherwise."
+
+
+def test_a_unit_never_inspected_runs_on_where_all_is_shared_with_one_that_does():
+    rows = wear(samples=2000, rate="shared", depth="shared", units=2)
+    told = {"unit": "A", "output": "life", "kind": "survived", "time": 7e5}
+    (anyone, inspected) = remaining(update(rows, [told]), [1e6])
+    assert anyone.runs.value == pytest.approx(1, abs=1e-4)
+    assert anyone.by[1e6].value == pytest.approx(inspected.by[1e6].value, abs=0.02)

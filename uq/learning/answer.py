@@ -9,13 +9,13 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.as_json import quality_json
-from uq.errors import InputError, choices
+from uq.errors import InputError
 from uq.learning.inputs_learnt import Confounded, InputLearnt, Spread, confounded, inputs_learnt
 from uq.learning.inspections import Inspection
+from uq.learning.integrated import not_integrated
 from uq.learning.posterior import Posterior, posterior
 from uq.learning.remaining import ANY, Remaining, remaining
 from uq.learning.result import (
-    INTEGRATED,
     MODEL_ERROR,
     as_table,
     inspections_of,
@@ -24,7 +24,6 @@ from uq.learning.result import (
 )
 from uq.learning.strangeness import STRANGE, strangeness
 from uq.learning.taught import Taught, taught
-from uq.learning.unchanged import unchanged
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import independent_rows
 from uq.rows.weights import has_weights
@@ -78,7 +77,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         raise InputError("this result has not been updated with inspections: see 'uq update'")
     quality, inspections = unit_quality(ds), inspections_of(ds)
     cv = float(ds.attrs[MODEL_ERROR])
-    rows, name = independent_rows(prior_of(ds)), str(ds.attrs[INTEGRATED])
+    rows = independent_rows(prior_of(ds))
     found = posterior(rows, inspections, cv)
     strange = strangeness(found, int(ds.attrs["seed"]), cv)
     return Learnt(
@@ -91,7 +90,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         strange,
         [
             *_warnings(strange),
-            *_left_as_computed(list(unchanged(rows, name)), name),
+            *not_integrated(rows, list(found.looks.values())),
             *_interpolated(found),
             *filter(None, [found.only_inspected]),
         ],
@@ -103,15 +102,6 @@ def _warnings(strange: float) -> Iterator[str]:
         yield (
             f"Warning: inspections as strange as these had a probability of {percent(strange)}"
             " before; a law, the model (--model-error) or an inspection may be wrong."
-        )
-
-
-def _left_as_computed(outputs: list[str], name: str) -> Iterator[str]:
-    if outputs:
-        yield (
-            f"Warning: {name} is integrated, but does more than scale {choices(outputs)}: there the"
-            " posterior holds values for the input as drawn before the inspections; do not use"
-            " them."
         )
 
 

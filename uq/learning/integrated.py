@@ -1,6 +1,6 @@
 """The input that only scales lives and is integrated on a grid, not drawn."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Output
 from uq.designs.levels import OWN, SHARED
 from uq.inputs.conditioning import ppf_within
+from uq.learning.dependent_outputs import dependent_outputs
 from uq.learning.looks import Look
 from uq.population.row_inputs import Inputs, inputs_of
 from uq.population.scaling import scalers
@@ -59,16 +60,12 @@ class Scale:
 def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> Scale | None:
     """Return the input to integrate: a shared one first, of these the one that scatters lives most.
 
-    One that scales all lives and depths that were inspected; outputs that it has no effect on say
-    nothing of it.
+    One that scales all lives and depths that were inspected, and that no other output depends on:
+    that would keep the values computed with the input as drawn.
     """
     inputs, levels = inputs_of(rows), levels_of(rows)
-    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
-    if not scaled:
-        return None
-    common = [free_scales(inputs, look.declared) for look in scaled]
-    names = [name for name in common[0] if all(name in one for one in common)]
-    names = [name for name in names if levels[name] in (SHARED, OWN)]
+    scaled, common = _scaled(inputs, looks)
+    names = [name for name in _candidates(rows, inputs, looks) if not _otherwise(rows, name)]
     if not names:
         return None
 
@@ -78,6 +75,31 @@ def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> Scale | None:
     best = max(names, key=lambda name: (levels[name] == SHARED, spread(name)))
     exponents = {look.name: one[best] for look, one in zip(scaled, common, strict=True)}
     return Scale(best, levels[best], exponents, inputs.values[best], inputs)
+
+
+def not_integrated(rows: xr.Dataset, looks: Sequence[Look]) -> Iterator[str]:
+    """Yield which inputs scale what was inspected, but are not integrated since they do more."""
+    for name in _candidates(rows, inputs_of(rows), looks):
+        if others := _otherwise(rows, name):
+            verb = "depends" if len(others) == 1 else "depend"
+            yield f"{name} is not integrated: {' and '.join(others)} {verb} on it otherwise."
+
+
+def _otherwise(rows: xr.Dataset, name: str) -> list[str]:
+    return list(dependent_outputs(rows, name))
+
+
+def _scaled(inputs: Inputs, looks: Sequence[Look]) -> tuple[list[Look], list[dict[str, float]]]:
+    """Return the lives and depths that were inspected, and what scales each."""
+    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
+    return scaled, [free_scales(inputs, look.declared) for look in scaled]
+
+
+def _candidates(rows: xr.Dataset, inputs: Inputs, looks: Sequence[Look]) -> list[str]:
+    """Return the inputs that scale all lives and depths that were inspected."""
+    common, levels = _scaled(inputs, looks)[1], levels_of(rows)
+    names = [name for name in (common[0] if common else ()) if all(name in one for one in common)]
+    return [name for name in names if levels[name] in (SHARED, OWN)]
 
 
 def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """What inspections looked at, in the rows of a result."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,13 +101,32 @@ class Look:
         return self.depths.settled[rows]
 
 
-def look_at(ds: xr.Dataset, one: Inspection) -> Look:
+@dataclass(frozen=True)
+class Quantities:
+    """What of a result can be inspected.
+
+    Attributes
+    ----------
+    known : dict of str to Element
+    depths : dict of str to Look
+    """
+
+    known: Mapping[str, Element]
+    depths: Mapping[str, Look]
+
+
+def quantities_of(ds: xr.Dataset) -> Quantities:
+    """Return what can be inspected of a result, or of some rows of one."""
+    known = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
+    return Quantities(known, dict(_depths(ds)))
+
+
+def look_at(quantities: Quantities, one: Inspection) -> Look:
     """Return what an inspection looked at.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        A result, or some rows of one.
+    quantities : Quantities
     one : Inspection
 
     Returns
@@ -119,8 +138,7 @@ def look_at(ds: xr.Dataset, one: Inspection) -> Look:
     InputError
         When the result has no such quantity, or it cannot be inspected in this way.
     """
-    known = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
-    depths = dict(_depths(ds))
+    known, depths = quantities.known, quantities.depths
     if one.output in known:
         element = known[one.output]
         _check_output(element, one)

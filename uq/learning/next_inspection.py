@@ -10,7 +10,7 @@ import xarray as xr
 from uq.contract import Floats
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, Kind
-from uq.learning.looks import look_at
+from uq.learning.looks import look_at, quantities_of
 from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
@@ -107,9 +107,9 @@ def worth(
     weights = weights_of(rows)
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
     target = _logarithm(np.where(element.censored, np.nan, element.values))
-    found = {}
+    quantities, found = quantities_of(rows), {}
     for time in times or (None,):
-        look = look_at(rows, Inspection("", output, Kind.MEASURED, time, 1e-300, cv=cv))
+        look = look_at(quantities, Inspection("", output, Kind.MEASURED, time, 1e-300, cv=cv))
         truth = look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0]
         if negative := np.mean(truth < 0):
             raise InputError(

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -13,12 +13,12 @@ from uq.contract import Floats, Mask
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.cut_cells import edges_of_rows
+from uq.learning.cut_cells import Allowed, edges_of_rows
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
-from uq.learning.looks import Look, look_at
+from uq.learning.looks import Look, look_at, quantities_of
 from uq.learning.own_rows_out import log_worth
 from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
 from uq.learning.unit_likelihood import UnitLikelihoods
@@ -159,7 +159,8 @@ def posterior(
         apart = log_worth(found, likelihoods, place, scale is None or scale.is_own)
         why = "" if np.isfinite(apart).any() else NO_OTHERS.format(len(labels) + 1)
         logs = logs if why else apart
-    everyone = _uninspected(logs, found, scale, place, replicates_of(rows))
+    runs = partial(_allowed, likelihoods, world, worlds, scale) if scale else None
+    everyone = _uninspected(logs, found, scale, place, replicates_of(rows), runs)
     return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance, why)
 
 
@@ -181,10 +182,10 @@ def on_wide_grids(found: Posterior) -> tuple[list[Grid], Evidence]:
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
     faults = []
     found = {}
-    known = cache(lambda one: look_at(rows, one))
+    quantities = quantities_of(rows)
     for one in inspections:
         try:
-            found[one] = known(one)
+            found[one] = look_at(quantities, one)
         except InputError as error:
             faults += [f"{one.where}: unit {one.unit}: {line}" for line in error.lines]
     if faults:
@@ -220,20 +221,41 @@ def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
     return [everything[turn == i] for i in range(inspected)]
 
 
+def _allowed(
+    likelihoods: UnitLikelihoods, world: Rows, worlds: int, scale: Scale, places: Floats
+) -> Mask:
+    """Return where inspections allow values of an input that the units of a world share, (n,)."""
+    values, possible = scale.quantiles(places)[:, None], np.ones(worlds, dtype=bool)
+    for unit, rows in enumerate(likelihoods.blocks):
+        agree = likelihoods.of(unit, values[rows])[:, 0] > -np.inf
+        possible &= np.bincount(world[rows], agree, worlds) > 0
+    return np.asarray(possible[world])
+
+
 def _uninspected(
-    log_rows: Floats, found: Evidence, scale: Scale | None, place: Nesting, part: Replicates
+    log_rows: Floats,
+    found: Evidence,
+    scale: Scale | None,
+    place: Nesting,
+    part: Replicates,
+    allowed: Allowed | None,
 ) -> Weighted:
     """Return all rows, as units that share their world with the inspected ones.
 
     Rows of a sample with the same law of the integrated input have the same value of it.
     """
     rows = np.arange(len(log_rows))
-    weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
     if scale is None or scale.is_own:
+        weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
         return Weighted(rows, weights, None if scale is None else scale.drawn)
+    grid = found.grids[0]
+    edges = np.broadcast_to(grid.edges, (len(rows), len(grid.edges)))
+    if allowed is not None and np.isneginf(log_rows).any():
+        edges = edges_of_rows(grid, log_rows > -np.inf, allowed)
+        log_rows = log_rows + np.log(np.diff(edges) / np.diff(grid.edges))
+    weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
     worth = np.exp(log_rows - log_rows.max())
     at = in_order(place.samples)[place.sample]
-    edges = np.broadcast_to(found.grids[0].edges, (len(rows), len(found.grids[0].edges)))
     drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
     return Weighted(rows, weights, scale.quantiles(drawn))
 

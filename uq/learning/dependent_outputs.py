@@ -1,12 +1,13 @@
-"""Outputs that inspections leave as computed, although the integrated input has moved."""
+"""Outputs that depend on an input otherwise than by scaling with it, as the rows show."""
 
 from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
 
-from uq.learning.integrated import free_scales
+from uq.learning.importance import own_rows
 from uq.population.row_inputs import inputs_of
+from uq.population.scaling import scalers
 from uq.rows.elements import elements_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import outputs_of
@@ -15,7 +16,7 @@ _CHANCE = 1e-6
 _FEWEST = 20
 
 
-def unchanged(rows: xr.Dataset, name: str) -> Iterator[str]:
+def dependent_outputs(rows: xr.Dataset, name: str) -> Iterator[str]:
     """Yield the outputs that depend on an input but do not scale with it.
 
     Parameters
@@ -23,7 +24,7 @@ def unchanged(rows: xr.Dataset, name: str) -> Iterator[str]:
     rows : xarray.Dataset
         Before the inspections.
     name : str
-        The integrated input; "" for none.
+        An input.
 
     Yields
     ------
@@ -33,12 +34,11 @@ def unchanged(rows: xr.Dataset, name: str) -> Iterator[str]:
     """
     from scipy import stats
 
-    if not name:
-        return
+    rows = own_rows(rows)
     inputs, place = inputs_of(rows), nesting_of(rows)
     shared = len(np.unique(inputs.values[name])) <= place.samples < len(place.sample)
     for output, declared in outputs_of(rows).items():
-        if declared.is_category or name in free_scales(inputs, declared):
+        if declared.is_category or name in scalers(inputs, declared):
             continue
         for element in elements_of(rows, [output]):
             of, values = inputs.values[name], np.where(element.censored, np.nan, element.values)
