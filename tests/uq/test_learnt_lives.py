@@ -77,9 +77,12 @@ def test_without_inspections_it_is_the_law_of_the_study(exponent):
 def test_an_input_on_which_other_outputs_depend_is_not_integrated():
     """They would keep the values for the input as drawn: here the life, as another output."""
     rows, told = wear(samples=500).copy(), read_tables(measured(5e5))
-    assert posterior(rows, told).scale.name == "depth"
+    rows["life_error"] = 1e-3 * rows["life"]
+    kept = {name: one for name, one in rows["life"].attrs.items() if name != "scales"}
+    rows["life_error"].attrs = kept
+    assert posterior(rows, told).scale.name == "depth"  # errors scale with their lives
     rows["power"] = rows["life"] * 2
-    rows["power"].attrs = {k: v for k, v in rows["life"].attrs.items() if k != "scales"}
+    rows["power"].attrs = kept
     assert list(dependent_outputs(rows, "depth")) == ["power"]
     found = posterior(rows, told)
     assert found.scale is None

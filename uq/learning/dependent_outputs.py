@@ -10,7 +10,7 @@ from uq.population.row_inputs import inputs_of
 from uq.population.scaling import scalers
 from uq.rows.elements import elements_of
 from uq.rows.nesting import nesting_of
-from uq.rows.variables import outputs_of
+from uq.rows.variables import error_name, outputs_of
 
 _CHANCE = 1e-6
 _FEWEST = 20
@@ -37,8 +37,11 @@ def dependent_outputs(rows: xr.Dataset, name: str) -> Iterator[str]:
     rows = own_rows(rows)
     inputs, place = inputs_of(rows), nesting_of(rows)
     shared = len(np.unique(inputs.values[name])) <= place.samples < len(place.sample)
-    for output, declared in outputs_of(rows).items():
-        if declared.is_category or name in scalers(inputs, declared):
+    known = outputs_of(rows)
+    scaled = {one for one, declared in known.items() if name in scalers(inputs, declared)}
+    scaled |= {error_name(one) for one in scaled}
+    for output, declared in known.items():
+        if declared.is_category or output in scaled:
             continue
         for element in elements_of(rows, [output]):
             of, values = inputs.values[name], np.where(element.censored, np.nan, element.values)
