@@ -37,10 +37,10 @@ def dependent_outputs(rows: xr.Dataset, name: str) -> Iterator[str]:
     rows = own_rows(rows)
     inputs, place = inputs_of(rows), nesting_of(rows)
     shared = len(np.unique(inputs.values[name])) <= place.samples < len(place.sample)
-    known = outputs_of(rows)
-    scaled = {one for one, declared in known.items() if name in scalers(inputs, declared)}
+    outputs = outputs_of(rows)
+    scaled = {one for one, declared in outputs.items() if name in scalers(inputs, declared)}
     scaled |= {error_name(one) for one in scaled}
-    for output, declared in known.items():
+    for output, declared in outputs.items():
         if declared.is_category or output in scaled:
             continue
         for element in elements_of(rows, [output]):
