@@ -76,14 +76,14 @@ def test_columns_in_any_order_and_names_with_commas():
         "A,1,depth,below,1e-5,,,1e-5,2e-5": (
             "value = 1e-05: leave it out beside a curve of detection"
         ),
-        "A,,life,survived,,,,,": "time is missing: a life has survived by a time [s]",
+        "A,,life,survived,,,,,": "time is missing: a life has survived by a time",
         "A,1,life,ended,3,,,,": "value = 3: leave it out where a unit has ended",
         "A,-1,life,ended,,,,,": "time = -1: must not be negative",
         "A,soon,life,ended,,,,,": (
-            "time = soon: must be a finite number of seconds since the unit's life began"
+            "time = soon: must be a finite number, in the unit of the life, since that began"
         ),
         "A,2026-03-01,life,ended,,,,,": (
-            "time = 2026-03-01: must be a finite number of seconds since the unit's life began"
+            "time = 2026-03-01: must be a finite number, in the unit of the life, since that began"
         ),
         "A,1,depth,below,80 um,,,,": "value = 80 um: must be a finite number",
         "A\x07,1,life,ended,,,,,": "unit = 'A\\x07': must consist of printable characters",

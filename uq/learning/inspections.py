@@ -40,7 +40,7 @@ class Inspection:
         ``measured``: the value; ``below``, ``above``: on which side of the value it lies, or
         whether it was not or was detected; ``survived``, ``ended``: whether the life had ended.
     time : float or None
-        [s], from the beginning of the life.
+        From the beginning of the life, in its unit.
     value : float or None
         In the unit of the output.
     sd : float or None
@@ -194,8 +194,8 @@ def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list
             try:
                 numbers[name] = _number(cells[name])
             except (ValueError, OverflowError):
-                unit = " of seconds since the unit's life began" if name == "time" else ""
-                faults.append(f"{name} = {cells[name]}: must be a finite number{unit}")
+                since = ", in the unit of the life, since that began" if name == "time" else ""
+                faults.append(f"{name} = {cells[name]}: must be a finite number{since}")
     if "kind" in cells and cells["kind"] not in list(Kind):
         allowed = f"(allowed: {', '.join(Kind)})"
         like = nearest(cells["kind"], list(Kind))
@@ -227,7 +227,7 @@ def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
         yield f"time = {numbers['time']:g}: must not be negative"
     if kind in OUTCOMES:
         if "time" not in given:
-            yield f"time is missing: a life has {kind} by a time [s]"
+            yield f"time is missing: a life has {kind} by a time"
         for name in given:
             if name != "time":
                 yield f"{name} = {numbers[name]:g}: leave it out where a unit has {kind}"
