@@ -1,6 +1,6 @@
 """What is secondary in the answer, as HTML to be unfolded."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable
 
 from markupsafe import Markup
 
@@ -27,17 +27,20 @@ def items(lines: Iterable[str]) -> Markup:
 def below(one: Advice) -> Markup:
     """Return what belongs to a piece of advice: other tolerances, what else is not settled."""
     if len(one.tolerances) > 1:
-        return folded("Half the scatter of each input", _tolerances(one.tolerances))
+        return folded("Half the scatter of each input", _tolerances(one))
     return folded("What else is not settled", items(one.others))
 
 
-def _tolerances(known: Sequence[Tightened]) -> Markup:
+def _tolerances(advice: Advice) -> Markup:
     """Return a table: what half the scatter of each input would make of each number."""
+    known, above = advice.tolerances, {advice.key, *(one.key for one in advice.alike)}
     numbers = {one.what: one for one in known}
     lines = [["As studied", *(_number(one.text(one.before)) for one in numbers.values())]]
     for inputs in dict.fromkeys(one.inputs for one in known):
         own = {one.what: one for one in known if one.inputs == inputs}
-        cells = (_cell(own[what]) if what in own else Markup("<td></td>") for what in numbers)
+        cells = (
+            _cell(own[what], above) if what in own else Markup("<td></td>") for what in numbers
+        )
         lines.append([capitalized(called_together(inputs)), *cells])
     head = Markup("").join(
         Markup('<th scope="col" class="number">{}</th>').format(
@@ -57,8 +60,10 @@ def _number(text: str) -> Markup:
     return Markup('<td class="number">{}</td>').format(_shown(text))
 
 
-def _cell(one: Tightened) -> Markup:
-    number = keyed.keyed(one.text(one.after), one.key)
+def _cell(one: Tightened, above: Collection[str]) -> Markup:
+    """Return a number with its interval, and with its key where no sentence above has it."""
+    text = one.text(one.after)
+    number = _shown(text) if one.key in above else keyed.keyed(text, one.key)
     return Markup('<td class="number">{}<small>{}</small></td>').format(
         number, _shown(one.interval)
     )
