@@ -158,8 +158,8 @@ def _look(quantities: Quantities, output: str, time: float | None, weights: Floa
     if (share := np.average(unknown[:, 0], weights=weights)) > _UNKNOWN:
         raise InputError(
             f"uq next-inspection: by {beside(number(time), look.time_unit)}, {percent(share)} of"
-            f" the rows have worn beyond the last depth of the result, {last:g} {look.unit}, or were"
-            " censored before"
+            f" the rows have worn beyond the last depth of the result, {last:g} {look.unit}, or"
+            " were censored before"
         )
     return look
 
