@@ -129,7 +129,7 @@ def test_what_contradicts_the_rows_is_refused(result, tmp_path):
     target = tmp_path / "posterior.nc"
     with pytest.raises(RunError, match="unit A: .*(Pareto k|fewer than 5 samples)"):
         update(result, measured(1e8, cv=0.01), target)
-    with pytest.raises(InputError, match="no row of this result agrees with the inspections"):
+    with pytest.raises(InputError, match=r"1 \(unit A, life, ended\): no row .* agrees with it"):
         update(result, [{"unit": "A", "output": "life", "kind": "ended", "time": 1.0}], target)
     assert everything(tmp_path) == []
 
