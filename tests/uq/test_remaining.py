@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from learnt_studies import DEPTH, RATE, measured, wear
+from computed import computed, study_of
+from learnt_studies import DEPTH, RATE, lognormal, measured, wear
 from scipy.stats import lognorm
 from worn_studies import RATE as WEAR
 from worn_studies import pads
@@ -114,6 +115,21 @@ def test_lives_in_several_units_count_each_in_its_own(uq, folder):
     with pytest.raises(InputError, match=r"time = 3: leave it out: noise is not a life, and lives"):
         update(ds, [timed])
     assert lives_of(update(pads(300), [timed]))["A", LEFT].seen == 3.0  # where all are in hours
+
+
+def test_rows_that_are_all_one_law_have_no_interval():
+    """Nothing but the integrated input is uncertain: rows tell its law, and nothing else."""
+    told = [said("A", "survived", 7e5), said("A", "ended", 7.7e5)]
+    study = {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 500, "seed": 1},
+        "uncertain": {"depth": lognormal(*DEPTH)},
+        "fixed": {"rate": RATE[0]},
+    }
+    left = lives_of(update(computed(study_of(study)), told))[ANY, "life"].life
+    law = lognorm(DEPTH[1], scale=DEPTH[0] / RATE[0])
+    for p, one in left.items():
+        assert one.value == pytest.approx(law.isf((1 - p) * law.sf(7.7e5)) - 7.7e5, rel=1e-3)
 
 
 @pytest.mark.parametrize("time", [-1.0, np.nan, np.inf])

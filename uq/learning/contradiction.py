@@ -86,4 +86,4 @@ def _worlds(rows: Mask, world: NDArray[np.intp], count: int, own: bool) -> Mask:
     """Return in which worlds, with which values of an input that all share, some row agrees."""
     found = np.zeros((count, rows.shape[1]), dtype=bool)
     np.logical_or.at(found, world, rows)
-    return found.any(axis=1, keepdims=True) if own else found
+    return np.asarray(found.any(axis=1, keepdims=True)) if own else found
