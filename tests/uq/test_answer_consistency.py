@@ -7,7 +7,8 @@ from math import isfinite
 import answered
 import numpy as np
 import pytest
-from answer_checks import Checker, denied_by_each_other
+from answer_checks import Checker
+from answer_contradictions import denied_by_each_other
 from computed import asking, computed, kinds, linear, study_of, with_output
 
 from uq.conclusions.answer import answer

@@ -18,7 +18,7 @@ from uq.intervals import (
     upper_probability,
 )
 from uq.population.few_rows import fewest_rows, hits_behind
-from uq.population.means import pulls, trusted, weighted_share
+from uq.population.means import EXACT, pulls, trusted, weighted_share
 from uq.roots import root
 from uq.rows.element import Element
 
@@ -207,7 +207,9 @@ class Population:
 
         def end(start: float, unit: float, name: str) -> float:
             def excess(x: float) -> float:
-                return float(getattr(share(exp(x)), name)) - probability
+                found = share(exp(x))
+                exact = found.reason == EXACT  # its interval is a point
+                return float(found.value if exact else getattr(found, name)) - probability
 
             below = excess(start) < 0
             step = unit if below else -unit
