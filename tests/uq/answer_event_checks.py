@@ -60,6 +60,23 @@ def denied_advice(ds, advice, found):
         yield one.sentence
     if ends and not ends[0] <= then <= ends[1]:
         yield one.sentence
-    fresh = uq.trace(ds, one.key)["value"] * (100 if one.is_share else 1 / one.unit.per)
-    if abs(then - fresh) > 0.01 * abs(fresh) + 0.06:
-        yield f"{one.sentence} {fresh}"
+    for each in (one, *advice.tolerances):
+        per = 100 if each.is_share else 1 / each.unit.per
+        fresh, shown = uq.trace(ds, each.key)["value"] * per, numbers_in(each.text(each.after))[0]
+        if abs(shown - fresh) > 0.01 * abs(fresh) + 0.06:
+            yield f"{each.sentence} {fresh}"
+    yield from _not_alike(advice)
+
+
+def _not_alike(advice):
+    """Yield tolerances that are said to help as much as the best one, and do not."""
+    best = advice.tightened
+    for each in advice.alike:
+        gains = [abs(one.after.value - one.before.value) for one in (best, each)]
+        wide = max((one.after.high - one.after.low) for one in (best, each))
+        if (
+            each.what != best.what
+            or gains[1] > gains[0]
+            or gains[0] - gains[1] > gains[0] / 3 + wide
+        ):
+            yield advice.also

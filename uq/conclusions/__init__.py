@@ -16,8 +16,11 @@ Reading order; a module imports only those above it:
     quantities      what can be promised of an output, its range and its probabilities
     settling        what is not settled, and how many rows would settle it
     tightening      what a tighter tolerance would change, from the rows that exist
+    tolerances      which tolerance to tighten
     advice          what to do, by rules
     answer          all of it, of a result
     as_json         its numbers in plain data, sentence by sentence
-    page            the same as HTML
+    keyed           its sentences as HTML, each with the keys of its numbers
+    folds           what is secondary, to be unfolded
+    page            the answer as HTML
 """

@@ -14,13 +14,13 @@ from uq.conclusions.quantities import quantities
 from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, Unsettled, bounds_unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
-from uq.conclusions.tightening import changes_of, tightened
+from uq.conclusions.tightening import changes_of
+from uq.conclusions.tolerances import tighten, twins
 from uq.conclusions.words import (
     called,
     called_together,
     sentence,
     share_text,
-    twin_of,
 )
 from uq.keys import key_of
 from uq.rows.commands import file_of, model_option
@@ -48,11 +48,11 @@ def advise(
     """
     if has_weights(findings.ds):
         return
-    tighten = _tighten if weighed else _ask
+    how = _tighten if weighed else _ask
     found = [
         *_mend(findings, answered),
         *_measure(findings, answered),
-        *([*tighten(findings, answered)] or _keep(answered)),
+        *([*how(findings, answered)] or _keep(answered)),
         *_add_rows(findings, answered),
     ]
     if answered and all(one.rule in ("known", "tighten", "keep") for one in found):
@@ -116,16 +116,8 @@ def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
 
 def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     leader, _ = _leading(answered)
-    if leader is None:
-        return
-    for inputs in dict.fromkeys((leader.inputs, _twins(leader), leader.inputs[:1])):
-        found = list(tightened(findings.ds, answered[0], inputs))
-        if any(not one.reason for one in found):  # the rows show what these would change
-            break
-    known = [one for one in found if not one.reason and one.helps and one.is_seen]
-    unknown = [one for one in found if one.reason]
-    for one in (known or unknown)[:1]:
-        yield Advice("tighten", one.sentence, one.inputs, tightened=one, key=one.key)
+    if leader is not None:
+        yield from tighten(findings.ds, answered[0], leader)
 
 
 def _keep(answered: Sequence[Quantity]) -> Iterator[Advice]:
@@ -146,16 +138,11 @@ def _keep(answered: Sequence[Quantity]) -> Iterator[Advice]:
         )
 
 
-def _twins(leader: Contribution) -> tuple[str, ...]:
-    """Return the first of the inputs that lead, and its twins among them."""
-    return tuple(one for one in leader.inputs if twin_of(one) == twin_of(leader.inputs[0]))
-
-
 def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     leader, _ = _leading(answered)
     if leader is None:
         return
-    inputs = _twins(leader)  # of many at once, the rows may show nothing
+    inputs = twins(leader)  # of many at once, the rows may show nothing
     changes = changes_of(findings.ds, answered[0], inputs)
     if not changes:
         return

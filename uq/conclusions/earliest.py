@@ -15,7 +15,7 @@ from uq.analysis.earliest import (
     regimes_of_first,
 )
 from uq.analysis.findings import Findings
-from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
+from uq.conclusions.words import Unit, called, joined, sentence, share_text, unit_for
 from uq.errors import InputError
 from uq.intervals import Replicates
 from uq.rows.commands import file_of, model_option
@@ -71,7 +71,7 @@ class Earliest:
             for number, life in zip(self.rows, self.lives, strict=True)
         ]
         rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
-        return sentence(f"{rows} {_and(named)} {verb} first")
+        return sentence(f"{rows} {joined(named)} {verb} first")
 
     @property
     def why(self) -> str:
@@ -83,7 +83,7 @@ class Earliest:
         if not self.inputs:
             return f"No input distinguishes {who} measurably from the others."
         pairs = list(zip(self.inputs, self.units, strict=True))[:_MOST_INPUTS]
-        text = f"{who} have {_and([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
+        text = f"{who} have {joined([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
         return sentence(text)
 
     @property
@@ -160,7 +160,3 @@ def _in_words(one: Apart, unit: Unit, is_first: bool) -> str:
     of_others = " of the others" if is_first else ""
     against = f"{unit.number(one.median)} against {unit.text(one.others)}"
     return f"a {side} {name} (median {against}{of_others})"
-
-
-def _and(words: list[str]) -> str:
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -1,6 +1,6 @@
 """Sentences of the answer as HTML, each with the keys of its numbers for ``uq trace``."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from markupsafe import Markup, escape
 
@@ -130,18 +130,11 @@ def effect(one: Quantity, number: int, of: Contribution) -> Markup:
 def advice(one: Advice) -> Markup:
     """Return one thing to do."""
     if one.key:
-        return keyed(one.text, one.key)
+        also = keyed(one.also, *(each.key for each in one.alike))
+        return Markup(" ").join(filter(None, (keyed(one.said, one.key), also)))
     if one.rows is not None:
-        return keyed(one.text, _answer("advice", one.rule, "rows")) + _folded(one.others)
-    return escape(plain(printed(one.text)))
-
-
-def _folded(texts: Sequence[str]) -> Markup:
-    """Return what is not settled either, to be unfolded; "" where there is nothing."""
-    items = Markup("").join(Markup("<li>{}</li>").format(plain(printed(one))) for one in texts)
-    title = "What else is not settled"
-    whole = Markup("<details><summary>{}</summary><ul>{}</ul></details>").format(title, items)
-    return whole if items else Markup()
+        return keyed(one.said, _answer("advice", one.rule, "rows"))
+    return escape(plain(printed(one.said)))
 
 
 def _key(one: Quantity, *path: str) -> str:

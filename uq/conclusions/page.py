@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
-from uq.conclusions import bars, keyed
+from uq.conclusions import bars, folds, keyed
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Answer, Quantity
 from uq.conclusions.words import called, sentence
@@ -164,7 +164,9 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
 def _to_do(answer: Answer) -> Markup:
     if not answer.advice:
         return Markup()
-    items = (Markup("<li>{}</li>").format(keyed.advice(one)) for one in answer.advice)
+    items = (
+        Markup("<li>{}{}</li>").format(keyed.advice(one), folds.below(one)) for one in answer.advice
+    )
     title = Markup("<h3>What to do</h3>")
     return _block("todo", [title, Markup("<ul>{}</ul>").format(Markup("").join(items))])
 

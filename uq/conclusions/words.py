@@ -92,7 +92,12 @@ def called_together(names: Sequence[str]) -> str:
     for name in names:
         groups.setdefault(twin_of(name), []).append(name)
     words = [_twins_called(stem, own) for stem, own in groups.items()]
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    return joined(words)
+
+
+def joined(words: Sequence[str], last: str = "and") -> str:
+    """Return words as a list: ``a, b and c``; "" without any."""
+    return f" {last} ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def _twins_called(stem: str, names: Sequence[str]) -> str:
