@@ -151,6 +151,22 @@ def test_a_model_error_widens(result):
     assert with_error > 1.05 * without
 
 
+def test_a_model_error_blurs_a_limit_but_not_what_was_seen_to_run(result):
+    """A limit of the life at the same time is blurred; see the guide."""
+    seen = {"unit": "A", "output": "life", "kind": "survived", "time": 1e6}
+    limit = {"unit": "A", "output": "life", "kind": "above", "value": 1e6}
+    found = {
+        (told["kind"], cv): as_unit(update(result, [told], model_error=cv), "A")
+        for told in (seen, limit)
+        for cv in (0.0, 0.3)
+    }
+    early = {
+        key: np.average(one["life"] < 1e6, weights=one["weight"]) for key, one in found.items()
+    }
+    assert early["survived", 0.0] == early["survived", 0.3] == early["above", 0.0] == 0
+    assert early["above", 0.3] == pytest.approx(0.145, abs=0.02)
+
+
 def test_the_life_left_is_that_of_a_unit_that_runs(result):
     lived = [{"unit": "A", "output": "life", "kind": "survived", "time": 1e6}]
     found = learnt_json(learnt(update(result, lived), [2e6]))["units"]["A"]["life"]
