@@ -120,6 +120,14 @@ def test_it_is_written_as_it_is(result, tmp_path):
     assert made["weight"].sizes == {"sample": 6000} and "ledger" in made.attrs
 
 
+def test_many_units_take_little_room_on_disk(tmp_path):
+    """Of a sample each row stands for one of them, and is left out of the others."""
+    ds = wear(samples=200, rate="shared", units=10)
+    made = update(ds, measured(*[8e5] * 10), tmp_path / "posterior.nc")
+    assert (tmp_path / "posterior.nc").stat().st_size < made.nbytes / 5
+    assert open_result(tmp_path / "posterior.nc").identical(made)
+
+
 def test_more_units_than_a_sample_has_are_refused(result):
     with pytest.raises(InputError, match=r"2 units are inspected, .* has 1: set \[design\] units"):
         update(result, measured(5e5, 6e5))
