@@ -172,6 +172,12 @@ def test_without_an_event_there_is_a_sentence():
     assert "not an event of an output" in entry_of(decided(), CONDITIONAL, "z")["refused"]
 
 
+def test_without_a_row_there_is_another():
+    ds = with_status(decided(), slice(None), Status.NON_FINITE)
+    with pytest.raises(InputError, match="every row failed"):
+        sensitivities(ds.assign(z=ds["z"] * np.nan), TARGET)
+
+
 def test_without_openturns_there_is_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "openturns", None)
     refused = entry_of(decided(), TARGET)["refused"]

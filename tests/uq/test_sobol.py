@@ -132,6 +132,16 @@ def test_an_input_without_any_effect_is_zero_without_interval():
     assert entry["notes"] == ["no effect in any row, hence no interval: x3"]
 
 
+def test_a_share_that_all_replicates_agree_on_says_why_it_has_no_interval():
+    ds = linear("saltelli", samples=256, replicates=4)
+    entry = indices(with_output(ds, "side", np.where(ds["x1"] > 0.5, 1.0, 0.0)))["outputs"]["side"]
+    assert entry["ST"]["x1"] == {"value": 1.0, "low": None, "high": None}
+    assert entry["notes"] == [
+        "no effect in any row, hence no interval: x2, x3, x4",
+        "the same ST in each replicate, hence no interval: x1",
+    ]
+
+
 def test_a_replicate_without_rows_takes_the_intervals_away():
     ds = linear("saltelli", samples=16, replicates=4)
     ds["y"][ds["replicate"].values == 2] = np.nan
