@@ -59,6 +59,9 @@ def test_columns_in_any_order_and_names_with_commas():
         "A,1,depth,measured,,1e-5,,,": "value is missing: what was measured",
         "A,1,depth,measured,1e-4,1e-5,0.1,,": "sd and cv: give one of them",
         "A,1,depth,measured,1e-4,0,,,": "sd = 0: must be above 0",
+        "A,1,depth,measured,1e-4,,10,,": (
+            "cv = 10: must be a coefficient of variation, such as 0.1"
+        ),
         "A,1,depth,measured,-1e-4,,0.1,,": (
             "value = -0.0001: must be above 0 with a cv; or give an sd"
         ),

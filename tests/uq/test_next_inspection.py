@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 from command_line import strict_json
+from learnt_studies import DEPTH as LEARNT_DEPTH
+from learnt_studies import RATE as LEARNT_RATE
+from learnt_studies import measured, wear
 from worn_studies import RATE, pads
 
 from uq.errors import InputError
 from uq.exploring.updating import update
 from uq.learning.next_inspection import worth
+from uq.learning.result import as_unit
 from uq.store.files import write_result
 
 DEPTH, LIFE = "depth[side=left]", "life[side=left,depth=100.0]"
@@ -33,6 +37,21 @@ def test_a_measurement_of_what_all_share_narrows_it_as_in_closed_form(worn):
 def test_what_is_each_unit_s_own_is_not_narrowed():
     found = worth(pads(level="own", samples=1000), DEPTH, (20.0,), (1, 20), life=LIFE)
     assert found.spread < 0.1 and not found.narrowing[20.0, 20] > 0.3
+
+
+def test_repeats_are_no_more_units():
+    """Depths scatter between units alone: that a unit has three rows tells no more of it."""
+    found = worth(wear(samples=2000, rate="shared", units=2, repeats=3), "life", cv=0.1)
+    noise = LEARNT_DEPTH[1] ** 2 + np.log1p(0.1**2)
+    exact = 1 - (noise / (LEARNT_RATE[1] ** 2 + noise)) ** 0.5
+    assert found.spread == pytest.approx(LEARNT_RATE[1], rel=0.03)
+    assert found.narrowing[None, 1] == pytest.approx(exact, abs=0.02)
+
+
+def test_rows_as_those_of_one_unit_are_no_question():
+    after = update(wear(samples=300, rate="shared", units=2), measured(8e5))
+    with pytest.raises(InputError, match="the rows are those of unit A, not of more"):
+        worth(as_unit(after, "A"), "life")
 
 
 def test_times_are_in_the_unit_of_the_life(uq, folder, worn):

@@ -146,6 +146,14 @@ def test_what_hardly_runs_on_has_no_life_left(worn):
     assert one.life == {} and "hardly a row in which it still runs" in one.runs.reason
 
 
+def test_units_that_may_be_one_are_named():
+    told = [said(unit, "survived", 2e5) for unit in ("A 07", "a07", "A70")]
+    notes = learnt(update(wear(samples=200, rate="shared", units=3), told)).notes
+    assert [note for note in notes if "taken" in note] == [
+        "Warning: 'A 07' and 'a07' are taken for two units."
+    ]
+
+
 def test_json_names_the_unit(worn):
     found = learnt_json(learnt(update(worn, [said("A", "survived", 60.0, LEFT)]), [150.0]))
     assert {one["units"] for unit in found["units"].values() for one in unit.values()} == {"h"}

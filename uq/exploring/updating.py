@@ -9,7 +9,7 @@ import xarray as xr
 from uq.errors import InputError, RunError
 from uq.exploring.new_rows import Budget, enlarged, why_no_new_rows
 from uq.learning.importance import own_rows
-from uq.learning.inspections import Inspection
+from uq.learning.inspections import MOST_CV, Inspection
 from uq.learning.ledger import Given, all_of, read
 from uq.learning.looks import as_named, quantities_of
 from uq.learning.posterior import posterior
@@ -151,7 +151,7 @@ def learn(
     quantities = quantities_of(prior_of(ds))
     inspections = all_of(ds, [as_named(quantities, one) for one in new])
     cv = float(ds.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
-    if not 0 <= cv < 10:
+    if not 0 <= cv < MOST_CV:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")
     rows = independent_rows(own_rows(prior_of(ds)))
     found, kept = posterior(rows, inspections, cv), list[Path]()

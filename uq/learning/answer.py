@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
+from unicodedata import normalize
 
 import numpy as np
 import xarray as xr
@@ -90,6 +91,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         strange,
         [
             *_warnings(strange),
+            *_alike(list(found.units)),
             *not_integrated(rows, list(found.looks.values())),
             *_interpolated(found),
             *filter(None, [found.only_inspected]),
@@ -103,6 +105,15 @@ def _warnings(strange: float) -> Iterator[str]:
             f"Warning: inspections as strange as these had a probability of {percent(strange)}"
             " before; a law, the model (--model-error) or an inspection may be wrong."
         )
+
+
+def _alike(labels: Sequence[str]) -> Iterator[str]:
+    """Yield which units may be one, written in two ways."""
+    seen: dict[str, str] = {}
+    for label in labels:
+        letters = "".join(normalize("NFKC", label).casefold().split())
+        if (other := seen.setdefault(letters, label)) != label:
+            yield f"Warning: '{other}' and '{label}' are taken for two units."
 
 
 def _interpolated(found: Posterior) -> Iterator[str]:

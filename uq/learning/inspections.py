@@ -23,6 +23,9 @@ class Kind(StrEnum):
     ENDED = "ended"
 
 
+MOST_CV = 10.0
+"""Coefficient of variation that no error reaches: per cent, perhaps, or a mistake."""
+
 LIMITS = (Kind.BELOW, Kind.ABOVE)
 OUTCOMES = (Kind.SURVIVED, Kind.ENDED)
 
@@ -238,6 +241,8 @@ def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
     for name in ("sd", "cv", *_DETECTION):
         if name in numbers and not positive(numbers[name]):
             yield f"{name} = {numbers[name]:g}: must be above 0"
+    if numbers.get("cv", 0.0) >= MOST_CV:
+        yield f"cv = {numbers['cv']:g}: must be a coefficient of variation, such as 0.1"
     if numbers.get("time", 0.0) < 0:
         yield f"time = {numbers['time']:g}: must not be negative"
     if kind in OUTCOMES:

@@ -23,6 +23,7 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.rows.nesting import Nesting, nesting_of
+from uq.rows.weights import OF_UNIT
 from uq.units import beside
 from uq.wording import number, percent
 
@@ -105,7 +106,10 @@ def worth(
     """
     if why := why_no_statistics(ds):
         raise InputError(f"uq next-inspection: the rows of a '{ds.attrs['design']}' design {why}")
+    if label := ds.attrs.get(OF_UNIT):
+        raise InputError(f"uq next-inspection: the rows are those of unit {label}, not of more")
     rows = independent_rows(ds)
+    rows = rows.isel(sample=nesting_of(rows).repeat == 0)  # a unit has one life
     place = nesting_of(rows)
     if place.units < 2:
         raise InputError(
