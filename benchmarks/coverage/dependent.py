@@ -17,10 +17,11 @@ from benchmarks.coverage.dependent_effects import (
 from benchmarks.coverage.problems import Settings, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.contract import Model, Output, Parameter
+from uq.estimate import NOTHING
 from uq.indices.samples import sample_of
 from uq.intervals import scatter_interval
 from uq.methods.controlled import controlled
-from uq.methods.indices import SHAPLEY
+from uq.methods.indices import SHAPLEY, RefusedError
 from uq.methods.paths import parts_of
 from uq.methods.registry import METHODS
 
@@ -147,11 +148,17 @@ UNRAISED = "residuals without leverage"
 
 
 def of_paths_alone(ds, output):
-    """Return the Shapley effects of a result that its paths show, without a control variate."""
+    """Return the Shapley effects of a result that its paths show, without a control variate.
+
+    Empty where they do not tell the variance from zero.
+    """
     sample = sample_of(ds)
     none = np.full_like(sample.scores, np.nan)
     sample = replace(sample, values=ds[output].values, scores=none)
-    return METHODS["shapley"].indices(sample).values[SHAPLEY]
+    try:
+        return METHODS["shapley"].indices(sample).values[SHAPLEY]
+    except RefusedError:
+        return {}
 
 
 def of_residuals(ds, output):
@@ -184,7 +191,7 @@ def shapley(repetitions, cases=CASES):
             for name, value in case.truth.items():
                 if value > 0:  # else it is zero in every path
                     tally.entry(f"shapley {name}", value, ours[name])
-                    tally.estimate(f"shapley {name}", value, alone[name], ALONE)
+                    tally.estimate(f"shapley {name}", value, alone.get(name, NOTHING), ALONE)
                     if unraised:
                         tally.add(f"shapley {name}", value, *unraised[name], UNRAISED)
         lines += tally.lines()

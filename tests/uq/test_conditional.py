@@ -438,3 +438,9 @@ def test_intervals_of_dependent_effects_hold_the_truth_in_93_to_97_of_100_cases(
     assert all(line.given == 1000 for line in lines)
     assert not [line for line in lines if line.by == OURS and line.coverage[0] < LOW]
     assert not [line for line in lines if line.unexplained]
+
+
+def test_paths_alone_that_do_not_tell_the_variance_from_zero_give_nothing():
+    case = dependent.CASES["steep lognormal"]
+    ds = problems.computed(dependent.study(case.output, case.laws, case.correlations, 8))
+    assert dependent.of_paths_alone(ds, case.output) == {}
