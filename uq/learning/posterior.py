@@ -21,8 +21,9 @@ from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at, quantities_of
 from uq.learning.own_rows_out import log_worth
 from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
+from uq.learning.shared_law import SharedLaw, shared_law
 from uq.learning.unit_likelihood import UnitLikelihoods
-from uq.population.learnt_scale import SCORES
+from uq.population.shared_terms import SCORES
 from uq.population.smoothing import Smoothed, smoothed
 from uq.rows.elements import replicates_of
 from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
@@ -76,6 +77,8 @@ class Posterior:
         Of each row.
     importance : Importance
         Of each row.
+    law : SharedLaw or None
+        Of the integrated input, where it is all that units share.
     only_inspected : str
         Why no row stands for a unit that was not inspected, or "": `any_unit` then tells what
         units share, and nothing of their own.
@@ -89,6 +92,7 @@ class Posterior:
     looks: Mapping[Inspection, Look]
     world: Rows
     importance: Importance
+    law: SharedLaw | None = None
     only_inspected: str = ""
 
     @property
@@ -161,7 +165,8 @@ def posterior(
         logs = logs if why else apart
     runs = partial(_allowed, likelihoods, world, worlds, scale) if scale else None
     everyone = _uninspected(logs, found, scale, place, replicates_of(rows), runs)
-    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance, why)
+    law = shared_law(found, likelihoods) if scale and not scale.is_own and worlds == 1 else None
+    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance, law, why)
 
 
 def _units_differ(rows: xr.Dataset, scale: Scale | None) -> bool:

@@ -86,8 +86,9 @@ def _last_seen(inspections: Sequence[Inspection]) -> float:
 
 def _of_unit(rows: xr.Dataset, label: str, seen: float, by: Sequence[float]) -> Iterator[Remaining]:
     analysis = analysis_of(rows)
-    rows = rows.isel(sample=rows[WEIGHT].values > 0)
-    part = replicates_of(rows)
+    counted = rows[WEIGHT].values > 0
+    part = replicates_of_some(replicates_of(rows), counted)
+    rows = rows.isel(sample=counted)
     for element in population(rows, shown_outputs(rows, analysis)):
         if element.is_lifetime and not element.declared.success:
             times = [*by] or [t for t in analysis.thresholds.get(element.output, ()) if t > seen]
@@ -113,7 +114,7 @@ def _of_life(
         values=np.where(still, element.values, np.nan),
         censored=element.censored & still,
         failed=~still,
-        law=None if element.law is None else Surviving(element.law, element.below(seen)),
+        law=None if element.law is None else Surviving(element.law, element.below(seen), seen),
         weights=weights,
         most=element.most * still.mean() / share,
     )

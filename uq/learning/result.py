@@ -3,25 +3,32 @@
 import json
 from collections.abc import Sequence
 from hashlib import sha256
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.special import ndtri
 
 from uq.contract import Floats
 from uq.errors import InputError, choices, nearest
+from uq.inputs.conditioning import cdf_within
 from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
-from uq.population.learnt_scale import SCORES
-from uq.population.row_inputs import inputs_of
+from uq.population.row_inputs import Inputs, inputs_of
+from uq.population.shared_terms import SCORES, terms_at
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import (
     INPUT,
+    LAW_FOLLOWS,
+    LAW_PULLS,
+    LAW_SCORES,
     MOST,
     OF_UNIT,
     ONLY_INSPECTED,
+    ROWS,
     SCALE_SCORES,
     WEIGHT,
     has_weights,
@@ -31,7 +38,8 @@ from uq.wording import counted
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
 UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
-_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES)
+_LAW = (LAW_PULLS, LAW_FOLLOWS, LAW_SCORES)
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
 WORLDS = "worlds"
@@ -60,8 +68,10 @@ def as_result(
         leave, and the lives that it scales are those for these values; as computed they are kept
         with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
         of each inspected unit, one value of its law in each row; ``unit_scale_scores``
-        (inspected, sample, score): that law. Attributes: ``inspections``, and ``ledger``, a digest
-        of each.
+        (inspected, sample, score): that law. ``learnt_law_pulls`` and ``learnt_law_follows``
+        (sample, term), ``learnt_law_scores`` (score,): what the rows say together of one that all
+        units share (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a
+        digest of each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
@@ -91,6 +101,7 @@ def as_result(
         meaning = f"normal score before, of {found.scale.name} of the inspected unit"
         of_law = attrs | {"long_name": meaning}
         variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
+        variables |= _of_law(found, attrs)
         meaning = "normal score given the inspections and the rest of the row"
         ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
@@ -110,6 +121,28 @@ def as_result(
     for variable in ds.variables.values():
         variable.encoding["_FillValue"] = None
     return ds.assign_attrs(found_attrs)
+
+
+def _of_law(found: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
+    """Return what the rows say together of an input that all units share."""
+    if found.law is None:
+        return {}
+    assert found.scale is not None and found.any_unit.scale is not None
+    name = found.scale.name
+    follows = _follows(found.law.scores, found.scale.inputs, name, found.any_unit.scale)
+    of_pulls = attrs | {"long_name": f"pull on terms of the law of {name}", ROWS: len(follows)}
+    of_scores = attrs | {"long_name": f"normal score before, of {name}"}
+    return {
+        LAW_PULLS: (("sample", "term"), found.law.pulls, of_pulls),
+        LAW_FOLLOWS: (("sample", "term"), follows, attrs | {"long_name": "terms in the row"}),
+        LAW_SCORES: (SCORE, found.law.scores, of_scores),
+    }
+
+
+def _follows(law: Floats, inputs: Inputs, name: str, values: Floats) -> Floats:
+    """Return the terms of a law at values of its input, shape (n, terms)."""
+    below = cdf_within(inputs.laws[name], values, inputs.bounds[name])
+    return terms_at(law, ndtri(below))
 
 
 def prior_of(ds: xr.Dataset) -> xr.Dataset:
@@ -170,6 +203,11 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
             law = ds[UNIT_SCORES]
             attrs = law.attrs | {INPUT: name}
             rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
+        if LAW_PULLS in ds:
+            pulls, law = ds[LAW_PULLS], ds[LAW_SCORES]
+            follows = _follows(law.values, inputs_of(rows), name, rows[name].values)
+            of_rows = {LAW_PULLS: pulls, LAW_FOLLOWS: (pulls.dims, follows), LAW_SCORES: law}
+            rows = rows.assign(of_rows)
     if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
         # Rows of one sample have nothing in common: each has a value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
