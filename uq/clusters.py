@@ -25,42 +25,35 @@ class LearntTogether:
     ----------
     pulls : ndarray, shape (n, terms)
         Of all rows: the errors are their means.
-    counts : ndarray, shape (n,)
-        How much each of these counts, of mean 1.
-    follows : ndarray, shape (n, terms)
-        The terms at the value of the input in each.
     part : ndarray of int, shape (n,)
         The independent part of each.
     row : ndarray of int, shape (m,)
         Which of these the rows at hand are.
+    follows : ndarray, shape (m, terms)
+        The terms at the value of the input in each of them.
     errors : ndarray, shape (n,), optional
         What the law adds to the influence of each on the mean at hand.
     """
 
     pulls: Floats
-    counts: Floats
-    follows: Floats
     part: NDArray[np.integer]
     row: NDArray[np.intp]
+    follows: Floats
     errors: Floats | None = None
 
     def some(self, rows: Any) -> "LearntTogether":
         """Return the same for some of the rows at hand."""
-        return replace(self, row=self.row[rows])
+        return replace(self, row=self.row[rows], follows=self.follows[rows])
 
-    def of_laws(self, joint: Floats, follows: Floats) -> "LearntTogether":
-        """Return the same for a mean of numbers that are means over the law in each row.
+    def going_with(self, joint: Floats) -> "LearntTogether":
+        """Return the same for a mean that goes with the terms in another way than row by row.
 
         Parameters
         ----------
         joint : ndarray, shape (terms,)
-            The weighted mean of the terms times what the number lies above its mean.
-        follows : ndarray, shape (m, terms)
-            Means of the terms over these laws.
+            The weighted mean of the terms times what the numbers lie above their mean.
         """
-        each = self.follows.copy()
-        each[self.row] = follows
-        return replace(self, errors=self._errors(joint, each))
+        return replace(self, errors=self.pulls @ joint)
 
     def with_errors(self, influence: Floats) -> Floats:
         """Return the influence of all rows on a weighted mean, shape (n,).
@@ -70,17 +63,12 @@ class LearntTogether:
         influence : ndarray, shape (m,)
             Of the rows at hand, were the law known.
         """
-        found = self.errors
-        if found is None:
-            joint = influence @ self.follows[self.row] / len(influence)
-            found = self._errors(joint, self.follows)
-        found = found.copy()
+        errors = self.errors
+        if errors is None:
+            errors = self.pulls @ (influence @ self.follows / len(influence))
+        found = errors.copy()
         found[self.row] += influence * (len(found) / len(influence))
         return found
-
-    def _errors(self, joint: Floats, follows: Floats) -> Floats:
-        """Return what the law adds: a row does not count for its own, nor the spread of values."""
-        return np.asarray(self.pulls @ joint - self.counts * (follows @ joint))
 
 
 class Clusters(np.ndarray[Any, np.dtype[np.int64]]):

@@ -24,11 +24,14 @@ class SharedLaw(NamedTuple):
     ----------
     pulls : ndarray, shape (n, terms)
         By how much each row moves the terms of the density: errors are their means.
+    terms : ndarray, shape (g, terms)
+        At the values of the grid.
     scores : ndarray, shape (q,)
         Normal scores, by the law before the inspections, of its quantiles at `SCORES` given them.
     """
 
     pulls: Floats
+    terms: Floats
     scores: Floats
 
 
@@ -36,12 +39,12 @@ def shared_law(found: Evidence, likelihoods: UnitLikelihoods) -> SharedLaw:
     """Return what the rows say, each of which stands for every inspected unit."""
     grid, log_share = found.grids[0], found.log_worlds[0]
     share = np.exp(log_share)
-    of_values = terms(np.cumsum(share) - share / 2) * share[:, None]
+    of_values = terms(np.cumsum(share) - share / 2)
     pulls = 0.0
     for unit, rest in enumerate(found.rest):
         with np.errstate(invalid="ignore"):
             log_mean = log_share + found.log_evidence - rest[0]
         log_rows = likelihoods.of(unit, grid.values) - np.where(share > 0, log_mean, np.inf)
-        pulls = pulls + np.exp(log_rows) @ of_values
+        pulls = pulls + np.exp(log_rows) @ (share[:, None] * of_values)
     places = prior_places(grid.edges[None], share[None], special.ndtr(SCORES)[None])[0]
-    return SharedLaw(pulls - np.mean(pulls, axis=0), special.ndtri(places))
+    return SharedLaw(pulls - np.mean(pulls, axis=0), of_values, special.ndtri(places))

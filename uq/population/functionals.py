@@ -125,7 +125,7 @@ class Population:
         follows, by = (one[kept] for one in known)
         worth = weights / weights.sum()
         joint = worth @ by - (worth @ self._below(time)[kept]) * (worth @ follows)
-        return part.with_together(part.together.of_laws(side * joint, follows))
+        return part.with_together(part.together.going_with(side * joint))
 
     def _trusted(self, found: Estimate, kept: Mask) -> Estimate:
         """Return an estimate, or why the weights of the rows behind it do not allow one.

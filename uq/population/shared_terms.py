@@ -1,6 +1,7 @@
 """Terms of the law of an input that all units share: how rows follow its errors."""
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 from scipy import special
 
 from uq.contract import Floats
@@ -8,8 +9,8 @@ from uq.contract import Floats
 SCORES = np.linspace(-6.0, 6.0, 25)
 """Normal scores of the quantiles that are kept of the law of the integrated input."""
 
-_DEGREES = np.arange(1, 9)[:, None]
-"""Degrees of the polynomials of the probability below a value: what follows the input is smooth."""
+_DEGREE = 8
+"""Of the polynomials of the probability below a value: what follows the input is smooth."""
 
 _STEP = SCORES[1] - SCORES[0]
 _DENSITY = np.exp(-(SCORES**2) / 2) / np.sqrt(2 * np.pi)
@@ -17,8 +18,8 @@ _DENSITY = np.exp(-(SCORES**2) / 2) / np.sqrt(2 * np.pi)
 
 def terms(probability: Floats) -> Floats:
     """Return Legendre polynomials of mean square 1 over the probabilities, shape (n, terms)."""
-    size = np.sqrt(2 * _DEGREES + 1)
-    return np.asarray((size * special.eval_sh_legendre(_DEGREES, probability)).T)
+    size = np.sqrt(2 * np.arange(1, _DEGREE + 1) + 1)
+    return np.asarray(size * legvander(2 * probability - 1, _DEGREE)[..., 1:])
 
 
 def terms_at(law: Floats, scores: Floats) -> Floats:

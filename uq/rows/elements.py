@@ -27,7 +27,6 @@ from uq.rows.weights import (
     LAW_FOLLOWS,
     LAW_PULLS,
     ROWS,
-    WEIGHT,
     has_rounds,
     largest_weight,
     row_weights,
@@ -100,14 +99,8 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
 def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> LearntTogether:
     """Return what rows with weights have learnt of the law of an input that all units share."""
     pulls = rows[LAW_PULLS]
-    some = len(part) / pulls.attrs[ROWS]
-    return LearntTogether(
-        pulls.values * some,
-        rows[WEIGHT].values * some,
-        rows[LAW_FOLLOWS].values,
-        part,
-        np.arange(len(part)),
-    )
+    some = pulls.values * (len(part) / pulls.attrs[ROWS])
+    return LearntTogether(some, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
 
 
 def are_independent(ds: xr.Dataset) -> bool:
