@@ -10,6 +10,7 @@ Reading order; a module imports only those above it:
     contributions   what inputs contribute, with direction and size
     repeated        what the same study with another seed would most likely find
     remedies        what a tighter tolerance would change, and each piece of advice
+    limits          from which value of an input an event is rare
     earliest        which rows end first, and what distinguishes them
     parts           what the answer consists of; each part writes its sentence from its numbers
     rankings        which inputs contribute most, with direction and size

@@ -8,6 +8,7 @@ from uq import json_form
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Change, Contribution, Ranking
 from uq.conclusions.earliest import Earliest
+from uq.conclusions.limits import Limit
 from uq.conclusions.parts import Answer, Event, Quantity
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
@@ -26,10 +27,11 @@ def answer_json(found: Answer) -> dict[str, Any]:
         ``rows`` and ``others``, what else they would settle. The numbers
         of a sentence stand side by side, with the sentence, under a key of their own. An event has
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
-        input ``over``. A ranking has ``contributions``: ``inputs`` -> index, ``effects`` -> change
-        with a ``step`` of the input, in a ``unit`` or, where that is "", in that of the output. The
-        earliest rows have ``lives`` (row -> life), and the ``inputs`` that distinguish
-        them and the ``regimes`` of most of them.
+        input ``over``, and the ``limit`` of this input, ``at`` which its unwanted side becomes
+        rare, with that probability. A ranking has ``contributions``: ``inputs`` -> index,
+        ``effects`` -> change with a ``step`` of the input, in a ``unit`` or, where that is "", in
+        that of the output. The earliest rows have ``lives`` (row -> life), and the ``inputs`` that
+        distinguish them and the ``regimes`` of most of them.
     """
     return {
         "rows": found.rows,
@@ -130,7 +132,16 @@ def _event(one: Event) -> dict[str, Any]:
                 f"{name}_below": high,
             }
         found |= {"over": one.over, "parts": parts}
+    if one.limit is not None:
+        found["limit"] = _limit(one.limit)
     return found | _of_ranking(one.ranking)
+
+
+def _limit(one: Limit) -> dict[str, Any]:
+    ends = {name: json_form.number(getattr(one, name)) for name in ("at", "until")}
+    return (
+        {"sentence": one.sentence, "is_lower": one.is_lower} | ends | json_form.numbers(one.share)
+    )
 
 
 def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:

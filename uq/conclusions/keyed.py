@@ -63,7 +63,8 @@ def first(one: Quantity) -> tuple[Markup, Markup]:
     if one.first is None:
         return Markup(), Markup()
     path = _path(one, one.first)
-    return _share(one.first, path), _cause(one.first, path)
+    cause = filter(None, (_cause(one.first, path), _limit(one.first, path)))
+    return _share(one.first, path), Markup(" ").join(cause)
 
 
 def regime(one: Event, with_cause: bool = True) -> Markup:
@@ -72,7 +73,8 @@ def regime(one: Event, with_cause: bool = True) -> Markup:
 
 
 def _event(one: Event, path: Path, with_cause: bool = True) -> Markup:
-    known = [_share(one, path), _cause(one, path) if with_cause else ""]
+    known = [_share(one, path)]
+    known += [_cause(one, path), _limit(one, path)] if with_cause else []
     return Markup(" ").join(filter(None, known))
 
 
@@ -84,6 +86,11 @@ def _cause(one: Event, path: Path) -> Markup:
     settled = one.curve is not None
     key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
     return keyed(one.decided_by, _answer(*key))
+
+
+def _limit(one: Event, path: Path) -> Markup:
+    of = None if one.limit is None else "value" if one.limit.why else "at"
+    return Markup() if of is None else keyed(one.limited, _answer(*path, "limit", of))
 
 
 def _path(one: Quantity, of: Event) -> Path:

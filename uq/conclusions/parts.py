@@ -1,11 +1,12 @@
 """What the answer consists of: numbers, and the sentence that each part writes from its own."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan
 
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import Earliest
+from uq.conclusions.limits import Limit, limit_of
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
 from uq.conclusions.repeated import Repeated, repeated_quantile, repeated_share
@@ -41,6 +42,8 @@ class Event:
         Of that input.
     undefined : float
         Share of the rows in which the output is undefined, so that neither side holds.
+    limit : Limit or None
+        Of that input, beyond which its unwanted side is rare; None where no side is unwanted.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Event:
     curve: EventCurve | None = None
     over_unit: Unit = field(default_factory=Unit)
     undefined: float = 0.0
+    limit: Limit | None = None
 
     @property
     def sentence(self) -> str:
@@ -69,8 +73,23 @@ class Event:
 
     @property
     def with_cause(self) -> str:
-        """Its probability, and what decides it."""
-        return " ".join(filter(None, (self.sentence, self.decided_by)))
+        """Its probability, what decides it, and from where on it is rare."""
+        return " ".join(filter(None, (self.sentence, self.decided_by, self.limited)))
+
+    @property
+    def limited(self) -> str:
+        """From which value of the input that decides it the unwanted side is rare."""
+        return "" if self.limit is None else self.limit.sentence
+
+    def with_limit(self, more_is_better: bool) -> "Event":
+        """Return the same with the limit, where one input alone decides it."""
+        leader = None if self.ranking is None else self.ranking.leader
+        if self.curve is None or leader is None or len(leader.inputs) > 1:
+            return self
+        verb, _, rest = self.said.partition(" ")
+        unwanted = f"do not {verb} {rest}" if more_is_better else self.said
+        found = limit_of(self.curve, self.over, self.over_unit, unwanted, not more_is_better)
+        return replace(self, limit=found)
 
     @property
     def decided_by(self) -> str:
@@ -149,6 +168,12 @@ class Quantity:
             return self.is_success
         return self.wanted == "above" if self.wanted else None
 
+    def with_limits(self) -> "Quantity":
+        """Return the same with limits of the inputs that decide its events."""
+        if (more := self.wants_more) is None:
+            return self
+        return replace(self, events=tuple(one.with_limit(more) for one in self.events))
+
     @property
     def ranking_sentence(self) -> str:
         """What contributes most; "" where there is no ranking, and an event said why already."""
@@ -190,7 +215,8 @@ class Quantity:
     def head(self) -> list[str]:
         """What can be promised, of what, and its likely range, as far as they are known."""
         found = [] if self.promise is None else [self.promise.sentence]
-        found += [] if self.first is None else [self.first.sentence, self.first.decided_by]
+        if self.first is not None:
+            found += [self.first.sentence, self.first.decided_by, self.first.limited]
         found.append(sentence(self.words))
         found += [] if self.promise is None else [self.promise.why]
         found += [] if self.range is None else [self.range.sentence]

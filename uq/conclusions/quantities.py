@@ -153,7 +153,7 @@ def _quantity(
         earliest(findings, element, unit, context.replicate)
         if _may_end_badly(findings.ds, element)
         else None,
-    )
+    ).with_limits()
 
 
 def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:

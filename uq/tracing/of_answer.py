@@ -14,6 +14,7 @@ from uq.analysis.statistics.counts import never_ending
 from uq.analysis.summary import status_counts, summarise
 from uq.conclusions.answer import conclude, regimes_of
 from uq.conclusions.as_json import answer_json
+from uq.conclusions.limits import limit_of
 from uq.conclusions.parts import Answer
 from uq.conclusions.quantities import LOW, quantities, with_bounds
 from uq.conclusions.repeated import found_again
@@ -58,6 +59,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(effects) if "effects" in names else index,), ds)
     if "earliest" in names:
         return Origin((cited(inputs_apart),), ds)
+    if "limit" in names:
+        return Origin((cited(limit_of), cited(event_curve), cited(share_interval)), ds)
     if "parts" in names or "decided_by" in names:
         return Origin((cited(event_curve), cited(share_interval)), ds)
     rows = independent_rows(ds)
