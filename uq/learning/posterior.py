@@ -13,6 +13,7 @@ from uq.contract import Floats, Mask
 from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.intervals import Replicates, replicates_of_some
+from uq.learning.contradiction import contradictions
 from uq.learning.cut_cells import Allowed, edges_of_rows
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
@@ -145,7 +146,9 @@ def posterior(
         bool(scale and scale.is_own),
     )
     if not np.isfinite(found.log_evidence):
-        raise InputError("no row of this result agrees with the inspections")
+        raise InputError(
+            *contradictions(likelihoods, labels, found.grids, world, bool(scale and scale.is_own))
+        )
     part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
     units = {
         label: _inspected(found, unit, likelihoods, world, scale, part)
