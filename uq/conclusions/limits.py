@@ -107,7 +107,7 @@ def limit_of(
             why = f"whether a value of {names} lets {few} is not settled"
         return Limit(over, said, is_lower=is_lower, share=best, why=why)
     frequent = max((i for i, one in enumerate(shares) if one.low > RARE), default=-1)
-    until = edges[frequent] if frequent >= 0 else nan
+    until = edges[frequent] if frequent > 0 else nan  # before the first part there are no rows
     return Limit(over, said, edges[rare + 1], until, is_lower, shares[rare], unit)
 
 

@@ -8,7 +8,7 @@ from uq.conclusions import bars, folds, keyed
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Quantity
 from uq.conclusions.whole import Answer
-from uq.conclusions.words import called, sentence, share_text
+from uq.conclusions.words import called, sentence
 from uq.errors import choices
 from uq.literals import plain
 from uq.printed import printed
@@ -157,7 +157,8 @@ def _levels(answer: Answer) -> Markup:
     found = []
     for one in answer.levels.levels:
         track = bars.bar(one.share.value, one.share.low, one.share.high, (0.0, 1.0))
-        texts = capitalized(one.words), track, share_text(one.share), one.inputs_named
+        size = Contribution(one.inputs, (one.share,), share_of_variance=True).size
+        texts = capitalized(one.words), track, size, one.inputs_named
         found.append(_BAR.format(*map(_shown, texts)))
     return Markup("").join(found)
 
