@@ -96,3 +96,10 @@ def test_without_rows_or_intervals_nothing_is_called_enough():
     assert "enough" not in few.enough.sentence and "rows" in rules(few)
     one = answer(linear(samples=1))
     assert "are enough" not in one.enough.sentence and "rows" in rules(one)
+
+
+def test_regimes_that_are_not_settled_are_said_in_a_sentence():
+    found = answer(kinds(samples=64, analysis={"outputs": ["regime", "work"]}))
+    (rows,) = (one.text for one in found.advice if one.rule == "rows")
+    assert ": how many are slow is known to " in rows or ": how many are fast is known to " in rows
+    assert "how many slow" not in repr(found) and "how many fast" not in repr(found)

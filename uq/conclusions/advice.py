@@ -135,8 +135,7 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     words = called_together(assumed)
     single = event is not None and event.is_of_single
     measure = "Of single inputs, measure" if single else "Measure"
-    are = "are " * found.regimes_first
-    to_what = f" to how many {are}{event.said}" if event else ""
+    to_what = f" to how many {event.clause}" if event else ""
     yield Advice(
         "measure",
         f"{measure} {words} first: {'it matters' if one else 'they matter'} most{to_what}, and"

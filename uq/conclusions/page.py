@@ -142,7 +142,10 @@ def _ranking(answer: Answer) -> Markup:
     title = Markup("<h3>What it depends on</h3>{}").format(_levels(answer))
     first = _first(lead)
     if ranking.leader is None:
-        return _block("ranking", [title, _line(keyed.leader(lead)), first])
+        why = keyed.leader(lead)
+        if answer.regimes_first:
+            why = Markup("{}: {}").format(plain(printed(capitalized(lead.words))), why)
+        return _block("ranking", [title, _line(why), first])
     note = _small(sentence(ranking.what))
     largest = ranking.contributions[0].value
     seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]

@@ -60,7 +60,7 @@ class Event:
         """Its probability, and what decides it; "" where that is not known."""
         if isnan(self.share.value):
             why = self.share.reason
-            return sentence(f"how many {self.said} is not known: {why}") if why else ""
+            return sentence(f"how many {self.clause} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
@@ -68,6 +68,11 @@ class Event:
         if self.undefined > 0:
             text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."
+
+    @property
+    def clause(self) -> str:
+        """What rows do: ``exceed 5``, ``are chaotic``."""
+        return f"are {self.said}" if self.name.startswith("P(regime=") else self.said
 
     @property
     def with_cause(self) -> str:

@@ -59,7 +59,7 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
         yield Unsettled(ranking.reason, ranking.rows_factor)
     for event in quantity.events:
         if event.ranking is not None and isfinite(event.ranking.rows_factor):
-            what = f"what decides how many {event.said} is not settled"
+            what = f"what decides how many {event.clause} is not settled"
             yield Unsettled(what, event.ranking.rows_factor)
 
 
@@ -86,7 +86,7 @@ def unsettled_share(event: Event) -> Iterator[Unsettled]:
     half = (one.high - one.low) / 2
     goal = max(SHARE * min(one.value, 1 - one.value), POINT)
     if half > goal:
-        what = f"how many {event.said} is known to {percent(half).removesuffix(' %')} points"
+        what = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
         yield Unsettled(what, (half / goal) ** 2)
 
 

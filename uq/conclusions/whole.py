@@ -82,12 +82,14 @@ class Answer:
 
     @property
     def regime_causes(self) -> list[Event]:
-        """The main regimes of which is known what decides them; the first is the rest."""
-        return [
+        """The main regimes of which is known what decides them; the first, the rest, only alone."""
+        known = [
             one
-            for one in self.main_regimes[1:]
+            for one in self.main_regimes
             if one.ranking is not None and one.ranking.leader is not None
         ]
+        others = [one for one in known if one is not self.main_regimes[0]]
+        return others or known
 
     @property
     def lines(self) -> list[str]:
