@@ -18,11 +18,12 @@ _STYLE = """
 .answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
 @media (min-width: 60rem), print {
   .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
-    grid-template-rows: auto auto 1fr; align-items: start; }
+    grid-template-rows: auto auto 1fr auto; align-items: start; }
   .answer-verdict { grid-area: 1 / 1; }
   .answer > figure { grid-area: 1 / 2 / 3 / 3; }
   .answer-ranking { grid-area: 2 / 1 / 4 / 2; }
-  .answer-todo { grid-area: 3 / 2; }
+  .answer-todo { grid-area: 3 / 2 / 5 / 3; }
+  .answer-first { grid-area: 4 / 1; }
 }
 .answer p, .answer ul { margin: .25rem 0; }
 .answer ul { padding-left: 1.2rem; }
@@ -61,8 +62,8 @@ def fragment(answer: Answer, picture: str = "") -> Markup:
     picture : str, optional
         HTML: of the quantity that the study is about.
     """
-    blocks = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer)]
-    return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, blocks)))
+    parts = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer), _first(answer)]
+    return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, parts)))
 
 
 def notebook(answer: Answer) -> str:
@@ -140,17 +141,16 @@ def _ranking(answer: Answer) -> Markup:
         return Markup()
     ranking = lead.ranking
     title = Markup("<h3>What it depends on</h3>{}").format(_levels(answer))
-    first = _first(lead)
     if ranking.leader is None:
         why = keyed.leader(lead)
         if answer.regimes_first:
             why = Markup("{}: {}").format(plain(printed(capitalized(lead.words))), why)
-        return _block("ranking", [title, _line(why), first])
+        return _block("ranking", [title, _line(why)])
     note = _small(sentence(ranking.what))
     largest = ranking.contributions[0].value
     seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
     shown = enumerate(seen[:_MOST_BARS])
-    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note, first])
+    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note])
 
 
 def _levels(answer: Answer) -> Markup:
@@ -166,10 +166,11 @@ def _levels(answer: Answer) -> Markup:
     return Markup("").join(found)
 
 
-def _first(lead: Quantity) -> Markup:
+def _first(answer: Answer) -> Markup:
     """Return which rows of a life end first, and why."""
-    found = Markup("").join(map(_line, keyed.earliest(lead)))
-    return Markup("<h3>What ends first</h3>{}").format(found) if found else found
+    found = [] if answer.lead is None else [*map(_line, keyed.earliest(answer.lead))]
+    title = Markup("<h3>What ends first</h3>")
+    return _block("first", [title, *found]) if found else Markup()
 
 
 def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
