@@ -1,6 +1,6 @@
 """The names of the elements of an output with dimensions."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import product
 from math import inf, prod
@@ -47,6 +47,11 @@ def place_of(name: str, coordinates: Mapping[str, Any]) -> list[Place]:
     axes = tuple((dim, tuple(np.asarray(axis).tolist())) for dim, axis in coordinates.items())
     found = _by_name(name.partition("[")[0], axes).get(_read(name))
     return [found] if found else []
+
+
+def same_name(name: str, names: Iterable[str]) -> str:
+    """Return which of some names means the same, else the name itself; see `place_of`."""
+    return {_read(one): one for one in names}.get(_read(name), name)
 
 
 @lru_cache(maxsize=4)

@@ -42,7 +42,8 @@ def sized(values: Floats) -> tuple[Floats, float]:
 
     Then neither squares nor fourth powers leave the range of numbers, and no digit is lost.
     """
-    size = 2.0 ** int(np.clip(np.frexp(np.abs(values).max())[1], -1000, 1000))
+    largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
+    size = 2.0 ** int(np.clip(np.frexp(largest)[1], -1000, 1000))
     return values / size, size
 
 

@@ -5,7 +5,8 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from benchmarks.coverage.dependent import CASES, PATHS, shares, study, title
+from benchmarks.coverage.dependent import CASES, PATHS, study, title
+from benchmarks.coverage.dependent_effects import shares
 from benchmarks.coverage.problems import repeated
 from benchmarks.coverage.tally import Tally
 from uq.intervals import scatter_interval

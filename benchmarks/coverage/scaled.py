@@ -24,7 +24,7 @@ SPREADS = (0.2, 0.5, 1.0, 2.0, 5.0)
 """Standard deviations of the logarithm of what is not integrated, over that of what is."""
 
 CAUTIOUS = (
-    "allows for two more rows as extreme as the farthest outlier and, where fewer than 20 effective"
+    "allows for two more rows as extreme as the farthest outlier and, where fewer than 40 effective"
     " rows carry the probability, is no narrower than the interval of a share of hits"
 )
 
@@ -101,7 +101,7 @@ def _what_if(integrated, new, rows, repetitions):
 
 
 HITS = (
-    "fewer than 20 effective rows carry it or its complement: no narrower than the interval of a"
+    "fewer than 40 effective rows carry it or its complement: no narrower than the interval of a"
     " share of hits, as heavy as the one that carries most"
 )
 REASONS = {"P(T < t)": CAUTIOUS, "difference": HITS}

@@ -4,24 +4,19 @@ import re
 from functools import partial
 
 import numpy as np
+from answer_contradictions import denied_by_each_other
+from answer_event_checks import denied_advice, denied_event
+from answer_whole_checks import denied_enough, denied_levels
+from answered import numbers_in
 from scipy.stats import binomtest
 
-import uq
 from uq.analysis.findings import Findings
 from uq.rows.elements import (
-    are_independent,
     independent_rows,
     labels,
     named_elements,
     replicates_of,
 )
-
-NUMBER = re.compile(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?")
-
-
-def numbers_in(text):
-    """Return the numbers of a sentence, without those of names such as x1."""
-    return [float(one.rstrip(".")) for one in NUMBER.findall(text)]
 
 
 class Checker:
@@ -42,12 +37,16 @@ class Checker:
                 yield from (f"{one.name}: {text}" for text in check(one))
             for event in one.events:
                 hits = self.hits(one, event)
-                yield from (f"{event.name}: {text}" for text in self.event(event, hits))
+                yield from (
+                    f"{event.name}: {text}" for text in denied_event(self.rows, event, hits)
+                )
         for regime in found.regimes:
             hits = (labels(self.rows["regime"]).values == regime.said).astype(float)
-            yield from (f"{regime.said}: {text}" for text in self.event(regime, hits))
+            yield from (f"{regime.said}: {text}" for text in denied_event(self.rows, regime, hits))
         for advice in found.advice:
-            yield from (f"{advice.rule}: {text}" for text in self.advice(advice, found))
+            yield from (f"{advice.rule}: {text}" for text in denied_advice(self.ds, advice, found))
+        yield from denied_levels(self.ds, found)
+        yield from denied_enough(self.ds, found)
         shown = [self.ds.sizes["sample"], *([found.failed] if found.failed else [])]
         if sorted(numbers_in(found.rows_sentence)) != sorted(shown):
             yield found.rows_sentence
@@ -158,39 +157,6 @@ class Checker:
         found = values < float(at) if side == "<" else values > float(at)
         return np.where(np.isnan(values), np.nan, found)
 
-    def event(self, event, hits):
-        """Count how often it happens, everywhere, and where it does least and most."""
-        if not event.sentence or "not known" in event.sentence:
-            return
-        shown = numbers_in(event.sentence)
-        share = 100 * np.nan_to_num(hits).mean()
-        if event.share.has_interval:
-            value, low, high = shown[:3]
-            if not (low <= value <= high and low - 0.06 <= share <= high + 0.06):
-                yield event.sentence
-            far = 0.15 if are_independent(self.rows) else 0.35
-            exact = binomtest(round(np.nansum(hits)), len(hits)).proportion_ci()
-            ends = 100 * exact.low, 100 * exact.high
-            if not np.allclose((low, high), ends, atol=far * (ends[1] - ends[0]), rtol=0):
-                yield f"interval of {event.sentence}"
-        elif abs(shown[0] - share) > 0.06:
-            yield event.sentence
-        if event.undefined and abs(shown[-1] - 100 * np.isnan(hits).mean()) > 0.06:
-            yield event.sentence
-        if event.curve is not None:
-            x = self.rows[event.over].values / event.over_unit.per
-            pattern = r"([\d.]+) % where it is (above|below|between) (\S+)(?: and (\S+))?"
-            for percent, side, first, last in re.findall(pattern, event.decided_by):
-                first, last = (float(end.rstrip(".")) if end else np.nan for end in (first, last))
-                inside = {
-                    "above": x > first,
-                    "below": x < first,
-                    "between": (x > first) & (x < last),
-                }
-                there = np.isfinite(hits) & inside[side]
-                if abs(100 * hits[there].mean() - float(percent)) > 8:
-                    yield f"{percent} % of {event.decided_by}"
-
     def ranking(self, one):
         if one.ranking is None or one.ranking.leader is None:
             return
@@ -263,28 +229,6 @@ class Checker:
                 ):
                     yield said.why
 
-    def advice(self, advice, found):
-        if advice.rule == "rows" and advice.rows is not None:
-            wanted, now = re.match(r"\D*([\d ]+) rows .*instead of ([\d ]+):", advice.text).groups()
-            if int(now.replace(" ", "")) != self.ds.sizes["sample"]:
-                yield advice.text
-            if not 0 <= int(wanted.replace(" ", "")) - advice.rows + 1 < 0.11 * advice.rows + 1:
-                yield advice.text
-        one = advice.tightened
-        if one is None or one.reason:
-            return
-        first, then, *ends = numbers_in(one.sentence.split(" from ")[1])
-        known = [
-            event.share.value for event in found.quantities[0].events if event.said in one.what
-        ]
-        if known and abs(first - 100 * known[0]) > 0.06:
-            yield one.sentence
-        if ends and not ends[0] <= then <= ends[1]:
-            yield one.sentence
-        fresh = uq.trace(self.ds, one.key)["value"] * (100 if one.is_share else 1 / one.unit.per)
-        if abs(then - fresh) > 0.01 * abs(fresh) + 0.06:
-            yield f"{one.sentence} {fresh}"
-
 
 def is_about_even(one):
     """Whether a number is near the middle of its interval, if it has one."""
@@ -292,62 +236,3 @@ def is_about_even(one):
         return True
     uneven = abs(one.high + one.low - 2 * one.value)
     return uneven <= 0.3 * (one.high - one.low) + 1e-6 * abs(one.value)
-
-
-def denied_by_each_other(found):
-    """Yield pairs of sentences that cannot both be true."""
-    rules = {one.rule for one in found.advice}
-    if "nothing" in rules and rules & {"rows", "measure", "failed"}:
-        yield "nothing to do, and something"
-    texts = [one.text for one in found.advice]
-    if sum(one.share.value for one in found.regimes) > 1 + 1e-9:
-        yield "regimes that are more than all"
-    for one in found.quantities:
-        yield from (f"{one.name}: {text}" for text in _of_quantity(one))
-    if (lead := found.lead) is None:
-        return
-    for advice in found.advice:
-        for event in lead.events:
-            flat = event.ranking is not None and event.ranking.denies_a_leader
-            if flat and advice.rule == "tighten" and event.said in advice.text:
-                yield f"{event.decided_by} {advice.text}"
-            if advice.rule == "measure" and f"how many {event.said}" in advice.text:
-                named = event.ranking and event.ranking.leader and event.ranking.leader.inputs
-                if not set(advice.inputs) <= set(named or ()):
-                    yield f"{event.decided_by} {advice.text}"
-    own = f"({lead.words})"
-    for text in texts:
-        alone = len(found.quantities) == 1
-        if "which inputs matter is not settled" in text and (own in text or alone):
-            if lead.ranking is not None and lead.ranking.leader is not None:
-                yield f"{lead.ranking.sentence} {text}"
-
-
-def _of_quantity(one):
-    low, median, high = (
-        (one.range.low.value, one.range.median.value, one.range.high.value)
-        if one.range is not None
-        else (np.nan,) * 3
-    )
-    if low > median or median > high:
-        yield "a range that is no range"
-    if one.promise is not None and (one.promise.lower > low or one.promise.upper < high):
-        if one.promise.coverage == 0.95:
-            yield f"{one.promise.sentence} {one.range.sentence}"
-    for event in one.events:
-        at, below = float(re.search(r"[<>]([^<>]*)\)$", event.name)[1]), "<" in event.name
-        share = event.share.value if below else 1 - event.share.value - event.undefined
-        for p, value in ((0.05, low), (0.5, median), (0.95, high)):
-            if np.isfinite(value) and event.undefined == 0 and abs(value - at) > 1e-3 * abs(at):
-                if (share > p + 0.02) if at < value else (share < p - 0.02):
-                    yield f"{event.sentence} {one.range.sentence}"
-        if event.curve is not None:
-            ends = [event.curve.shares[i].value for i in (event.curve.least, event.curve.most)]
-            if event.undefined == 0 and not ends[0] - 1e-9 <= event.share.value <= ends[1] + 1e-9:
-                yield f"{event.sentence} {event.decided_by}"
-    moved = {}
-    for each in one.ranking.contributions if one.ranking else ():
-        moved |= {n: c.direction for n, c in zip(each.inputs, each.changes, strict=False)}
-    for apart in (one.earliest.inputs or ()) if one.earliest else ():
-        if apart.direction * moved.get(apart.name, 0) > 0:  # what shortens it is higher, not lower
-            yield f"{one.ranking.with_effect} {one.earliest.why}"

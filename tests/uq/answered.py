@@ -9,12 +9,18 @@ from uq.conclusions.answer import answer
 
 DAY = 86400.0
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
+_IN_TEXT = re.compile(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?")
 
 
 def numbers(pattern, text):
     found = re.fullmatch(pattern.replace("#", NUMBER), text)
     assert found, text
     return [float(one) for one in found.groups()]
+
+
+def numbers_in(text):
+    """Return the numbers of a sentence, without those of names such as x1."""
+    return [float(one.rstrip(".")) for one in _IN_TEXT.findall(text)]
 
 
 @cache

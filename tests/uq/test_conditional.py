@@ -13,7 +13,7 @@ from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
 import uq
-from benchmarks.coverage import dependent, problems
+from benchmarks.coverage import dependent, dependent_effects, problems
 from benchmarks.coverage.neighbours import by_neighbours
 from benchmarks.coverage.tally import LOW, OURS
 from uq import plots
@@ -180,7 +180,7 @@ def test_shapley_effects_of_a_factor_and_a_truncated_law_are_the_known_ones():
         without, of_factor = one[tuple(sorted(i for i in some if i != 1))]
         return without + of_factor * (1 in some)
 
-    truth = dict(zip(("a", "b", "c"), dependent.shares(explained, 3), strict=True))
+    truth = dict(zip(("a", "b", "c"), dependent_effects.shares(explained, 3), strict=True))
     assert_near(found, truth)
 
 
@@ -316,7 +316,7 @@ def test_values_of_polynomials_are_those_of_many_rows():
         for size in range(4)
         for some in combinations(range(3), size)
     }
-    many = dependent.shares(lambda some: explained[tuple(sorted(some))], 3)
+    many = dependent_effects.shares(lambda some: explained[tuple(sorted(some))], 3)
     assert found / found.sum() == pytest.approx(many, abs=0.03)
 
 

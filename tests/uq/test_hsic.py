@@ -149,11 +149,33 @@ def test_a_constant_input_has_no_index_and_few_hits_have_none():
     assert "the same value in all rows" in entry_of(never, TARGET, "P(z>99.0)")["refused"]
 
 
+def test_rows_in_which_an_event_happens_need_no_others():
+    ds = decided()
+    limit = float(np.sort(ds["z"].values)[2:4].mean())
+    most = asking(ds, thresholds={"z": limit})  # 3 rows lie below
+    (note,) = entry_of(most, CONDITIONAL, f"P(z>{limit!r})")["notes"]
+    assert note.startswith("of the 597 rows in which it happens")
+
+
+def test_rough_indices_without_intervals_do_not_speak_of_any():
+    ds = decided()
+    limit = float(np.sort(ds["z"].values)[11:13].mean())
+    few = asking(ds, thresholds={"z": limit})
+    (note,) = entry_of(few, TARGET, f"P(z>{limit!r})")["notes"]
+    assert note.startswith("only 12 misses in 600 rows: the indices are rough; about")
+
+
 def test_without_an_event_there_is_a_sentence():
     with pytest.raises(InputError, match=r"'hsic-target' needs an event.*--output 'P\(y > t\)'"):
         sensitivities(linear(), TARGET)
     assert "not an event" in entry_of(decided(), TARGET, "z")["refused"]
     assert "not an event of an output" in entry_of(decided(), CONDITIONAL, "z")["refused"]
+
+
+def test_without_a_row_there_is_another():
+    ds = with_status(decided(), slice(None), Status.NON_FINITE)
+    with pytest.raises(InputError, match="every row failed"):
+        sensitivities(ds.assign(z=ds["z"] * np.nan), TARGET)
 
 
 def test_without_openturns_there_is_a_sentence(monkeypatch):

@@ -11,6 +11,7 @@ from uq.learning.inspections import Inspection, Kind, read_inspections
 
 HEAD = "unit,time,output,kind,value,sd,cv,detection_50,detection_90\n"
 FILE = Path("found.csv")
+BARE = '[[inspection]]\nunit = 1\nkind = "measured"\n'
 
 
 @pytest.fixture(autouse=True)
@@ -58,6 +59,9 @@ def test_columns_in_any_order_and_names_with_commas():
         "A,1,depth,measured,,1e-5,,,": "value is missing: what was measured",
         "A,1,depth,measured,1e-4,1e-5,0.1,,": "sd and cv: give one of them",
         "A,1,depth,measured,1e-4,0,,,": "sd = 0: must be above 0",
+        "A,1,depth,measured,1e-4,,10,,": (
+            "cv = 10: must be a coefficient of variation, such as 0.1"
+        ),
         "A,1,depth,measured,-1e-4,,0.1,,": (
             "value = -0.0001: must be above 0 with a cv; or give an sd"
         ),
@@ -76,16 +80,18 @@ def test_columns_in_any_order_and_names_with_commas():
         "A,1,depth,below,1e-5,,,1e-5,2e-5": (
             "value = 1e-05: leave it out beside a curve of detection"
         ),
-        "A,,life,survived,,,,,": "time is missing: a life has survived by a time [s]",
+        "A,,life,survived,,,,,": "time is missing: a life has survived by a time",
         "A,1,life,ended,3,,,,": "value = 3: leave it out where a unit has ended",
         "A,-1,life,ended,,,,,": "time = -1: must not be negative",
         "A,soon,life,ended,,,,,": (
-            "time = soon: must be a finite number of seconds since the unit's life began"
+            "time = soon: must be a finite number, in the unit of the life, since that began"
         ),
         "A,2026-03-01,life,ended,,,,,": (
-            "time = 2026-03-01: must be a finite number of seconds since the unit's life began"
+            "time = 2026-03-01: must be a finite number, in the unit of the life, since that began"
         ),
         "A,1,depth,below,80 um,,,,": "value = 80 um: must be a finite number",
+        "A,1,depth,below,7_000,,,,": "value = 7_000: must be a finite number",
+        "A,1,depth,below,٣,,,,": "value = ٣: must be a finite number",
         "A\x07,1,life,ended,,,,,": "unit = 'A\\x07': must consist of printable characters",
         ",1,life,ended,,,,,": "unit is missing",
     }.items(),
@@ -146,10 +152,23 @@ def test_tables_of_a_toml_file():
     FILE.with_suffix(".toml").write_text('[[inspection]]\nunit = "A"\nkind = "lived"\n')
     with pytest.raises(InputError) as refused:
         ledger.read("found.toml")
-    assert refused.value.lines[0] == "found.toml, line 1: output is missing"
+    assert refused.value.lines[0] == "found.toml, inspection at line 1: output is missing"
     FILE.with_suffix(".toml").write_text('inspection = [{unit = "A", output = "life"}]')
     with pytest.raises(InputError, match="^found.toml: inspection 1: kind is missing"):
         ledger.read("found.toml")
+    FILE.with_suffix(".toml").write_text(
+        "# found\n" + BARE + "value = '7e5'\nsd = true\n\n" + BARE + "valeu = 3\n"
+    )
+    with pytest.raises(InputError) as refused:
+        ledger.read("found.toml")
+    assert refused.value.lines == (
+        "found.toml, inspection at line 2: unit = 1: must be text, in quotes",
+        'found.toml, inspection at line 2: value = "7e5": must be a number, without quotes',
+        "found.toml, inspection at line 2: sd = true: must be a number, without quotes",
+        "found.toml, inspection at line 8: unit = 1: must be text, in quotes",
+        "found.toml, inspection at line 8: no such column 'valeu'; did you mean 'value'? (allowed:"
+        " unit, output, kind, time, value, sd, cv, detection_50, detection_90)",
+    )
     for text, why in (("x = 1", "must consist of tables"), ("x = ", "not TOML")):
         FILE.with_suffix(".toml").write_text(text)
         with pytest.raises(InputError, match=f"^found.toml: {why}"):

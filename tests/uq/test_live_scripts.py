@@ -9,6 +9,7 @@ from scipy import special
 
 from uq.inputs.conditioning import cdf_within, log_density_between
 from uq.inputs.registry import LAWS, law_of
+from uq.population.means import weighted_share
 from uq.population.smoothing import refusal, tail_shape
 from uq.population.sums import LogTerm, law_of_sum
 from uq.report.tolerances import KNOWN
@@ -166,3 +167,15 @@ def test_a_tail_that_begins_amid_equal_weights_has_the_same_shape(asked):
     in_steps = special.ndtr(np.round(-16 * (np.log(2) + 0.5 * normal) / 0.3) / 16)
     found = asked(f"tailShape(Float64Array.from({in_steps.tolist()}))")
     assert found == pytest.approx(tail_shape(in_steps))
+
+
+@pytest.mark.parametrize("hits", [2, 15, 27, 45, 180])
+@pytest.mark.parametrize("heavy", [1.0, 9.0])
+def test_intervals_of_means_that_few_rows_carry(asked, hits, heavy):
+    numbers, weights = np.full(200, 0.001), np.ones(200)
+    numbers[:hits], weights[3:9] = 0.9, heavy
+    rows = json.dumps({"count": 200, "independent": True, "students": []})
+    weighed = f"new Weighed({rows}, Float64Array.from({weights.tolist()}), () => true)"
+    found = asked(f"{weighed}.share(Float64Array.from({numbers.tolist()}))")
+    expected = weighted_share(numbers, weights)
+    assert [found[key] for key in ("share", "low", "high")] == pytest.approx(expected.numbers)

@@ -8,8 +8,10 @@ from scipy import special, stats
 
 from uq.analysis.comparison import compare
 from uq.clusters import Clusters
-from uq.population.means import EXACT, FEW, effective_rows, share_to_compare, weighted_share
+from uq.population.few_rows import FEW
+from uq.population.means import EXACT, share_to_compare, weighted_share
 from uq.population.scaling import population
+from uq.population.smoothing import effective_rows
 from uq.two_samples import difference
 
 
@@ -73,6 +75,16 @@ def test_a_mean_that_few_rows_carry_is_not_trusted():
     assert effective_rows(numbers) < FEW
     found = weighted_share(numbers)
     assert found.low < 1e-300 and found.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
+
+
+@pytest.mark.parametrize("hits", [15, 185])
+def test_intervals_move_no_faster_than_the_weights_do(hits):
+    """As a slider moves, from weights of which few count to equal ones."""
+    rest = np.random.default_rng(7).standard_normal(200)
+    numbers = special.ndtr(3 * (rest - np.sort(rest)[hits]))
+    lines = [weighted_share(numbers, np.exp(x * rest)) for x in np.linspace(-1.5, 1.5, 1001)]
+    steps = np.abs(np.diff([one.numbers for one in lines], axis=0)).max(axis=0)
+    assert (steps[1:] < 5 * steps[0]).all(), steps
 
 
 @pytest.mark.parametrize(

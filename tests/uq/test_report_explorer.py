@@ -217,6 +217,25 @@ def test_a_card_takes_the_focus_from_the_keyboard_and_gives_it_back(shown):
     assert browser.value(cards) == 1 and browser.value(at) == "canvas"
 
 
+@pytest.mark.parametrize("size", [{}, {"width": 400, "height": 700}], ids=["wide", "phone"])
+def test_a_click_leaves_the_plot_in_sight_and_escape_returns_to_it(shown, size):
+    browser = shown(linear(samples=100), **size)
+    plot = (
+        "(() => { const b = document.querySelector('.scatter canvas').getBoundingClientRect();"
+        " return b.top > -1 && b.bottom < window.innerHeight + 1 })()"
+    )
+    browser.click(*place_of_a_point(browser))
+    browser.painted()
+    command = "document.querySelector('.card code').getBoundingClientRect().bottom"
+    assert browser.value(plot) and browser.value(f"{command} < window.innerHeight")
+    browser.value("document.activeElement.blur()")  # as a click on the text of the card does
+    browser.value("window.scrollTo(0, document.body.scrollHeight)")
+    browser.press("Escape")
+    browser.painted()
+    assert browser.value("document.querySelectorAll('.card').length") == 0
+    assert browser.value("document.activeElement.localName") == "canvas" and browser.value(plot)
+
+
 def test_a_threshold_is_drawn_where_it_is_or_not_at_all(shown):
     for at, drawn in ((6.0, 1), (-1e3, 0), (1e3, 0)):
         browser = shown(linear(samples=100, analysis={"thresholds": {"y": at}}))

@@ -110,7 +110,7 @@ def test_constant_failed_and_missing_rows_are_refused_not_zero():
     few = np.where(ds["group"].values + ds["replicate"].values > 1, np.nan, ds["y"].values)
     found = indices(with_output(ds, "few", few))["outputs"]
     assert "same value" in found["flat"]["refused"]
-    assert "only 0 whole groups (of 64)" in found["gone"]["refused"]
+    assert "no whole groups (of 64)" in found["gone"]["refused"]
     assert "3 whole groups (of 64)" in found["few"]["refused"]
     for name in ("flat", "gone", "few"):
         assert "S1" not in found[name]
@@ -130,6 +130,16 @@ def test_an_input_without_any_effect_is_zero_without_interval():
     entry = indices(with_output(ds, "product", product))["outputs"]["product"]
     assert entry["ST"]["x3"] == entry["S1"]["x3"] == {"value": 0.0, "low": None, "high": None}
     assert entry["notes"] == ["no effect in any row, hence no interval: x3"]
+
+
+def test_a_share_that_all_replicates_agree_on_says_why_it_has_no_interval():
+    ds = linear("saltelli", samples=256, replicates=4)
+    entry = indices(with_output(ds, "side", np.where(ds["x1"] > 0.5, 1.0, 0.0)))["outputs"]["side"]
+    assert entry["ST"]["x1"] == {"value": 1.0, "low": None, "high": None}
+    assert entry["notes"] == [
+        "no effect in any row, hence no interval: x2, x3, x4",
+        "the same ST in each replicate, hence no interval: x1",
+    ]
 
 
 def test_a_replicate_without_rows_takes_the_intervals_away():

@@ -23,6 +23,14 @@ def test_a_tied_parameter_has_the_value_of_the_other_and_no_column():
     assert "x2 equals x1: the index of x1 is that of both" in entry["notes"]
 
 
+def test_several_tied_parameters_share_a_note():
+    ties = {"x2": {"equals": "x1"}, "x3": {"equals": "x1"}}
+    ds = computed(study_of(tables(ties | {"x1": UNIFORM}, "saltelli", 64)))
+    (entry,) = sensitivities(ds)["outputs"].values()
+    said = [note for note in entry["notes"] if "equal" in note]
+    assert said == ["x2 and x3 equal x1: the index of x1 is that of all of them"]
+
+
 def test_a_scaled_parameter_is_the_other_times_a_factor_of_its_own():
     factor = {"distribution": "uniform", "lower": 0.4, "upper": 0.6, "times": "x1"}
     study = study_of(tables({"x2": factor, "x1": UNIFORM}, "saltelli", 1024))

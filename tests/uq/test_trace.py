@@ -18,11 +18,13 @@ from uq.errors import InputError
 from uq.exploring.row_again import row
 from uq.exploring.updating import update
 from uq.keys import key_of, paths_of_numbers, value_at
+from uq.learning.result import as_unit
 from uq.report import page
 from uq.store.files import write_result
 from uq.tracing.tracing import trace_json, traced
 from uq.tracing.verbs import VERBS
 
+MEDIAN = "outputs/life/quantiles/0.5"
 FAILING = {"fail_above": 0.9, "fail_how": "raise"}
 ASKED = {
     "outputs": ["life", "angle"],
@@ -97,6 +99,12 @@ def test_options_are_part_of_a_key():
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
     check(crossed(), "inputs", every=5)
     check(update(wear(400), measured(5e5)), "update", {"by": "600000.0"}, every=11)
+
+
+def test_numbers_of_an_inspected_unit_are_traced_and_equal():
+    after = update(wear(150, units=2, rate="shared"), measured(5e5, 8e5))
+    check(as_unit(after, "B"), "summary", every=9)
+    assert traced(as_unit(after, "A"), MEDIAN).numbers != traced(after, MEDIAN).numbers
 
 
 def keys_in(text):

@@ -137,6 +137,15 @@ def test_ranges_over_what_is_shared_hold_the_truth():
     assert len(held) > 950 and 0.93 <= np.mean(held) <= 0.97
 
 
+def test_units_of_a_sample_that_count_alike_do_so_after_smoothing():
+    """Of a design whose samples are not independent; here its largest weights begin a sample."""
+    design = {"method": "latin-hypercube", "replicates": 8, "samples": 216, "units": 3}
+    after = update(wear(**design, rate="shared"), measured(3e5, 4e5))
+    weights = after["weight"].values.reshape(-1, 3)
+    assert np.ptp(weights[:, 0]) > 0 and (weights == weights[:, :1]).all()
+    assert fleet_of(after, 2).first[0.5].estimate.value > 0
+
+
 def test_units_that_do_not_differ_need_no_rows_of_their_own():
     ds = update(rows(1, z=NORMAL | {"level": "shared"}), measured(9.0, cv=CV))
     assert "only_inspected" not in ds.attrs

@@ -87,3 +87,12 @@ def test_smoothed_weights_follow_the_published_algorithm():
     assert found.weights[:3] == pytest.approx(expected)
     assert found.weights.mean() == pytest.approx(1.0)
     assert "(Pareto k 0.92)" in found.refusal
+
+
+@pytest.mark.parametrize("steepness", [1000, 5000])
+def test_weights_lost_in_rounding_are_no_tail(steepness):
+    """As of rows far from a precise measurement: a law fitted to them overflows."""
+    logs = np.append(np.linspace(-1.0, 0.0, 10), -2 - steepness * np.linspace(0.0, 1.0, 490))
+    found = smoothed(logs)
+    assert found.k < 0.7
+    np.testing.assert_allclose(found.weights, np.exp(logs) / np.exp(logs).mean())

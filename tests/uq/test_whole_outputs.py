@@ -72,6 +72,17 @@ def test_an_output_of_equal_shape_in_all_elements_has_the_indices_of_one(method,
                     assert (value is together is None) or together == pytest.approx(value, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("method", "samples"), [("saltelli", 64), ("shapley", 64), ("fast", 129), ("monte-carlo", 256)]
+)
+@pytest.mark.parametrize("power", [660, -660])
+def test_shares_do_not_depend_on_the_unit(method, samples, power):
+    ds = curves(method, samples, 1, outputs=["front"])
+    of = "front[:]" if method in ("saltelli", "shapley") else "front[time=0.5]"
+    other = ds.assign(front=ds["front"].copy(data=ds["front"].values * 2.0**power))
+    assert indices(other, None, of) == indices(ds, None, of)
+
+
 def test_an_input_that_counts_by_correlation_alone_is_named():
     names = [name for name in whole.LAWS if name != "r2"]
     correlation = [

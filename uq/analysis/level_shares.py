@@ -15,7 +15,7 @@ from uq.contract import Floats
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.chosen import targets_of
-from uq.indices.sensitivities import FEWEST_HITS, few_hits
+from uq.indices.few_hits import FEWEST_HITS, few_hits
 from uq.indices.targets import Target, lightened, split_name
 from uq.methods.indices import RefusedError
 from uq.population.by_level import Scales, scales_by_level

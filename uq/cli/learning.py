@@ -15,16 +15,17 @@ from uq.estimate import Estimate
 from uq.exploring.new_rows import Budget
 from uq.exploring.updating import is_study, learn, samples_for
 from uq.learning.answer import Learnt, learnt, learnt_json
+from uq.learning.asked_times import read_times
 from uq.learning.inputs_learnt import InputLearnt
-from uq.learning.inspections import Inspection
 from uq.learning.ledger import read
 from uq.learning.remaining import ANY, Remaining
+from uq.learning.taught import Taught
 from uq.rows.results import open_result
 from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study
 from uq.store.files import check_target
-from uq.units import time_unit
-from uq.wording import known, number, percent
+from uq.units import beside, unit_of
+from uq.wording import in_brackets, known, number, percent
 
 MOST_UNITS = 12
 """Inspected units whose own inputs are listed."""
@@ -36,7 +37,7 @@ def update(
     output: Path,
     rows: int | None,
     model_error: float | None,
-    by: Sequence[float],
+    by: Sequence[str],
     model: str | None,
     options: RunOptions,
     quiet: bool,
@@ -52,14 +53,14 @@ def update(
         ds, _ = carried_out(target, quiet, options, partial(run_study, study, target))
     else:
         ds = open_result(source)
-    budget = None
+    times, budget = read_times("--by", by, ds), None
     say_when_interrupted("interrupted; nothing was written")
     with progress.shown(quiet) as show:
         if rows is not None and not is_study(source):
             say_when_interrupted("interrupted; the same command resumes, with the new rows so far")
             budget = Budget(rows, replace(options, progress=show), output, model)
         found = learn(ds, new, output, model_error, budget)
-    answer = learnt(found, by)
+    answer = learnt(found, times)
     if json:
         print_json(learnt_json(answer))
     elif not quiet:
@@ -89,7 +90,7 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
     if found.taught:
         heading("\nTaught most", "beyond all other inspections [bit]")
         most = sorted(found.taught, key=lambda one: -one.bits)[:5]
-        grid([(_what(one.inspection), f"{one.bits:.2f}") for one in most])
+        grid([(_what(one), f"{one.bits:.2f}") for one in most])
     for output in dict.fromkeys(one.output for one in found.lives):
         _show_lives([one for one in found.lives if one.output == output])
     if any(one.posterior.mean.has_interval for one in found.inputs):
@@ -101,9 +102,10 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
     note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
 
 
-def _what(one: Inspection) -> str:
-    when = f" at {number(one.time)} s" if one.time is not None else ""
-    value = f" {number(one.value)}" if one.value is not None else ""
+def _what(taught: Taught) -> str:
+    one = taught.inspection
+    when = f" at {beside(number(one.time), taught.time_unit)}" if one.time is not None else ""
+    value = f" {beside(number(one.value), taught.units)}" if one.value is not None else ""
     return f"{one.unit}: {one.output} {one.kind}{value}{when}"
 
 
@@ -126,15 +128,15 @@ def _digits(value: float) -> str:
 
 def _show_lives(lives: Sequence[Remaining]) -> None:
     longest = max((x.value for one in lives for x in one.life.values()), default=0.0)
-    unit = time_unit(longest if isfinite(longest) else 0.0)
-    heading(f"\n{lives[0].output}", f"remaining life [{unit.name}] of units that run")
+    unit = unit_of(lives[0].units, longest)
+    heading(f"\n{lives[0].output}", f"remaining life{in_brackets(unit)} of units that run")
     times = list(dict.fromkeys(time for one in lives for time in one.by))
-    ends = (f"P(by {number(time / unit.seconds)})" for time in times)
+    ends = (f"P(by {number(time / unit.size)})" for time in times)
     header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
-    grid([_line(one, unit.seconds, times) for one in lives if one.life], header=header)
+    grid([_line(one, unit.size, times) for one in lives if one.life], header=header)
     for time, points in (pair for one in lives for pair in one.over_shared.items()):
         span = " to ".join(map(percent, points.values()))
-        text = f"P(by {number(time / unit.seconds)}) of units not inspected: {span} (95 %)"
+        text = f"P(by {number(time / unit.size)}) of units not inspected: {span} (95 %)"
         paragraph(f"{text}, depending on what units share", indent=2)
     if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
         paragraph(f"hardly a row in which it still runs: {', '.join(gone)}", indent=2)

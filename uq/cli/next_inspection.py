@@ -7,15 +7,16 @@ from typing import Any
 
 from uq import json_form
 from uq.cli.printing import grid, heading, note, print_json
-from uq.learning.next_inspection import Worth, worth
+from uq.learning.next_inspection import Worth, unit_of_time, worth
 from uq.rows.results import open_result
-from uq.wording import counted, duration, number, percent
+from uq.wording import counted, percent, threshold
+from uq.written import read_threshold
 
 
 def next_inspection(
     result: Path,
     output: str,
-    times: Sequence[float],
+    times: Sequence[str],
     units: Sequence[int],
     cv: float,
     life: str | None,
@@ -23,14 +24,15 @@ def next_inspection(
 ) -> None:
     """Show how far inspections of more units would narrow what units share."""
     ds = open_result(result)
-    found = worth(ds, output, times, units, cv, life)
+    at = [read_threshold("--at", text, "a life", unit_of_time(ds, output)) for text in times]
+    found = worth(ds, output, at, units, cv, life)
     if json:
         print_json(_as_json(found))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}")
     heading(f"\n{found.life}", f"expected narrowing by inspecting {found.output}")
     grid(
-        [(_when(t), *(_share(found, t, n) for n in units)) for t in times or (None,)],
+        [(_when(found, t), *(_share(found, t, n) for n in units)) for t in at or (None,)],
         header=("", *(counted(n, "unit") for n in units)),
     )
     note(
@@ -40,10 +42,8 @@ def next_inspection(
     )
 
 
-def _when(time: float | None) -> str:
-    if time is None:
-        return "at any time"
-    return f"at {number(time)} s" + (f" ({duration(time)})" if duration(time) else "")
+def _when(found: Worth, time: float | None) -> str:
+    return "at any time" if time is None else f"at {threshold(time, found.time_unit)}"
 
 
 def _share(found: Worth, time: float | None, units: int) -> str:
@@ -56,6 +56,7 @@ def _as_json(found: Worth) -> dict[str, Any]:
         "life": found.life,
         "inspect": found.output,
         "spread": json_form.number(found.spread),
+        "time_units": found.time_unit,
         "narrowing": [
             {"time": time, "units": units, "value": json_form.number(share)}
             for (time, units), share in found.narrowing.items()

@@ -4,6 +4,7 @@ import shlex
 from dataclasses import dataclass, replace
 from math import isnan
 
+import numpy as np
 import xarray as xr
 
 from uq.analysis.earliest import (
@@ -15,7 +16,7 @@ from uq.analysis.earliest import (
     regimes_of_first,
 )
 from uq.analysis.findings import Findings
-from uq.conclusions.words import Unit, called, sentence, share_text, unit_for
+from uq.conclusions.words import Unit, called, joined, sentence, share_text, unit_for
 from uq.errors import InputError
 from uq.intervals import Replicates
 from uq.rows.commands import file_of, model_option
@@ -71,7 +72,7 @@ class Earliest:
             for number, life in zip(self.rows, self.lives, strict=True)
         ]
         rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
-        return sentence(f"{rows} {_and(named)} {verb} first")
+        return sentence(f"{rows} {joined(named)} {verb} first")
 
     @property
     def why(self) -> str:
@@ -83,7 +84,7 @@ class Earliest:
         if not self.inputs:
             return f"No input distinguishes {who} measurably from the others."
         pairs = list(zip(self.inputs, self.units, strict=True))[:_MOST_INPUTS]
-        text = f"{who} have {_and([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
+        text = f"{who} have {joined([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
         return sentence(text)
 
     @property
@@ -111,7 +112,7 @@ class Earliest:
 
 
 def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates) -> Earliest | None:
-    """Return which rows end first, and what distinguishes them; None where no row ends.
+    """Return which rows end first, and what distinguishes them; None where none does.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     except InputError:
         return None
     rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
-    if not rows:
+    if not rows or (len(rows) > 1 and not np.ptp(element.values[element.present])):
         return None
     ds, lowest = findings.ds, shlex.quote(element.name)
     command = f"uq row {file_of(ds)} --lowest {lowest}{model_option(ds)}"
@@ -160,7 +161,3 @@ def _in_words(one: Apart, unit: Unit, is_first: bool) -> str:
     of_others = " of the others" if is_first else ""
     against = f"{unit.number(one.median)} against {unit.text(one.others)}"
     return f"a {side} {name} (median {against}{of_others})"
-
-
-def _and(words: list[str]) -> str:
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from uq.conclusions.words import Unit, called_together
+from uq.conclusions.words import Unit, called_together, joined
 from uq.estimate import NOTHING, Estimate
-from uq.wording import percent, percent_interval
+from uq.wording import capitalized, percent, percent_interval
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,7 @@ class Tightened:
     @property
     def is_seen(self) -> bool:
         """Whether the number differs to the digits shown."""
-        text = percent if self.is_share else self.unit.text
-        return text(self.before.value) != text(self.after.value)
+        return self.text(self.before) != self.text(self.after)
 
     @property
     def helps(self) -> bool:
@@ -51,18 +50,36 @@ class Tightened:
         return self.wants_more in (None, self.after.value > self.before.value)
 
     @property
+    def gain(self) -> float:
+        """By how much the number moves to its better side, or at all where none is better."""
+        moved = self.after.value - self.before.value
+        return abs(moved) if self.wants_more is None else moved if self.wants_more else -moved
+
+    @property
+    def half(self) -> float:
+        """Half the width of the interval; 0 without one."""
+        return (self.after.high - self.after.low) / 2 if self.after.has_interval else 0.0
+
+    def text(self, one: Estimate) -> str:
+        """Return one of the numbers with its unit."""
+        return percent(one.value) if self.is_share else self.unit.text(one.value)
+
+    @property
+    def interval(self) -> str:
+        """The interval of the number that it would be; "" without one."""
+        if not self.after.has_interval:
+            return ""
+        low, high = self.after.low, self.after.high
+        return percent_interval(low, high) if self.is_share else self.unit.between(low, high)
+
+    @property
     def sentence(self) -> str:
         """What would change, or why the rows cannot show it."""
         words = called_together(self.inputs)
         if self.reason:
             return f"Tightening {words}: {self.reason}."
-        text = percent if self.is_share else self.unit.text
-        first, then = text(self.before.value), text(self.after.value)
-        ends = ""
-        if self.after.has_interval:
-            low, high = self.after.low, self.after.high
-            both = percent_interval(low, high) if self.is_share else self.unit.between(low, high)
-            ends = f" ({both})"
+        first, then = self.text(self.before), self.text(self.after)
+        ends = f" ({self.interval})" if self.interval else ""
         return f"Half the scatter of {words} would move {self.what} from {first} to {then}{ends}."
 
 
@@ -72,23 +89,39 @@ class Advice:
 
     Attributes
     ----------
-    rule : {"rows", "measure", "known", "tighten", "keep", "nothing", "failed"}
-    text : str
-        The sentence.
+    rule : str
+        Why: ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
+        ``keep``, ``rows`` or ``nothing``.
+    said : str
+        The sentence, without what would help about as much.
     inputs : tuple of str
     rows : int or None
         How many there should be in all, where more help.
     tightened : Tightened or None
     key : str
         Of its number, for ``uq trace``; "" if it has none.
-    others : tuple of str
-        What else is not settled, in sentences.
+    alike : tuple of Tightened
+        Which other tolerances would help about as much.
+    tolerances : tuple of Tightened
+        All that were compared: of each tolerance, every number that it would change.
     """
 
     rule: str
-    text: str
+    said: str
     inputs: tuple[str, ...] = ()
     rows: int | None = None
     tightened: Tightened | None = None
     key: str = ""
-    others: tuple[str, ...] = ()
+    alike: tuple[Tightened, ...] = ()
+    tolerances: tuple[Tightened, ...] = ()
+
+    @property
+    def also(self) -> str:
+        """Which other tolerances would help about as much; "" for none."""
+        named = [f"{called_together(one.inputs)} ({one.text(one.after)})" for one in self.alike]
+        return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
+
+    @property
+    def text(self) -> str:
+        """All of it."""
+        return " ".join(filter(None, (self.said, self.also)))

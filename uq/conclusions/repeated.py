@@ -5,7 +5,7 @@ from math import isfinite, nan, sqrt
 
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.promises import Promise, Range
-from uq.conclusions.words import Unit, called
+from uq.conclusions.words import Unit, called, joined
 from uq.estimate import Estimate
 from uq.wording import percent_interval
 
@@ -125,5 +125,4 @@ def _ranked_again(one: Ranking | None) -> str:
     if len(names) > MOST_NAMED:
         return "the order of the inputs could differ"
     again = "again " if len(names) == 1 else ""
-    words = " or ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
-    return f"{words} would {again}contribute most" if names else ""
+    return f"{joined(names, 'or')} would {again}contribute most" if names else ""

@@ -59,7 +59,8 @@ def rounded(value: float, towards: float = 0.0) -> str:
     places = value / digit
     if towards and abs(places - round(places)) > 1e-9:
         places = ceil(places) if towards > 0 else floor(places)
-    return f"{places * digit:.3g}"
+    shown = f"{places * digit:.3g}"
+    return f"{float(shown):.0f}" if 1e3 <= abs(float(shown)) < 1e4 else shown
 
 
 def unit_for(units: str, typical: float) -> Unit:
@@ -92,7 +93,12 @@ def called_together(names: Sequence[str]) -> str:
     for name in names:
         groups.setdefault(twin_of(name), []).append(name)
     words = [_twins_called(stem, own) for stem, own in groups.items()]
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    return joined(words)
+
+
+def joined(words: Sequence[str], last: str = "and") -> str:
+    """Return words as a list: ``a, b and c``; "" without any."""
+    return f" {last} ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def _twins_called(stem: str, names: Sequence[str]) -> str:

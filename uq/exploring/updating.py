@@ -9,8 +9,9 @@ import xarray as xr
 from uq.errors import InputError, RunError
 from uq.exploring.new_rows import Budget, enlarged, why_no_new_rows
 from uq.learning.importance import own_rows
-from uq.learning.inspections import Inspection
+from uq.learning.inspections import MOST_CV, Inspection
 from uq.learning.ledger import Given, all_of, read
+from uq.learning.looks import as_named, quantities_of
 from uq.learning.posterior import posterior
 from uq.learning.result import MODEL_ERROR, as_result, prior_of
 from uq.learning.trust import censoring, distrust
@@ -46,9 +47,10 @@ def update(
         A result, or its file; a study, or its file (TOML), which is run first. A result of
         `update` is updated with all its inspections and the new ones.
     inspections : path-like, or sequence of dict
-        A CSV file with the columns ``unit``, ``output``, ``kind``, and those of ``time`` [s],
-        ``value``, ``sd``, ``cv``, ``detection_50`` and ``detection_90`` that are needed; a TOML
-        file with tables ``[[inspection]]`` of these entries; or the tables themselves.
+        A CSV file with the columns ``unit``, ``output``, ``kind``, and those of ``time`` (in the
+        unit of the life), ``value``, ``sd``, ``cv``, ``detection_50`` and ``detection_90`` that are
+        needed; a TOML file with tables ``[[inspection]]`` of these entries; or the tables
+        themselves.
     output : path-like, optional
         Where to write the posterior; by default it is not written.
     rows : int, optional
@@ -146,9 +148,10 @@ def learn(
         raise InputError(f"uq update: the rows of a '{ds.attrs['design']}' design {why}")
     if output is not None and Path(output).is_file():
         _check_that_it_is_a_posterior(Path(output))
-    inspections = all_of(ds, new)
+    quantities = quantities_of(prior_of(ds))
+    inspections = all_of(ds, [as_named(quantities, one) for one in new])
     cv = float(ds.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
-    if not 0 <= cv < 10:
+    if not 0 <= cv < MOST_CV:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")
     rows = independent_rows(own_rows(prior_of(ds)))
     found, kept = posterior(rows, inspections, cv), list[Path]()

@@ -22,6 +22,7 @@ from uq.methods.method import Method
 from uq.methods.registry import METHODS
 from uq.rows.element import Element
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
+from uq.rows.results import failed
 from uq.rows.variables import is_category
 from uq.written import read_threshold
 
@@ -57,6 +58,8 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
                     found = True
             if asked.aggregates:
                 yield from wholes(_elements(ds, name))
+        if not found and failed(ds).all():
+            raise InputError("every row failed: there is nothing to explain")
         if not found and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a time of a lifetime in"

@@ -1,5 +1,7 @@
 """The inputs of a result with a law of their own, each a column of its design."""
 
+from collections import defaultdict
+
 import xarray as xr
 
 from uq.designs.registry import DESIGNS
@@ -59,14 +61,17 @@ _DIVIDED = "what correlated inputs explain in common is divided among them"
 
 def notes_on_inputs(ds: xr.Dataset) -> list[str]:
     """Return sentences on what the indices of tied or dependent inputs mean."""
-    notes = []
+    notes, tied = [], defaultdict[str, list[str]](list)
     for name, entry in study_file_of(ds).uncertain.items():
         if isinstance(entry, Tied):
-            notes.append(
-                f"{name} equals {entry.equals}: the index of {entry.equals} is that of both"
-            )
+            tied[entry.equals].append(name)
         elif entry.times is not None:
             notes.append(f"{name} is {entry.times} times a factor: its index is that of the factor")
+    for name, others in tied.items():
+        equal, together = ("equals", "both") if len(others) == 1 else ("equal", "all of them")
+        notes.append(
+            f"{' and '.join(others)} {equal} {name}: the index of {name} is that of {together}"
+        )
     if why := why_dependent(ds):
         shared = DESIGNS[ds.attrs["design"]].layout.given_the_rest
         notes.append(f"{why}: {_DIVIDED if shared else _DUE}")

@@ -13,28 +13,20 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError, nearest
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
+from uq.indices.few_hits import few_hits
 from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.targets import Target, where_it_happens
 from uq.methods.indices import IndexKind, Indices, RefusedError
-from uq.methods.measures import MIN_SIDE
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.methods.sample import Sample
-from uq.rows.elements import analysis_of, independent_rows, why_no_statistics
+from uq.rows.elements import analysis_of
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, one_of_each_sample
 from uq.rows.results import refuse_empty
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
-from uq.wording import counted, grouped, rows_in_words
-
-FEWEST_HITS = 5
-"""With fewer in each replicate an event has no indices."""
-
-ENOUGH_HITS = 20
-"""With fewer in each replicate the indices come with a warning."""
-
 
 ONE_ROW = (
     "from one row of each sample, since rows of one sample are not independent; see 'uq levels'"
@@ -202,7 +194,8 @@ def indices_of_target(
             raise RefusedError(_no_variance(target))
         asked = _conditioned(target, sample) if method.conditional else sample
         method.refuse_few_groups(asked)  # in them even a continuous output may have two values
-        few = few_hits(ds, target)
+        # Of those in which it happens there is no other side.
+        few = () if method.conditional else few_hits(ds, target, bool(method.intervals))
         found = method.indices(asked)
     except RefusedError as refusal:
         factor = refusal.rows_factor
@@ -219,52 +212,6 @@ def _conditioned(target: Target, sample: Sample) -> Sample:
             " for what matters within a regime, use --regime"
         )
     return replace(sample, values=where_it_happens(target))
-
-
-def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
-    """Return the warning for an event with few hits or misses; any two values make one.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        The result that the target is of.
-    target : Target
-
-    Returns
-    -------
-    tuple of str
-        One sentence or none; none for all elements of an output together.
-
-    Raises
-    ------
-    RefusedError
-        Fewer than `FEWEST_HITS` in each replicate.
-    """
-    if target.values.ndim > 1:
-        return ()
-    values, replicates = target.values, int(ds.attrs.get("replicates", 1))
-    if not (target.event or len(np.unique(values[np.isfinite(values)])) == 2):
-        return ()
-    if not why_no_statistics(ds):
-        values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values
-    known = values[np.isfinite(values)]
-    hits = known > known.min(initial=np.inf)
-    rarer = int(min(hits.sum(), (~hits).sum()))
-    if not 0 < rarer < ENOUGH_HITS * replicates:
-        return ()  # without any the method refuses
-    side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
-    each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
-    samples = int(ds.attrs["samples"])
-    needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
-    remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
-    seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{each}"
-    if rarer < FEWEST_HITS * replicates:
-        if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
-            remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"
-        raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
-    # Those of a crossed design are widened.
-    narrow = "" if DESIGNS[ds.attrs["design"]].crossed else ", and intervals may be too narrow"
-    return (f"{seen}: the indices are rough{narrow}; {remedy}",)
 
 
 def _counts(*whole: Mask, rows: int) -> tuple[int, int]:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from uq.indices.transforms import heaviness, logarithm, rank, rate
+from uq.intervals import sized
 from uq.rows.elements import Element, Floats, category_codes, flags
 from uq.rows.results import failed
 from uq.wording import counted
@@ -51,7 +52,8 @@ class Target:
             return self.values
         whole = self.values[np.isfinite(self.values).all(axis=1)]
         middle = whole.mean(axis=0) if len(whole) else 0.0
-        return np.asarray(np.linalg.norm(whole - middle, axis=1))
+        away, size = sized(whole - middle)
+        return size * np.asarray(np.linalg.norm(away, axis=1))
 
 
 def where_it_happens(event: Target) -> Floats:

@@ -7,6 +7,7 @@ import numpy as np
 
 from uq.element_names import whole_name
 from uq.indices.targets import FORMS, Target, lightened, number_of, split_name, transformed
+from uq.intervals import sized
 from uq.rows.element import Element
 from uq.wording import percent
 
@@ -69,14 +70,15 @@ def _together(elements: Sequence[Element], form: str) -> Target:
     lacking = [one.name for one in parts if not np.isfinite(one.values).any()]
     refused = next((one.refused for one in parts if one.refused), "")
     if lacking and not refused:
-        refused = f"no row has a {lacking[0]}; ask for the other elements by name"
+        others = "; ask for the other elements by name" if len(lacking) < len(parts) else ""
+        refused = f"no row has a {lacking[0]}{others}"
     notes = _weights(elements, values[np.isfinite(values).all(axis=1)])
     return Target(f"{form}({name})" if form else name, None, values, refused, notes=notes)
 
 
 def _weights(elements: Sequence[Element], values: np.ndarray) -> tuple[str, ...]:
     """Return what the elements count, in a sentence; none where nothing varies."""
-    if len(values) == 0 or not (variance := values.var(axis=0)).any():
+    if len(values) == 0 or not (variance := sized(values)[0].var(axis=0)).any():
         return ()
     most = int(variance.argmax())
     return (

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
+from unicodedata import normalize
 
 import numpy as np
 import xarray as xr
@@ -65,12 +66,12 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
     ----------
     ds : xarray.Dataset
     by : sequence of float
-        Times from the beginning of a life [s]: the probability that it has ended by each.
+        Times from the beginning of a life, in its unit: the probability that it has ended by each.
 
     Raises
     ------
     InputError
-        When the result has not been updated.
+        When the result has not been updated, or a time is negative or not finite.
     """
     if not has_weights(ds):
         raise InputError("this result has not been updated with inspections: see 'uq update'")
@@ -89,6 +90,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         strange,
         [
             *_warnings(strange),
+            *_alike(list(found.units)),
             *found.not_integrated,
             *_interpolated(found),
             *filter(None, [found.only_inspected]),
@@ -102,6 +104,15 @@ def _warnings(strange: float) -> Iterator[str]:
             f"Warning: inspections as strange as these had a probability of {percent(strange)}"
             " before; a law, the model (--model-error) or an inspection may be wrong."
         )
+
+
+def _alike(labels: Sequence[str]) -> Iterator[str]:
+    """Yield which units may be one, written in two ways."""
+    seen: dict[str, str] = {}
+    for label in labels:
+        letters = "".join(normalize("NFKC", label).casefold().split())
+        if (other := seen.setdefault(letters, label)) != label:
+            yield f"Warning: '{other}' and '{label}' are taken for two units."
 
 
 def _interpolated(found: Posterior) -> Iterator[str]:
@@ -127,11 +138,11 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
         where it is missing) and ``quantiles``; of a unit as ``NAME[unit=LABEL]``; ``confounded``:
         pairs with their rank correlation; ``taught``: of each inspection the ``bits`` that it adds
         to all others; ``strangeness``: the probability, before them, of inspections at least as
-        strange; ``notes``; ``units``: label -> life -> ``seen`` (when it was last
-        seen running), ``runs``, ``remaining`` (quantiles from then on), ``by`` (probability to have
-        ended by a time), ``effective_rows``; ``uninspected``: the same of units never inspected,
-        with ``over_shared`` beside a probability, where known: its 2.5 and 97.5 % points over what
-        units share.
+        strange; ``notes``; ``units``: label -> life -> ``units`` (of all
+        times), ``seen`` (when it was last seen running), ``runs``, ``remaining`` (quantiles from
+        then on), ``by`` (probability to have ended by a time), ``effective_rows``; ``uninspected``:
+        the same of units never inspected, with ``over_shared`` beside a probability, where known:
+        its 2.5 and 97.5 % points over what units share.
     """
     units: dict[str, dict[str, Any]] = {}
     for one in found.lives:
@@ -175,6 +186,7 @@ def _life(one: Remaining) -> dict[str, Any]:
         return {"over_shared": {repr(p): x for p, x in points.items()}} if points else {}
 
     return {
+        "units": one.units,
         "seen": one.seen,
         "runs": json_form.whole(one.runs),
         "remaining": {repr(p): json_form.whole(found) for p, found in one.life.items()},

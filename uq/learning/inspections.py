@@ -5,10 +5,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from math import isfinite
+from numbers import Real
 from pathlib import Path
 
 from uq.errors import InputError, nearest
-from uq.literals import read_number
+from uq.literals import read_number, shown
 from uq.places import node
 
 
@@ -21,6 +22,9 @@ class Kind(StrEnum):
     SURVIVED = "survived"
     ENDED = "ended"
 
+
+MOST_CV = 10.0
+"""Coefficient of variation that no error reaches: per cent, perhaps, or a mistake."""
 
 LIMITS = (Kind.BELOW, Kind.ABOVE)
 OUTCOMES = (Kind.SURVIVED, Kind.ENDED)
@@ -40,7 +44,7 @@ class Inspection:
         ``measured``: the value; ``below``, ``above``: on which side of the value it lies, or
         whether it was not or was detected; ``survived``, ``ended``: whether the life had ended.
     time : float or None
-        [s], from the beginning of the life.
+        From the beginning of the life, in its unit.
     value : float or None
         In the unit of the output.
     sd : float or None
@@ -124,10 +128,11 @@ def read_tables(
     found = []
     numbers = [f"inspection {number}" for number in range(1, len(tables) + 1)]
     for where, table in zip(places or numbers, tables, strict=True):
-        if unknown := [name for name in table if name not in COLUMNS]:
-            faults += [f"{where}: {_no_column(name)}" for name in unknown]
+        given = {name: value for name, value in table.items() if value is not None}
+        if wrong := [problem for name, value in given.items() for problem in _misfit(name, value)]:
+            faults += [f"{where}: {problem}" for problem in wrong]
             continue
-        cells = {name: str(value) for name, value in table.items() if value is not None}
+        cells = {name: str(value) for name, value in given.items()}
         inspection, problems = _read(cells, where)
         faults += [f"{where}: {problem}" for problem in problems]
         if inspection is not None:
@@ -135,6 +140,17 @@ def read_tables(
     if faults:
         raise InputError(*faults)
     return found
+
+
+def _misfit(name: str, value: object) -> Iterator[str]:
+    """Yield what is wrong with an entry of a table, before it is read."""
+    if name not in COLUMNS:
+        yield _no_column(name)
+    elif name in _NUMBERS:
+        if isinstance(value, bool) or not isinstance(value, Real):
+            yield f"{name} = {shown(value)}: must be a number, without quotes"
+    elif not isinstance(value, str):
+        yield f"{name} = {shown(value)}: must be text, in quotes"
 
 
 def _lines(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
@@ -194,8 +210,8 @@ def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list
             try:
                 numbers[name] = _number(cells[name])
             except (ValueError, OverflowError):
-                unit = " of seconds since the unit's life began" if name == "time" else ""
-                faults.append(f"{name} = {cells[name]}: must be a finite number{unit}")
+                since = ", in the unit of the life, since that began" if name == "time" else ""
+                faults.append(f"{name} = {cells[name]}: must be a finite number{since}")
     if "kind" in cells and cells["kind"] not in list(Kind):
         allowed = f"(allowed: {', '.join(Kind)})"
         like = nearest(cells["kind"], list(Kind))
@@ -210,6 +226,8 @@ def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list
 
 
 def _number(text: str) -> float:
+    if "_" in text or not text.isascii():  # which Python takes for digits, and no one else does
+        raise ValueError
     number = read_number(text)
     if not isfinite(number):
         raise ValueError
@@ -223,11 +241,13 @@ def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
     for name in ("sd", "cv", *_DETECTION):
         if name in numbers and not positive(numbers[name]):
             yield f"{name} = {numbers[name]:g}: must be above 0"
+    if numbers.get("cv", 0.0) >= MOST_CV:
+        yield f"cv = {numbers['cv']:g}: must be a coefficient of variation, such as 0.1"
     if numbers.get("time", 0.0) < 0:
         yield f"time = {numbers['time']:g}: must not be negative"
     if kind in OUTCOMES:
         if "time" not in given:
-            yield f"time is missing: a life has {kind} by a time [s]"
+            yield f"time is missing: a life has {kind} by a time"
         for name in given:
             if name != "time":
                 yield f"{name} = {numbers[name]:g}: leave it out where a unit has {kind}"

@@ -49,7 +49,7 @@ def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
         raise InputError(f"{path}: must consist of tables [[inspection]]")
     begin = [n for n, line in enumerate(text.splitlines(), start=1) if _HEADER.match(line)]
     if len(begin) == len(tables):
-        return tables, [f"{path}, line {number}" for number in begin]
+        return tables, [f"{path}, inspection at line {number}" for number in begin]
     return tables, [f"{path}: inspection {number + 1}" for number in range(len(tables))]
 
 

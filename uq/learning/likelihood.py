@@ -73,7 +73,7 @@ def log_outcome(kind: Kind, life: Floats, time: Floats) -> Floats:
     ----------
     kind : Kind
     life, time : ndarray
-        [s], of one shape; NaN where a row has no life.
+        Of one shape; NaN where a row has no life.
     """
     with np.errstate(invalid="ignore"):
         inside = life > time if kind is Kind.SURVIVED else life <= time

@@ -1,13 +1,14 @@
 """What inspections looked at, in the rows of a result."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Output
+from uq.element_names import same_name
 from uq.errors import InputError, choices, nearest
 from uq.learning.inspections import OUTCOMES, Inspection, Kind
 from uq.learning.likelihood import log_likelihood, log_outcome
@@ -34,6 +35,8 @@ class Look:
         Of a depth, with censored lives as infinite.
     censored : ndarray of bool, shape (n,)
         Where a life is only bounded; of a depth, where one of the lives is.
+    time_unit : str
+        Of the time of an inspection: that of the life; "" where there is none.
     """
 
     name: str
@@ -41,6 +44,7 @@ class Look:
     values: Floats
     depths: WornDepths | None
     censored: Mask
+    time_unit: str
 
     @property
     def unit(self) -> str:
@@ -53,7 +57,7 @@ class Look:
         Parameters
         ----------
         time : float or None
-            Of the inspection [s].
+            Of the inspection, in `time_unit`.
         rows : ndarray of int, shape (n,)
         longer : ndarray, shape (n, g)
             Factors by which lives of these rows are longer than computed.
@@ -114,11 +118,22 @@ class Quantities:
     known: Mapping[str, Element]
     depths: Mapping[str, Look]
 
+    @property
+    def time_units(self) -> list[str]:
+        """Of lives, each once."""
+        return list({one.units: None for one in self.known.values() if one.is_lifetime})
+
 
 def quantities_of(ds: xr.Dataset) -> Quantities:
     """Return what can be inspected of a result, or of some rows of one."""
     known = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
     return Quantities(known, dict(_depths(ds)))
+
+
+def as_named(quantities: Quantities, one: Inspection) -> Inspection:
+    """Return an inspection with the name that the result has for what it looked at."""
+    name = same_name(one.output, [*quantities.known, *quantities.depths])
+    return one if name == one.output else replace(one, output=name)
 
 
 def look_at(quantities: Quantities, one: Inspection) -> Look:
@@ -140,9 +155,10 @@ def look_at(quantities: Quantities, one: Inspection) -> Look:
     """
     known, depths = quantities.known, quantities.depths
     if one.output in known:
-        element = known[one.output]
-        _check_output(element, one)
-        return Look(one.output, element.declared, element.values, None, element.censored)
+        element, units = known[one.output], quantities.time_units
+        _check_output(element, one, units)
+        unit = element.units if element.is_lifetime else units[0] if len(units) == 1 else ""
+        return Look(one.output, element.declared, element.values, None, element.censored, unit)
     if one.output in depths:
         if one.kind in OUTCOMES:
             raise InputError(
@@ -150,7 +166,8 @@ def look_at(quantities: Quantities, one: Inspection) -> Look:
                 f" {choices(n for n, e in known.items() if e.is_lifetime)})"
             )
         if one.time is None:
-            raise InputError(f"time is missing: when {one.output} was inspected [s]")
+            unit = depths[one.output].time_unit
+            raise InputError(f"time is missing: when {one.output} was inspected [{unit}]")
         found = depths[one.output]
         _check_reach(found, one)
         return found
@@ -165,10 +182,21 @@ def _numbers(ds: xr.Dataset) -> list[str]:
     return [name for name, output in outputs_of(ds).items() if not output.is_category]
 
 
-def _check_output(element: Element, one: Inspection) -> None:
+def _check_output(element: Element, one: Inspection, time_units: Sequence[str]) -> None:
     if one.kind in OUTCOMES and not element.is_lifetime:
         raise InputError(
             f"kind = {one.kind}: {one.output} is not a life; write measured, below or above"
+        )
+    if one.time is None or one.kind in OUTCOMES:
+        return
+    if element.is_lifetime:
+        raise InputError(
+            f"time = {one.time:g}: leave it out where a life is {one.kind}: the life is the value"
+        )
+    if len(time_units) > 1:
+        raise InputError(
+            f"time = {one.time:g}: leave it out: {one.output} is not a life, and lives are in"
+            f" several units ({choices(time_units)})"
         )
 
 
@@ -201,7 +229,8 @@ def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
                 axis.values[order].astype(float), np.where(cut, np.inf, times)[:, order]
             )
             shown = Output(str(axis.attrs["units"]), declared.meaning, scales=declared.scales)
-            yield name, Look(name, shown, np.empty(0), worn, np.asarray(cut.any(axis=1)))
+            censored = np.asarray(cut.any(axis=1))
+            yield name, Look(name, shown, np.empty(0), worn, censored, declared.unit)
 
 
 def reach(one: Inspection) -> float:

@@ -9,8 +9,9 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError, choices
+from uq.learning.asked_times import check_times
 from uq.learning.inspections import Inspection, Kind
-from uq.learning.looks import look_at, quantities_of
+from uq.learning.looks import Look, Quantities, look_at, quantities_of
 from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
@@ -22,6 +23,13 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.rows.nesting import Nesting, nesting_of
+from uq.rows.weights import OF_UNIT
+from uq.units import beside
+from uq.wording import number, percent
+
+_ANY = 1e-300  # a value that no depth is beyond
+_UNKNOWN = 0.1
+"""Share of the rows that need not determine a depth."""
 
 
 @dataclass(frozen=True)
@@ -39,12 +47,15 @@ class Worth:
     narrowing : dict of (float or None, int) to float
         Time, number of units -> the share by which `spread` is expected to fall; NaN where rows
         do not show it.
+    time_unit : str
+        CF unit of the times.
     """
 
     life: str
     output: str
     spread: float
     narrowing: dict[tuple[float | None, int], float]
+    time_unit: str
 
 
 def worth(
@@ -64,9 +75,9 @@ def worth(
     output : str
         What to inspect, as in the inspections of `uq.update`: ``depth[site=left]``, a life.
     times : sequence of float, optional
-        When [s]; needed for a depth.
+        When, in the unit of the life; needed for a depth, and only for one.
     units : sequence of int
-        How many that were not inspected before.
+        How many that were not inspected before, at least 1 each.
     cv : float
         Coefficient of variation of the measurement.
     life : str, optional
@@ -79,8 +90,8 @@ def worth(
     Raises
     ------
     InputError
-        When samples have a single unit, there is no such output or life, or the output is negative
-        in some rows.
+        When samples have a single unit, there is no such output or life, the output is negative
+        in some rows, or more than 10 % of the rows do not determine a depth by one of the times.
 
     Notes
     -----
@@ -95,21 +106,27 @@ def worth(
     """
     if why := why_no_statistics(ds):
         raise InputError(f"uq next-inspection: the rows of a '{ds.attrs['design']}' design {why}")
+    if label := ds.attrs.get(OF_UNIT):
+        raise InputError(f"uq next-inspection: the rows are those of unit {label}, not of more")
     rows = independent_rows(ds)
+    rows = rows.isel(sample=nesting_of(rows).repeat == 0)  # a unit has one life
     place = nesting_of(rows)
     if place.units < 2:
         raise InputError(
             "uq next-inspection: samples have a single unit: set [design] units = 2 or more"
         )
-    if wrong := [time for time in times if not 0 <= time < inf]:
-        raise InputError(f"uq next-inspection: time = {wrong[0]:g}: must be finite, and 0 or more")
+    check_times(times, "uq next-inspection")
+    if wrong := [count for count in units if count < 1]:
+        raise InputError(f"uq next-inspection: units = {wrong[0]}: must be 1 or more")
+    if not 0 <= cv < inf:
+        raise InputError(f"uq next-inspection: cv = {cv:g}: must be finite, and 0 or more")
     element = _the_life(rows, life)
     weights = weights_of(rows)
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
     target = _logarithm(np.where(element.censored, np.nan, element.values))
     quantities, found = quantities_of(rows), {}
     for time in times or (None,):
-        look = look_at(quantities, Inspection("", output, Kind.MEASURED, time, 1e-300, cv=cv))
+        look = _look(quantities, output, time, worth_of_rows)
         truth = look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0]
         if negative := np.mean(truth < 0):
             raise InputError(
@@ -121,7 +138,34 @@ def worth(
         for count in units:
             found[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
     spread = _Between(target, target, worth_of_rows, place).of_life
-    return Worth(element.name, output, max(spread, 0.0) ** 0.5, found)
+    return Worth(element.name, output, max(spread, 0.0) ** 0.5, found, look.time_unit)
+
+
+def unit_of_time(ds: xr.Dataset, output: str) -> str:
+    """Return the CF unit of the time of an inspection of what a result has, or ""."""
+    depths = quantities_of(independent_rows(ds)).depths
+    return depths[output].time_unit if output in depths else ""
+
+
+def _look(quantities: Quantities, output: str, time: float | None, weights: Floats) -> Look:
+    """Return what is to be inspected, where its rows determine it."""
+    when = Inspection("", output, Kind.MEASURED, time, _ANY)
+    if output in quantities.known and time is not None:
+        raise InputError(f"uq next-inspection: {output} is not a depth: leave out when")
+    look = look_at(quantities, when)
+    if look.depths is None or time is None:
+        return look
+    everyone, last = np.arange(len(weights)), look.depths.depths[-1]
+    longer = np.ones((len(weights), 1))
+    unknown = look.truth(time, everyone, longer) > last
+    unknown |= look.bounded(when, everyone, longer)
+    if (share := np.average(unknown[:, 0], weights=weights)) > _UNKNOWN:
+        raise InputError(
+            f"uq next-inspection: by {beside(number(time), look.time_unit)}, {percent(share)} of"
+            f" the rows have worn beyond the last depth of the result, {last:g} {look.unit}, or"
+            " were censored before"
+        )
+    return look
 
 
 class _Between:

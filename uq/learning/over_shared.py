@@ -26,7 +26,7 @@ def over_shared(ds: xr.Dataset, element: Element, seen: float, time: float) -> d
     element : Element
         A life of its rows.
     seen, time : float
-        [s]
+        In the unit of the life.
 
     Returns
     -------

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Mask
 from uq.designs.levels import SHARED
 from uq.errors import InputError
+from uq.learning.contradiction import contradictions
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
@@ -126,7 +127,9 @@ def posterior(
         bool(scale and scale.is_own),
     )
     if not np.isfinite(found.log_evidence):
-        raise InputError("no row of this result agrees with the inspections")
+        raise InputError(
+            *contradictions(likelihoods, labels, found.grids, world, bool(scale and scale.is_own))
+        )
     law = shared_law(found, likelihoods) if scale and not scale.is_own and worlds == 1 else None
     part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
     units = {

@@ -1,6 +1,6 @@
 """The lives to come: of each unit still running, and of units never inspected."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -8,14 +8,16 @@ import xarray as xr
 
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
+from uq.learning.asked_times import check_times, shown_lives
 from uq.learning.inspections import Inspection, Kind
+from uq.learning.looks import look_at, quantities_of
 from uq.learning.over_shared import over_shared
-from uq.learning.result import as_unit, inspections_of
+from uq.learning.result import as_unit, inspections_of, prior_of
 from uq.population.functionals import Population
 from uq.population.scaling import population
 from uq.population.smoothing import effective_rows, per_sample
 from uq.population.surviving import Surviving
-from uq.rows.elements import Element, analysis_of, replicates_of, shown_outputs
+from uq.rows.elements import Element, analysis_of, replicates_of
 from uq.rows.weights import ONLY_INSPECTED, WEIGHT
 
 PROBABILITIES = (0.05, 0.5, 0.95)
@@ -36,14 +38,16 @@ class Remaining:
         Its label; `ANY` for units never inspected.
     output : str
         Which life.
+    units : str
+        CF unit of that life and of all times here.
     seen : float
-        When it was last seen running; for units never inspected, the latest inspection [s].
+        When it was last seen running; for units never inspected, the latest inspection.
     runs : Estimate
         Probability that this life has not ended by then, given the inspections.
     life : dict of float to Estimate
-        Probability -> quantile of the remaining life, from then on [s].
+        Probability -> quantile of the remaining life, from then on.
     by : dict of float to Estimate
-        Time from the beginning of the life [s] -> probability that it has ended by then.
+        Time from the beginning of the life -> probability that it has ended by then.
     effective_rows : float
     over_shared : dict of float to dict of float to float
         For units never inspected: time -> 2.5 and 97.5 % points, over what units share, of that
@@ -52,6 +56,7 @@ class Remaining:
 
     unit: str
     output: str
+    units: str
     seen: float
     runs: Estimate
     life: dict[float, Estimate]
@@ -68,34 +73,47 @@ def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
     ds : xarray.Dataset
         A result of `uq.update`.
     by : sequence of float
-        Times from the beginning of the life [s]; by default the thresholds of the study.
+        Times from the beginning of the life, in its unit; by default the thresholds of the study.
+
+    Raises
+    ------
+    InputError
+        When a time is negative or not finite.
     """
-    inspections = inspections_of(ds)
-    latest = _last_seen(inspections)
+    check_times(by, "by")
+    inspections, quantities = inspections_of(ds), quantities_of(prior_of(ds))
+    units = {one: look_at(quantities, one).time_unit for one in inspections}
     if ONLY_INSPECTED not in ds.attrs:
-        yield from _of_unit(ds, ANY, latest, by)
+        yield from _of_unit(ds, ANY, _last_seen(units), by)
     for label in map(str, ds["inspected"].values):
-        own = [one for one in inspections if one.unit == label]
+        own = {one: unit for one, unit in units.items() if one.unit == label}
         if not any(one.kind is Kind.ENDED for one in own):
             yield from _of_unit(as_unit(ds, label), label, _last_seen(own), by)
 
 
-def _last_seen(inspections: Sequence[Inspection]) -> float:
-    return max((one.time for one in inspections if one.time is not None), default=0.0)
+def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
+    """Return the time of the latest of some inspections in each unit of time."""
+    found: dict[str, float] = {}
+    for one, unit in units.items():
+        if one.time is not None:
+            found[unit] = max(one.time, found.get(unit, 0.0))
+    return found
 
 
-def _of_unit(rows: xr.Dataset, label: str, seen: float, by: Sequence[float]) -> Iterator[Remaining]:
-    analysis = analysis_of(rows)
+def _of_unit(
+    rows: xr.Dataset, label: str, last_seen: Mapping[str, float], by: Sequence[float]
+) -> Iterator[Remaining]:
+    thresholds = analysis_of(rows).thresholds
     counted = rows[WEIGHT].values > 0
     part = replicates_of_some(replicates_of(rows), counted)
     rows = rows.isel(sample=counted)
-    for element in population(rows, shown_outputs(rows, analysis)):
-        if element.is_lifetime and not element.declared.success:
-            times = [*by] or [t for t in analysis.thresholds.get(element.output, ()) if t > seen]
-            found = _of_life(element, part, label, seen, times)
-            later = [time for time in found.by if time > seen and label == ANY]
-            ranges = {time: over_shared(rows, element, seen, time) for time in later}
-            yield replace(found, over_shared={t: one for t, one in ranges.items() if one})
+    for element in population(rows, [name for name, _ in shown_lives(rows)]):
+        seen = last_seen.get(element.units, 0.0)
+        times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]
+        found = _of_life(element, part, label, seen, times)
+        later = [time for time in found.by if time > seen and label == ANY]
+        ranges = {time: over_shared(rows, element, seen, time) for time in later}
+        yield replace(found, over_shared={t: one for t, one in ranges.items() if one})
 
 
 def _of_life(
@@ -105,7 +123,7 @@ def _of_life(
     assert element.weights is not None
     alive = np.where(element.censored & (element.values <= seen), 0.0, element.above(seen))
     weights, still = element.weights * alive, alive > 0
-    nothing = Remaining(label, element.name, seen, runs, {}, {}, 0.0)
+    nothing = Remaining(label, element.name, element.units, seen, runs, {}, {}, 0.0)
     share = float(weights.sum() / element.weights.sum())
     if not share > _LEAST:
         return replace(nothing, runs=Estimate(runs.value, reason=_GONE))

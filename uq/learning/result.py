@@ -45,6 +45,8 @@ INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
 WORLDS = "worlds"
 _NESTING = ("world", "unit", "repeat")
+_COMPRESSED = {"zlib": True, "complevel": 1}
+"""Most rows stand for one of the inspected units, and say the same of all others."""
 
 
 def as_result(
@@ -121,6 +123,8 @@ def as_result(
     }
     for variable in ds.variables.values():
         variable.encoding["_FillValue"] = None
+    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES} & {*ds.variables}:
+        ds[name].encoding |= _COMPRESSED
     return ds.assign_attrs(found_attrs)
 
 

@@ -19,10 +19,16 @@ class Taught(NamedTuple):
     inspection : Inspection
     bits : float
         Relative entropy of what is known with it to what is known without it.
+    units : str
+        CF unit of what was inspected.
+    time_unit : str
+        Of the time of the inspection.
     """
 
     inspection: Inspection
     bits: float
+    units: str
+    time_unit: str
 
 
 def taught(found: Posterior) -> Iterator[Taught]:
@@ -45,7 +51,8 @@ def taught(found: Posterior) -> Iterator[Taught]:
         single = {one: of.of_one(one, unit, grid.values) for one in of.of_unit[unit]}
         for one in single:
             others = [log for other, log in single.items() if other != one]
-            yield Taught(one, _gain(rest + sum(others, np.zeros(rest.shape)), single[one]))
+            bits = _gain(rest + sum(others, np.zeros(rest.shape)), single[one])
+            yield Taught(one, bits, found.looks[one].unit, found.looks[one].time_unit)
 
 
 def _gain(before: Floats, log_likelihood: Floats) -> float:

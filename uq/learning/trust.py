@@ -6,7 +6,7 @@ from math import ceil
 import numpy as np
 
 from uq.learning.posterior import Posterior, Weighted
-from uq.population.means import FEW
+from uq.population.few_rows import FEW
 from uq.population.smoothing import DOUBTFUL, refusal, rows_to_carry_little
 
 HOPELESS = (

@@ -23,7 +23,7 @@ class WornDepths:
     depths : ndarray, shape (k,)
         Ascending, positive.
     lives : ndarray, shape (n, k)
-        Time until each row reaches each depth [s]; infinite where it never does, NaN where the row
+        Time until each row reaches each depth; infinite where it never does, NaN where the row
         has none.
     """
 
@@ -36,7 +36,7 @@ class WornDepths:
         Parameters
         ----------
         time : ndarray, shape (n, g)
-            [s]
+            In the unit of the lives.
 
         Returns
         -------

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from uq.designs.layouts import PLAIN, Layout
+from uq.intervals import sized
 from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.sample import Sample
 from uq.wording import counted
@@ -106,6 +107,8 @@ class Method:
             Too few groups have a value in each row, or the method finds no indices in them.
         """
         self.refuse_few_groups(sample)
+        if self.of_variance:  # shares, of whatever unit
+            sample = replace(sample, values=sized(sample.values)[0])
         if self.layout is not PLAIN:
             return self.estimate(sample)
         rows, note = np.flatnonzero(sample.whole), ""
@@ -127,4 +130,5 @@ class Method:
         if kept < self.least:
             where = " where the event happens" * self.conditional
             seen = counted(kept, *self.layout.group) + where + f" (of {every})" * (kept < every)
-            raise RefusedError(f"only {seen}; {self.least} are needed", self.least / max(kept, 1))
+            few = f"only {seen}" if kept else f"no {seen.removeprefix('0 ')}"
+            raise RefusedError(f"{few}; {self.least} are needed", self.least / max(kept, 1))

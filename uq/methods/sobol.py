@@ -92,8 +92,9 @@ def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices
         estimate, y[whole], replicates, "indices", lacking, sample.confidence
     )
     independent = y[whole][:, ends].reshape(-1, *y.shape[3:])
+    given = not notes
     more = one_more_row(independent, int(whole.sum()), len(replicates), sample.confidence)
-    if more and not notes:
+    if more and given:
         rows = effective_rows(independent) / len(replicates)
         notes += (
             f"the variance rests on about {rows:.2g} rows of each replicate: intervals are widened"
@@ -107,6 +108,9 @@ def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices
     inert = [name for name, total in indices[ST].items() if total.value == 0]
     if inert:
         notes += (f"no effect in any row, hence no interval: {', '.join(inert)}",)
+    alike = [name for name, one in indices[ST].items() if not (name in inert or one.has_interval)]
+    if alike and given:
+        notes += (f"the same ST in each replicate, hence no interval: {', '.join(alike)}",)
     return Indices(indices, notes, noise=noise)
 
 

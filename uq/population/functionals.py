@@ -18,7 +18,8 @@ from uq.intervals import (
     replicates_of_some,
     upper_probability,
 )
-from uq.population.means import pulls, rows_of_few, trusted, weighted_share
+from uq.population.few_rows import fewest_rows, hits_behind
+from uq.population.means import EXACT, pulls, trusted, weighted_share
 from uq.population.surviving import learnt_terms
 from uq.roots import root
 from uq.rows.element import Element
@@ -143,17 +144,17 @@ class Population:
         """Return a function that estimates P(Y < y) among the rows that have a value.
 
         It is for all y as cautious as it must be at a quantile: else ends would only be given
-        where rows happen to agree. With it the number of rows of which it has the interval of hits.
+        where rows happen to agree. With it the fewest rows of which it has the interval of hits.
         """
         kept = self.element.present
         weights, part = self._weights(kept), self._part(kept, value)
-        rows = rows_of_few(self._below(value)[kept], weights, part)
+        hits = hits_behind(self._below(value)[kept], weights, part)
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
-            return weighted_share(self._below(y)[kept], weights, part, rows, self.confidence)
+            return weighted_share(self._below(y)[kept], weights, part, hits, self.confidence)
 
-        return share, rows
+        return share, fewest_rows(hits)
 
     def _why_open(self, probability: float, low: float, high: float, rows: float) -> str:
         """Return why a quantile lacks an end of its interval, or ""."""
@@ -228,7 +229,9 @@ class Population:
 
         def end(start: float, unit: float, name: str) -> float:
             def excess(x: float) -> float:
-                return float(getattr(share(exp(x)), name)) - probability
+                found = share(exp(x))
+                exact = found.reason == EXACT  # its interval is a point
+                return float(found.value if exact else getattr(found, name)) - probability
 
             below = excess(start) < 0
             step = unit if below else -unit

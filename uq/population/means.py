@@ -12,21 +12,21 @@ from scipy import special
 from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.estimate import Estimate
+from uq.exact_shares import exact_interval
 from uq.intervals import (
     CONFIDENCE,
     ONE_ROW,
     ROUNDING,
     Replicates,
-    binomial_interval,
     is_constant,
     scatter_interval,
     upper_probability,
     wilson_interval,
 )
+from uq.population.few_rows import Hits, hits_behind, widened
 from uq.population.smoothing import (
     HOPELESS,
     carries_little,
-    effective_rows,
     largest_share,
     per_sample,
     refusal,
@@ -34,9 +34,6 @@ from uq.population.smoothing import (
     too_large,
 )
 from uq.quantile_functions import student
-
-FEW = 20
-"""With fewer effective rows on the rarer side, the interval is no narrower than that of hits."""
 
 EXACT = "exact: rows differ only in what is integrated"
 
@@ -63,7 +60,7 @@ def weighted_share(
     numbers: Floats,
     weights: Floats | None = None,
     part: Replicates = None,
-    hits_of: float | None = None,
+    hits: list[Hits] | None = None,
     confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Estimate the mean of numbers between 0 and 1.
@@ -75,8 +72,8 @@ def weighted_share(
     weights : ndarray, shape (n,), optional
     part : ndarray of int, shape (n,), optional
         The independent part of each row.
-    hits_of : float, optional
-        Number of rows, of which the interval of hits is that; by default `rows_of_few`.
+    hits : list of Hits, optional
+        The intervals of hits that it must allow for; by default `hits_behind`.
     confidence : float, optional
 
     Returns
@@ -84,9 +81,9 @@ def weighted_share(
     Estimate
         With Student's interval of the logit from the parts' influences. The end on the side of the
         farther outlier is moved by what two more such parts would add, since samples without them
-        scatter too little. Where fewer than 20 effective rows carry the mean, or its
-        complement, it is no narrower than the interval of a share of hits: the rows that
-        matter may be missing.
+        scatter too little. Where no more than 20 effective rows carry the mean, or its
+        complement, it is no narrower than the exact interval of a share of hits: the rows that
+        matter may be missing. Up to 40 effective rows this fades out.
     """
     worth = np.ones(len(numbers)) if weights is None else weights
     if not worth.sum() > 0:
@@ -104,10 +101,8 @@ def weighted_share(
     if 0 < mean < 1:
         outlier = _outlier(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
-    rows = rows_of_few(numbers, weights, part) if hits_of is None else hits_of
-    if rows < inf:
-        of_hits = binomial_interval(mean, rows, confidence)
-        low, high = min(low, of_hits[0]), max(high, of_hits[1])
+    some = hits_behind(numbers, weights, part) if hits is None else hits
+    low, high = widened((low, high), some, lambda rows: exact_interval(mean, rows, confidence))
     return Estimate(mean, float(low), float(high))
 
 
@@ -132,10 +127,8 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     found = pulls(numbers, np.ones(len(numbers)), part)
     if len(found) < 2:
         return Estimate(mean)
-    low, high = _of_logit(mean, found)
-    if (rows := rows_of_few(numbers, None, part)) < inf:
-        of_hits = wilson_interval(mean, rows)
-        low, high = min(low, of_hits[0]), max(high, of_hits[1])
+    some = hits_behind(numbers, None, part)
+    low, high = widened(_of_logit(mean, found), some, lambda rows: wilson_interval(mean, rows))
     return Estimate(mean, low, high)
 
 
@@ -160,27 +153,6 @@ def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tup
     half = wide * error / (mean * (1 - mean))
     low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
     return low, high
-
-
-def rows_of_few(numbers: Floats, weights: Floats | None, part: Replicates) -> float:
-    """Return of how many rows the interval of a share of hits is no wider than that of a mean.
-
-    Returns
-    -------
-    float
-        Infinite where 20 effective rows or more carry the mean, and its complement. Else the
-        effective number of all rows, or fewer where the row that carries most is heavier than
-        they: a row that is missing may be as heavy. Where no row carries anything, as heavy as the
-        heaviest.
-    """
-    worth = np.ones(len(numbers)) if weights is None else weights
-    rarer = numbers if np.average(numbers, weights=worth) <= 0.5 else 1 - numbers
-    carried, of_samples = (per_sample(one, part) for one in (worth * rarer, worth))
-    if effective_rows(carried) >= FEW:
-        return inf
-    heaviest = of_samples[carried.argmax()] if carried.any() else of_samples.max()
-    with np.errstate(over="ignore"):  # of a row that hardly has a weight
-        return min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
 
 
 def moments_of_rows(

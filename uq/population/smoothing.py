@@ -267,7 +267,7 @@ def _with_smooth_tail(raw: Floats) -> Floats:
     order = np.argsort(raw, kind="stable")
     tail, cut = order[-count:], raw[order[-count - 1]]
     excess = raw[tail] - cut
-    if not excess[0] > 0:
+    if not excess[0] > np.finfo(float).eps * raw.max():  # lost in rounding: no law of a tail
         return raw
     shape, scale = generalised_pareto(excess)
     k = shrunk(shape, count)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf, isfinite, isnan
+from math import isfinite, isnan
 
 import numpy as np
 from scipy import special
@@ -175,7 +175,7 @@ class Noisy:
         each = self._posterior @ above
         slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
         pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
-        found = weighted_share(pulls, self._worth, self._part, hits_of=inf)
+        found = weighted_share(pulls, self._worth, self._part, hits=[])
         found = replace(found, assumes=ASSUMES)
         return found if isfinite(found.low) else replace(found, low=found.value, high=found.value)
 

@@ -7,6 +7,7 @@ import xarray as xr
 
 from uq.keys import Json, Options, Path
 from uq.learning.answer import learnt, learnt_json
+from uq.learning.asked_times import read_times
 from uq.learning.inputs_learnt import confounded, inputs_learnt, quantiles
 from uq.learning.over_shared import over_shared
 from uq.learning.posterior import posterior
@@ -19,7 +20,6 @@ from uq.population.smoothing import effective_rows, tail_shape
 from uq.rows.elements import independent_rows
 from uq.tracing.citations import cited
 from uq.tracing.origin import Origin
-from uq.written import read_threshold
 
 _PARTS: dict[str, Callable[..., Any]] = {
     "effective_rows": effective_rows,
@@ -32,8 +32,8 @@ _PARTS: dict[str, Callable[..., Any]] = {
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of what inspections say."""
-    by = [read_threshold("by", options["by"], "a life", "s")] if "by" in options else []
-    return learnt_json(learnt(ds, by))
+    texts = [options["by"]] if "by" in options else []
+    return learnt_json(learnt(ds, read_times("by", texts, ds)))
 
 
 def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:

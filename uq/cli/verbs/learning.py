@@ -27,8 +27,8 @@ def update(
         typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
     ] = None,
     by: Annotated[
-        list[float] | None,
-        typer.Option(metavar="T", help="A time [s], such as that of the next outage."),
+        list[str] | None,
+        typer.Option(metavar="T", help='When, in the unit of the life, or such as "30 days".'),
     ] = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
@@ -59,7 +59,10 @@ def next_inspection(
     inspect: Annotated[
         str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
     ],
-    at: Annotated[list[float] | None, typer.Option(metavar="T", help="When [s].")] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(metavar="T", help='When, in the unit of the life, or such as "30 days".'),
+    ] = None,
     units: Annotated[
         list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
     ] = None,

@@ -170,7 +170,8 @@ def fleet(
     by: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="T", help='In seconds, or "30 days"; default: the study\'s thresholds.'
+            metavar="T",
+            help='In the unit of the life, or "30 days"; default: the study\'s thresholds.',
         ),
     ] = None,
     allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,

@@ -6,9 +6,9 @@ function explorerOf(rows) {
   let x = columns[rows.first[0]], y = columns[rows.first[1]];
   const card = make("div", {"aria-live": "polite"});
   const scatter = new Scatter(selection, columns, (row, byKey) => {
-    card.replaceChildren(cardOf(rows, row));
+    card.replaceChildren(cardOf(rows, row, close));
     if (byKey) card.querySelector("button").focus({preventScroll: true});
-    card.scrollIntoView({block: "nearest"});
+    reveal();
   });
   const ranges = new Map(), shelf = make("div", {class: "ranges"});
 
@@ -16,6 +16,18 @@ function explorerOf(rows) {
     make("select", {"on:change": event => choose(columns[event.target.value])},
       ...["input", "output"].map(role => make("optgroup", {label: `${role}s`}, ...columns.flatMap((one, place) =>
         one.role === role ? [make("option", {value: place, selected: one === chosen, title: one.meaning}, one.title)] : [])))));
+
+  // Scroll to the card, but never the plot out of sight.
+  function reveal() {
+    const hidden = card.getBoundingClientRect().bottom - window.innerHeight;
+    const room = scatter.element.getBoundingClientRect().top;
+    window.scrollBy(0, Math.max(0, Math.min(hidden, room)));
+  }
+
+  function close() {
+    card.replaceChildren();
+    scatter.close();
+  }
 
   function arrange() {
     scatter.show(x, y);
@@ -58,13 +70,11 @@ function explorerOf(rows) {
   const element = make("div", {},
     make("div", {class: "explorer"},
       make("div", {}, ...chips, ...(chips.length ? [hint] : []), chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
-        chooser("Horizontal:", x, one => { x = one; arrange(); }), keys, shelf, clear),
-      found.element),
-    card);
-  element.addEventListener("keydown", event => {
-    if (event.key !== "Escape" || !card.hasChildNodes()) return;
-    card.replaceChildren();
-    scatter.close();
+        chooser("Horizontal:", x, one => { x = one; arrange(); }), card, keys, shelf, clear),
+      found.element));
+  document.addEventListener("keydown", event => { // a click on what takes no focus leaves it to the page
+    const isHere = element.contains(event.target) || event.target === document.body;
+    if (event.key === "Escape" && isHere && card.hasChildNodes()) close();
   });
   new ResizeObserver(() => scatter.resize()).observe(scatter.element);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => scatter.draw());

@@ -1,6 +1,6 @@
 // One row: its inputs, regime and outputs, and the command that computes it again.
 
-function cardOf(rows, row) {
+function cardOf(rows, row, close) {
   const name = rows.numbers[row];
   const command = `uq row ${rows.file} ${name}${rows.model}`;
   const facts = rows.categories.map(one => [one, one.entry(row).label]);
@@ -10,7 +10,9 @@ function cardOf(rows, row) {
   const done = make("span", {role: "status"});
   const copy = make("button", {type: "button", "on:click": () => copied(command, done)}, "Copy");
   return make("div", {class: "card", "data-row": name},
-    make("h3", {}, `Row ${name}`), make("p", {class: "command"}, make("code", {}, command), " ", copy, " ", done),
+    make("h3", {}, `Row ${name}`),
+    make("p", {class: "command"}, make("code", {}, command), " ", copy, " ",
+      make("button", {type: "button", "on:click": close}, "Close"), " ", done),
     make("div", {class: "facts"},
       make("div", {}, make("h4", {}, "Inputs"), list(of("input"))),
       make("div", {}, make("h4", {}, "Outputs"), list([...facts, ...of("output")]))));

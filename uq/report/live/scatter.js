@@ -148,7 +148,8 @@ class Scatter {
   close() {
     const row = this.picked;
     this.picked = -1;
-    this.canvas.focus();
+    this.canvas.focus({preventScroll: true});
+    this.element.scrollIntoView({block: "nearest"});
     this.point(row);
     this.draw();
   }

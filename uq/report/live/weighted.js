@@ -24,17 +24,16 @@ class Weighed {
     for (let i = 0; i < worth.length; i++) mean += numbers[i] * worth[i];
     mean = Math.min(1, Math.max(0, mean / sum));
     if (numbers.every(one => one >= 1 - ROUNDING)) mean = 1; // the complement has no digits
-    const side = mean <= 0.5 ? numbers : numbers.map(one => 1 - one);
-    const rarer = perSample(this.weights ? side.map((one, i) => worth[i] * one) : side, this.sample);
-    return {share: mean, low: NaN, high: NaN, ...this.ends(numbers, mean, side, rarer)};
+    return {share: mean, low: NaN, high: NaN, ...this.ends(numbers, mean)};
   }
 
-  ends(numbers, mean, side, rarer) {
+  ends(numbers, mean) {
     if (!this.rows.independent && !this.part) return {};
     const found = this.pulls(numbers, mean), parts = found.length;
     if (parts < 2) return {};
+    const other = numbers.map(one => 1 - one);
     let least = Infinity, largest = 0;
-    for (const one of side) {
+    for (const one of mean <= 0.5 ? numbers : other) {
       if (one < least) least = one;
       if (one > largest) largest = one;
     }
@@ -53,23 +52,27 @@ class Weighed {
       low = Math.max(1 / (1 + Math.exp(half - logit)) + Math.min(outlier, 0), 0);
       high = Math.min(1 / (1 + Math.exp(-half - logit)) + Math.max(outlier, 0), 1);
     }
-    if (effectiveRows(rarer) < FEW_HITS) {
-      const [a, b] = binomial(mean, this.rowsOfFew(rarer));
-      low = Math.min(low, a);
-      high = Math.max(high, b);
-    }
-    return {low, high};
+    const hits = [numbers, other].map(side => this.hitsBehind(side)).filter(({extent}) => extent > 0).map(
+      ({rows, extent}) => [exact(mean, rows), extent]);
+    return {
+      low: Math.min(low, ...hits.map(([[end], extent]) => low + extent * Math.min(0, end - low))),
+      high: Math.max(high, ...hits.map(([[, end], extent]) => high + extent * Math.max(0, end - high))),
+    };
   }
 
-  // The effective number of rows, or fewer where the one that carries most is heavier: one that is missing may be
-  // as heavy.
-  rowsOfFew(rarer) {
-    let most = 0, heaviest = 0;
-    this.ofSamples.forEach((weight, i) => {
-      if (rarer[i] > most) [most, heaviest] = [rarer[i], weight];
-      else if (most === 0 && weight > heaviest) heaviest = weight;
+  // Of how many rows the interval is no narrower than that of hits, and how far this counts: uq/population/few_rows.py.
+  hitsBehind(side) {
+    const {weights, worth, ofSamples} = this;
+    const carried = perSample(weights ? side.map((one, i) => worth[i] * one) : side, this.sample);
+    const extent = Math.min(1, 2 - effectiveRows(carried) / FEW_HITS);
+    if (!(extent > 0)) return {extent};
+    let most = 0, heaviest = 0, largest = 0;
+    ofSamples.forEach((weight, i) => {
+      most = Math.max(most, carried[i]);
+      heaviest = Math.max(heaviest, weight * carried[i]);
+      largest = Math.max(largest, weight);
     });
-    return Math.min(effectiveRows(this.ofSamples), this.sum / heaviest);
+    return {rows: Math.min(effectiveRows(ofSamples), this.sum / (most > 0 ? heaviest / most : largest)), extent};
   }
 
   // What each independent part says of the mean: the mean, plus the influence of the part.

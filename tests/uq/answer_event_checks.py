@@ -1,0 +1,111 @@
+"""What is wrong with what an answer says of events and advises: the rows deny it."""
+
+import re
+
+import numpy as np
+from answered import numbers_in
+from scipy.stats import binomtest
+
+import uq
+from uq.rows.elements import are_independent
+
+
+def denied_event(rows, event, hits):
+    """Count how often it happens, everywhere, and where it does least and most."""
+    if not event.sentence or "not known" in event.sentence:
+        return
+    shown = numbers_in(event.sentence)
+    share = 100 * np.nan_to_num(hits).mean()
+    if event.share.has_interval:
+        value, low, high = shown[:3]
+        if not (low <= value <= high and low - 0.06 <= share <= high + 0.06):
+            yield event.sentence
+        far = 0.15 if are_independent(rows) else 0.35
+        exact = binomtest(round(np.nansum(hits)), len(hits)).proportion_ci()
+        ends = 100 * exact.low, 100 * exact.high
+        if not np.allclose((low, high), ends, atol=far * (ends[1] - ends[0]), rtol=0):
+            yield f"interval of {event.sentence}"
+    elif abs(shown[0] - share) > 0.06:
+        yield event.sentence
+    if event.undefined and abs(shown[-1] - 100 * np.isnan(hits).mean()) > 0.06:
+        yield event.sentence
+    if event.curve is not None:
+        x = rows[event.over].values / event.over_unit.per
+        pattern = r"([\d.]+) % where it is (above|below|between) (\S+)(?: and (\S+))?"
+        for percent, side, first, last in re.findall(pattern, event.decided_by):
+            first, last = (float(end.rstrip(".")) if end else np.nan for end in (first, last))
+            inside = {
+                "above": x > first,
+                "below": x < first,
+                "between": (x > first) & (x < last),
+            }
+            there = np.isfinite(hits) & inside[side]
+            if abs(100 * hits[there].mean() - float(percent)) > 8:
+                yield f"{percent} % of {event.decided_by}"
+        yield from _denied_limit(event, x, hits)
+
+
+def _denied_limit(event, x, hits):
+    """Count how often the unwanted side happens beyond a limit, and just before its band."""
+    if event.limit is None or event.limit.why:
+        return
+    share, side, at, *band = re.fullmatch(
+        r"Fewer than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
+        r"(?: \(the limit lies between ([\d.e-]+) and ([\d.e-]+)\D*\))?\.",
+        event.limited,
+    ).groups()
+    unwanted = 1 - hits if "do not" in event.limited else hits
+    at, sign = float(at), 1 if side == "least" else -1
+    known = np.isfinite(hits)
+    beyond, before = known & (sign * (x - at) > 0), known & (sign * (x - at) < 0)
+    if share != "5" or not beyond.sum() >= 30 or unwanted[beyond].mean() >= 0.05:
+        yield event.limited
+    if unwanted[beyond].mean() >= unwanted[before].mean():
+        yield event.limited
+    if band[0]:
+        low, high = map(float, band)
+        first = low if side == "least" else high
+        far = known & (sign * (x - first) < 0)
+        inside = known & (x > low) & (x < high)  # of a few parts of the curve
+        if at not in (low, high) or (far.sum() >= 30 and unwanted[far].mean() <= 0.05):
+            yield event.limited
+        if inside.sum() * len(event.curve.shares) > 4.5 * known.sum():
+            yield event.limited
+
+
+def denied_advice(ds, advice, found):
+    if advice.rule == "rows" and advice.rows is not None:
+        wanted, now = re.match(r"\D*([\d ]+) rows .*instead of ([\d ]+):", advice.text).groups()
+        if int(now.replace(" ", "")) != ds.sizes["sample"]:
+            yield advice.text
+        if not 0 <= int(wanted.replace(" ", "")) - advice.rows + 1 < 0.11 * advice.rows + 1:
+            yield advice.text
+    one = advice.tightened
+    if one is None or one.reason:
+        return
+    first, then, *ends = numbers_in(one.sentence.split(" from ")[1])
+    known = [event.share.value for event in found.quantities[0].events if event.said in one.what]
+    if known and abs(first - 100 * known[0]) > 0.06:
+        yield one.sentence
+    if ends and not ends[0] <= then <= ends[1]:
+        yield one.sentence
+    for each in (one, *advice.tolerances):
+        per = 100 if each.is_share else 1 / each.unit.per
+        fresh, shown = uq.trace(ds, each.key)["value"] * per, numbers_in(each.text(each.after))[0]
+        if abs(shown - fresh) > 0.01 * abs(fresh) + 0.06:
+            yield f"{each.sentence} {fresh}"
+    yield from _not_alike(advice)
+
+
+def _not_alike(advice):
+    """Yield tolerances that are said to help as much as the best one, and do not."""
+    best = advice.tightened
+    for each in advice.alike:
+        gains = [abs(one.after.value - one.before.value) for one in (best, each)]
+        wide = max((one.after.high - one.after.low) for one in (best, each))
+        if (
+            each.what != best.what
+            or gains[1] > gains[0]
+            or gains[0] - gains[1] > gains[0] / 3 + wide
+        ):
+            yield advice.also
