@@ -1,5 +1,6 @@
-"""Rows that are not independent: several of each independent sample."""
+"""Rows that are not independent: several of each independent sample, or weighted together."""
 
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -11,6 +12,63 @@ ENOUGH_SAMPLES = 8
 """Samples in a group, where possible, from which a curve or ratio is estimated."""
 
 MOST_GROUPS = 32
+
+
+@dataclass(frozen=True)
+class LearntTogether:
+    """The law of an input that all units share, which all rows together have learnt.
+
+    Each row weighs values of the input by what all rows say of them, so that an error of this law
+    is common to all. Its density is known up to 1 + e @ q: terms q that have mean 0, and errors e.
+
+    Attributes
+    ----------
+    pulls : ndarray, shape (n, terms)
+        Of all rows: the errors are their means.
+    part : ndarray of int, shape (n,)
+        The independent part of each.
+    row : ndarray of int, shape (m,)
+        Which of these the rows at hand are.
+    follows : ndarray, shape (m, terms)
+        The terms at the value of the input in each of them.
+    errors : ndarray, shape (n,), optional
+        What the law adds to the influence of each on the mean at hand.
+    """
+
+    pulls: Floats
+    part: NDArray[np.integer]
+    row: NDArray[np.intp]
+    follows: Floats
+    errors: Floats | None = None
+
+    def some(self, rows: Any) -> "LearntTogether":
+        """Return the same for some of the rows at hand."""
+        return replace(self, row=self.row[rows], follows=self.follows[rows])
+
+    def going_with(self, joint: Floats) -> "LearntTogether":
+        """Return the same for a mean that goes with the terms in another way than row by row.
+
+        Parameters
+        ----------
+        joint : ndarray, shape (terms,)
+            The weighted mean of the terms times what the numbers lie above their mean.
+        """
+        return replace(self, errors=self.pulls @ joint)
+
+    def with_errors(self, influence: Floats) -> Floats:
+        """Return the influence of all rows on a weighted mean, shape (n,).
+
+        Parameters
+        ----------
+        influence : ndarray, shape (m,)
+            Of the rows at hand, were the law known.
+        """
+        errors = self.errors
+        if errors is None:
+            errors = self.pulls @ (influence @ self.follows / len(influence))
+        found = errors.copy()
+        found[self.row] += influence * (len(found) / len(influence))
+        return found
 
 
 class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
@@ -25,21 +83,44 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
         The number of samples: of independent things, at most.
     are_samples : bool
         Whether the parts are samples, not replicates of a design.
+    together : LearntTogether or None
+        What else makes the rows depend on each other.
     """
 
     samples: int
     are_samples: bool
+    together: LearntTogether | None
 
-    def __new__(cls, of: ArrayLike, samples: int, are_samples: bool = True) -> Self:
+    def __new__(
+        cls,
+        of: ArrayLike,
+        samples: int,
+        are_samples: bool = True,
+        together: LearntTogether | None = None,
+    ) -> Self:
         """Mark the part of each row, shape (n,)."""
         marked = np.asarray(of, dtype=np.int64).view(cls)
-        marked.samples, marked.are_samples = samples, are_samples
+        marked.samples, marked.are_samples, marked.together = samples, are_samples, together
         return marked
 
     def __array_finalize__(self, other: Any) -> None:
         """Keep the number of samples where some rows are taken."""
         self.samples = getattr(other, "samples", 0)
         self.are_samples = getattr(other, "are_samples", True)
+        self.together = None
+
+    def with_together(self, together: LearntTogether) -> Self:
+        """Return the same parts, which depend on each other in another way."""
+        found = self.copy()
+        found.together = together
+        return found
+
+    def __getitem__(self, rows: Any) -> Any:
+        """Return the parts of some rows."""
+        found = super().__getitem__(rows)
+        if self.together is not None and isinstance(found, Clusters):
+            found.together = self.together.some(rows)
+        return found
 
 
 def linearised_means(values: NDArray[Any], of: NDArray[np.integer]) -> Floats:

@@ -145,6 +145,8 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     91-96 (1941).
     """
     n = len(values)
+    if n + failed == 0:
+        return np.nan, np.nan
     outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
     return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
 

@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 from answer_contradictions import denied_by_each_other
 from answer_event_checks import denied_advice, denied_event
+from answer_whole_checks import denied_enough, denied_levels
 from answered import numbers_in
 from scipy.stats import binomtest
 
@@ -44,6 +45,8 @@ class Checker:
             yield from (f"{regime.said}: {text}" for text in denied_event(self.rows, regime, hits))
         for advice in found.advice:
             yield from (f"{advice.rule}: {text}" for text in denied_advice(self.ds, advice, found))
+        yield from denied_levels(self.ds, found)
+        yield from denied_enough(self.ds, found)
         shown = [self.ds.sizes["sample"], *([found.failed] if found.failed else [])]
         if sorted(numbers_in(found.rows_sentence)) != sorted(shown):
             yield found.rows_sentence

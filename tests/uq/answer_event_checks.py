@@ -42,6 +42,35 @@ def denied_event(rows, event, hits):
             there = np.isfinite(hits) & inside[side]
             if abs(100 * hits[there].mean() - float(percent)) > 8:
                 yield f"{percent} % of {event.decided_by}"
+        yield from _denied_limit(event, x, hits)
+
+
+def _denied_limit(event, x, hits):
+    """Count how often the unwanted side happens beyond a limit, and just before its band."""
+    if event.limit is None or event.limit.why:
+        return
+    share, side, at, *band = re.fullmatch(
+        r"Fewer than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
+        r"(?: \(the limit lies between ([\d.e-]+) and ([\d.e-]+)\D*\))?\.",
+        event.limited,
+    ).groups()
+    unwanted = 1 - hits if "do not" in event.limited else hits
+    at, sign = float(at), 1 if side == "least" else -1
+    known = np.isfinite(hits)
+    beyond, before = known & (sign * (x - at) > 0), known & (sign * (x - at) < 0)
+    if share != "5" or not beyond.sum() >= 30 or unwanted[beyond].mean() >= 0.05:
+        yield event.limited
+    if unwanted[beyond].mean() >= unwanted[before].mean():
+        yield event.limited
+    if band[0]:
+        low, high = map(float, band)
+        first = low if side == "least" else high
+        far = known & (sign * (x - first) < 0)
+        inside = known & (x > low) & (x < high)  # of a few parts of the curve
+        if at not in (low, high) or (far.sum() >= 30 and unwanted[far].mean() <= 0.05):
+            yield event.limited
+        if inside.sum() * len(event.curve.shares) > 4.5 * known.sum():
+            yield event.limited
 
 
 def denied_advice(ds, advice, found):

@@ -21,11 +21,13 @@ from scipy.stats import binomtest
 
 from uq.analysis.findings import Findings
 from uq.cli.tables import show_answer
-from uq.conclusions.advice import advise, verdict
+from uq.conclusions.advice import advise
 from uq.conclusions.answer import answer
 from uq.conclusions.page import fragment
-from uq.conclusions.parts import Answer, Event
+from uq.conclusions.parts import Event
 from uq.conclusions.remedies import Tightened
+from uq.conclusions.verdict import verdict
+from uq.conclusions.whole import Answer
 from uq.contract import Status
 from uq.estimate import Estimate
 
@@ -161,9 +163,7 @@ def test_without_weighing_a_command_answers():
     ds = linear(samples=500)
     findings = Findings(ds)
     (one,) = (
-        each
-        for each in advise(findings, answer(ds).quantities, weighed=False)
-        if each.rule == "tighten"
+        each for each in advise(findings, answer(ds), weighed=False) if each.rule == "tighten"
     )
     assert one.text == (
         "See what half the scatter of x4 would change: uq what-if OUT"
@@ -213,7 +213,7 @@ def test_a_study_that_names_the_regime_first_is_about_the_regimes(capsys):
         printed = capsys.readouterr().out
         assert printed.startswith(found.regimes_sentence[:20]) == first
         page = fragment(found)
-        places = [page.index(words) for words in ("slow", "answer-promise")]
+        places = [page.index(words) for words in ("slow", str(answer(ds).lead.words[1:]))]
         assert (places == sorted(places)) == first
 
 
@@ -223,13 +223,14 @@ def test_the_rarer_regimes_say_what_decides_them():
         for name, share in (("a", 0.8), ("b", 0.195), ("c", 0.005))
     )
     found = Answer("", 100, 0, (), (often, seldom, rare), ())
-    assert [one.sentence for one, _ in found.told_regimes] == [
+    assert [one.sentence for one in found.main_regimes] == [
         "80.0 % (79.5 to 80.5 %) a.",
         "19.5 % (19.0 to 20.0 %) b.",
     ]
     ds = kinds(samples=400)
-    (first, told), (second, told_too) = answer(ds).told_regimes
-    assert (first.said, told, second.said, told_too) == ("slow", False, "fast", True)
+    first, second = answer(ds).main_regimes
+    assert (first.said, second.said) == ("slow", "fast")
+    assert [one.said for one in answer(ds).regime_causes] == ["fast"]
     *_, never, below, always, above = numbers(
         r"# % \(# to # %\) fast\. Decided most by x1: from # % where it is below # m"
         r" to # % where it is above # m\.",

@@ -25,3 +25,9 @@ def test_bounds_are_rounded_to_the_safe_side():
 
 def test_numbers_of_rows_are_rounded_up():
     assert [rows_in_words(n) for n in (8, 59, 1234, 98765)] == ["8", "59", "1 300", "99 000"]
+
+
+def test_thousands_are_written_out():
+    shown = [rounded(one) for one in (999.4, 999.6, 1234.0, -1500.0, 9994.0, 12345.0)]
+    assert shown == ["999", "1000", "1230", "-1500", "9990", "1.23e+04"]
+    assert rounded(1120.4, np.inf) == "1130" and rounded(1120.4, -np.inf) == "1120"

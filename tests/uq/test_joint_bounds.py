@@ -10,10 +10,10 @@ from scipy import stats
 import uq
 from uq.analysis.findings import Findings
 from uq.analysis.joint_bounds import Needed, rows_needed
-from uq.conclusions.advice import advise, verdict
 from uq.conclusions.answer import conclude
 from uq.conclusions.as_json import answer_json
 from uq.conclusions.quantities import quantities
+from uq.conclusions.verdict import verdict
 from uq.errors import InputError
 from uq.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
 from uq.rows.elements import analysis_of
@@ -128,7 +128,7 @@ def test_bounds_that_lack_rows_are_not_settled():
     found = Findings(failing)
     said = "oo many rows failed for the joint bounds that the study asks for"
     assert f"T{said}. More rows would not help." in verdict(found)
-    advice = {one.rule: one.text for one in advise(found, quantities(found))}
+    advice = {one.rule: one.text for one in conclude(found).advice}
     assert f"t{said}" in advice["failed"] and "joint" not in advice.get("rows", "")
     why = quantities(found)[0].promise.why
     assert "of the rows failed, and count as lying beyond it" in why

@@ -51,9 +51,22 @@ def of_any_unit():
     )
 
 
+def of_unit_in_a_world():
+    """Return the laws of depth and life of an inspected unit whose rate is that of all units."""
+    mean, cov = exactly(SHARED, cv=0.3, shared_rate=True)
+    of_life = cov[0, 0] - 2 * cov[0, 1] + cov[1, 1]
+    return (
+        stats.lognorm(cov[1, 1] ** 0.5, scale=np.exp(mean[1])),
+        "depth[unit=A]",
+        stats.lognorm(of_life**0.5, scale=np.exp(mean[1] - mean[0])),
+        "A",
+    )
+
+
 CASES = {
     "own rows": (own_rows, of_one_unit(5e5, 0.1)),
     "worlds": (worlds, of_any_unit()),
+    "unit in a world": (worlds, of_unit_in_a_world()),
     "new rows": (new_rows, of_one_unit(2e7, 0.05)),
 }
 

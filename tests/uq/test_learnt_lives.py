@@ -8,7 +8,6 @@ from scipy import stats
 from uq.exploring.updating import update
 from uq.learning.dependent_outputs import dependent_outputs
 from uq.learning.inspections import read_tables
-from uq.learning.integrated import not_integrated
 from uq.learning.posterior import posterior
 from uq.learning.remaining import remaining
 from uq.learning.result import as_unit
@@ -86,7 +85,7 @@ def test_an_input_on_which_other_outputs_depend_is_not_integrated():
     assert list(dependent_outputs(rows, "depth")) == ["power"]
     found = posterior(rows, told)
     assert found.scale is None
-    (why,) = not_integrated(rows, list(found.looks.values()))
+    (why,) = found.not_integrated
     assert why == "depth is not integrated: power depends on it otherwise."
 
 

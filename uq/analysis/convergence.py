@@ -1,6 +1,7 @@
 """Convergence: estimates as the rows came in, and the error of sampling beside other errors."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -8,7 +9,7 @@ import xarray as xr
 
 from uq.analysis.statistics.counts import stated_error
 from uq.analysis.statistics.statistic import Reader
-from uq.analysis.summary import summarise
+from uq.analysis.summary import Described, summarise
 from uq.designs.registry import DESIGNS
 from uq.element_names import is_whole, whole_name
 from uq.errors import InputError
@@ -98,18 +99,40 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
     for element in named_elements(ds, output) if output else elements_of(ds, plain):
         if element.name not in found:
             continue
-        label, one = "mean", found[element.name].find("mean")
-        if one is None or np.isnan(one.estimate.value) or one.estimate.reason:
-            label, one = "median", found[element.name].find("quantiles", "0.5")
-        known = one is not None and one.estimate.has_interval
-        sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
-        own = _own_error(ds, element)
-        words = _WARNING.format(own=own, units=element.units, sampling=sampling)
-        lines[element.name] = (label, sampling, own, words if own > sampling else "")
+        lines[element.name] = compared(ds, element, found[element.name])
     columns = ["estimate", "sampling", "own", "warning"]
     return pd.DataFrame(
         list(lines.values()), index=pd.Index(list(lines), name="output"), columns=columns
     )
+
+
+class Errors(NamedTuple):
+    """The error of sampling and that of the rows themselves, as `enough` returns them."""
+
+    estimate: str
+    sampling: float
+    own: float
+    warning: str
+
+
+def compared(ds: xr.Dataset, element: Element, described: Described) -> Errors:
+    """Compare the error of sampling of an element with that of the rows themselves.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    element : Element
+    described : Described
+        Its statistics.
+    """
+    label, one = "mean", described.find("mean")
+    if one is None or np.isnan(one.estimate.value) or one.estimate.reason:
+        label, one = "median", described.find("quantiles", "0.5")
+    known = one is not None and one.estimate.has_interval
+    sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
+    own = _own_error(ds, element)
+    words = _WARNING.format(own=own, units=element.units, sampling=sampling)
+    return Errors(label, sampling, own, words if own > sampling else "")
 
 
 _WARNING = (

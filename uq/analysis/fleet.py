@@ -5,13 +5,16 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
+import numpy as np
 import xarray as xr
 
 from uq.analysis.fleet_numbers import Banded, FleetNumbers
 from uq.analysis.summary import why_no_intervals
+from uq.clusters import Clusters
 from uq.designs.levels import SHARED
 from uq.designs.registry import several
 from uq.errors import InputError, choices
+from uq.intervals import Replicates
 from uq.population.fleets import Units, units_of
 from uq.population.row_inputs import inputs_of
 from uq.population.scaling import without_effect
@@ -22,10 +25,11 @@ from uq.rows.elements import (
     has_independent_samples,
     independent_rows,
     lifetimes,
+    replicates_of,
     shown_outputs,
     why_no_statistics,
 )
-from uq.rows.nesting import levels_that_vary, samples_have, size_in_words
+from uq.rows.nesting import Nesting, levels_that_vary, samples_have, size_in_words
 from uq.rows.variables import outputs_of
 from uq.units import beside
 
@@ -197,7 +201,7 @@ def fleet_of(
                 f" {beside(repr(time), element.declared.unit)}; ask for an earlier time, or compute"
                 " a longer horizon"
             )
-    part = None if has_independent_samples(rows) else units.place.replicate
+    part = _part_of_samples(rows, units.place)
     idle = without_effect(inputs_of(rows), element.declared)
     of = FleetNumbers(units, size, allow, part, SHARED in levels_that_vary(rows, idle))
     first = {p: of.first(p) for p in analysis.quantiles}
@@ -243,3 +247,12 @@ def _refuse(units: Units, size: int) -> None:
             f" in [design] {several('units', units.design, size)}; fewer are enough only where all"
             f" that differs between units is integrated exactly, and {names} {verb} not"
         )
+
+
+def _part_of_samples(rows: xr.Dataset, place: Nesting) -> Replicates:
+    """Return the independent part of each sample, shape (samples,)."""
+    part = replicates_of(rows)
+    if isinstance(part, Clusters) and part.together is not None:
+        _, first = np.unique(place.sample, return_index=True)
+        return part[first]
+    return None if has_independent_samples(rows) else place.replicate

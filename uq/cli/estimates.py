@@ -11,8 +11,8 @@ from uq.analysis.converging import converging
 from uq.analysis.findings import Findings
 from uq.analysis.twin import with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.conclusions.advice import verdict
 from uq.conclusions.targets import Target
+from uq.conclusions.verdict import verdict
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.units import typical, unit_of

@@ -15,7 +15,7 @@ from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import REGIME, Described, Summary
 from uq.cli.printing import console, grid, heading, note, paragraph
 from uq.conclusions.answer import conclude
-from uq.conclusions.parts import Answer
+from uq.conclusions.whole import Answer
 from uq.estimate import Estimate
 from uq.greek import readable
 from uq.indices.targets import split_name
@@ -81,11 +81,12 @@ def show_answer(found: Answer) -> None:
     if found.failed or lead is None:
         paragraph(found.rows_sentence, indent=0)
     of_lead = [] if lead is None else [*lead.head, *(one.with_cause for one in lead.others)]
+    own = [*found.level_lines, found.enough.sentence]
     if found.regimes_first:
-        causes = (one.decided_by for one, with_cause in found.told_regimes if with_cause)
-        lines = [found.regimes_sentence, *causes, *of_lead]
+        causes = (one.named_cause for one in found.regime_causes)
+        lines = [found.regimes_sentence, *own, *causes, *of_lead]
     else:
-        lines = [*of_lead, found.regimes_sentence]
+        lines = [*of_lead, *own, found.regimes_sentence]
     for line in filter(None, lines):
         paragraph(line, indent=0)
     if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
@@ -93,8 +94,6 @@ def show_answer(found: Answer) -> None:
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
                 paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
-    if lead is not None and lead.repeated.sentence:
-        paragraph(lead.repeated.sentence, indent=0)
     if lead is not None and lead.earliest is not None:
         for line in lead.earliest.lines:
             paragraph(line, indent=0)

@@ -1,6 +1,7 @@
 """The answer of a study, computed once from what is known of its result."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import xarray as xr
@@ -8,8 +9,11 @@ import xarray as xr
 from uq.analysis.findings import Findings
 from uq.analysis.summary import REGIME
 from uq.conclusions.advice import advise
-from uq.conclusions.parts import Answer, Event
+from uq.conclusions.deciding import Levels, levels_of, starts_alike
+from uq.conclusions.enough import enough_of
+from uq.conclusions.parts import Event
 from uq.conclusions.quantities import event, quantities
+from uq.conclusions.whole import Answer
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
 
@@ -58,16 +62,50 @@ def _concluded(findings: Findings, weighed: bool) -> Answer:
     ds = findings.ds
     found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
     regimes = tuple(regimes_of(findings))
-    return Answer(
+    plain = Answer(
         str(ds.attrs["title"]),
         ds.sizes["sample"],
         int(failed(ds).sum()),
         found,
         regimes,
-        tuple(advise(findings, found, weighed)),
+        (),
         tuple(findings.summary.notes),
         regimes_first=bool(regimes) and analysis_of(ds).outputs[:1] == (REGIME,),
+        starts_alike=starts_alike(ds) if regimes else "",
     )
+    known = beside_levels(plain, _levels(findings, plain))
+    about = known.main_regimes if known.regimes_first else ()
+    known = replace(known, enough=enough_of(findings, known.quantities, about))
+    return replace(known, advice=tuple(advise(findings, known, weighed)))
+
+
+def beside_levels(found: Answer, levels: Levels | None) -> Answer:
+    """Return an answer that says which level decides, and if single inputs are not on it."""
+    leader = None if levels is None else levels.leader
+    if leader is None:
+        return replace(found, levels=levels)
+
+    def beside(event: Event) -> Event:
+        first = None if event.ranking is None else event.ranking.leader
+        other = first is not None and not set(first.inputs) <= set(leader.inputs)
+        return replace(event, is_of_single=other)
+
+    regimes = found.regimes
+    quantities = found.quantities
+    if found.regimes_first:
+        regimes = tuple(beside(one) for one in regimes)
+    else:
+        events = tuple(beside(one) for one in quantities[0].events)
+        quantities = (replace(quantities[0], events=events), *quantities[1:])
+    return replace(found, levels=levels, regimes=regimes, quantities=quantities)
+
+
+def _levels(findings: Findings, found: Answer) -> Levels | None:
+    """Return which level decides what the study is about; None where that is not known."""
+    if found.regimes_first:
+        (first, *_) = found.regimes
+        return levels_of(findings, first.name, f"whether it is {first.said}")
+    return None if found.lead is None else levels_of(findings, found.lead.name, "its scatter")
 
 
 def regimes_of(findings: Findings) -> Iterator[Event]:

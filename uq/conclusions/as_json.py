@@ -7,11 +7,15 @@ from typing import Any
 from uq import json_form
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Change, Contribution, Ranking
+from uq.conclusions.deciding import Levels
 from uq.conclusions.earliest import Earliest
-from uq.conclusions.parts import Answer, Event, Quantity
+from uq.conclusions.enough import Enough
+from uq.conclusions.limits import Limit
+from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice
 from uq.conclusions.repeated import Repeated
+from uq.conclusions.whole import Answer
 
 
 def answer_json(found: Answer) -> dict[str, Any]:
@@ -22,21 +26,45 @@ def answer_json(found: Answer) -> dict[str, Any]:
     dict
         ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
         ``range``, ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
-        ``ranking``; ``regimes``: label -> event; ``advice``: rule -> ``text``, ``inputs``,
-        ``rows`` and ``others``, what else they would settle. The numbers
+        ``ranking``; ``regimes``: label -> event; ``enough``, whether the rows are: what is not
+        settled besides (``others``), what another seed would find of a share (``expected``), and
+        the errors of what the study is about where that of the rows is the larger; ``levels``: the
+        ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
+        ``text``, ``inputs`` and ``rows``. The numbers
         of a sentence stand side by side, with the sentence, under a key of their own. An event has
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
-        input ``over``. A ranking has ``contributions``: ``inputs`` -> index, ``effects`` -> change
-        with a ``step`` of the input, in a ``unit`` or, where that is "", in that of the output. The
-        earliest rows have ``lives`` (row -> life), and the ``inputs`` that distinguish
-        them and the ``regimes`` of most of them.
+        input ``over``, and the ``limit`` of this input, ``at`` which its unwanted side becomes
+        rare, with that probability. A ranking has ``contributions``: ``inputs`` -> index,
+        ``effects`` -> change with a ``step`` of the input, in a ``unit`` or, where that is "", in
+        that of the output. The earliest rows have ``lives`` (row -> life), and the ``inputs`` that
+        distinguish them and the ``regimes`` of most of them.
     """
     return {
         "rows": found.rows,
         "failed": found.failed,
         "quantities": {one.name: _quantity(one) for one in found.quantities},
         "regimes": {one.said: _event(one) for one in found.regimes},
+        "enough": _enough(found.enough),
+        "levels": None if found.levels is None else _levels(found.levels),
         "advice": {one.rule: _advice(one) for one in found.advice},
+    }
+
+
+def _enough(one: Enough) -> dict[str, Any]:
+    known: dict[str, Any] = {"sentence": one.sentence, "others": list(one.others)}
+    if one.again.is_share and one.again.what:
+        known["expected"] = _repeated(one.again)["expected"]
+    if one.errors is not None:
+        known |= {"own_error": one.errors.own, "sampling_error": one.errors.sampling}
+    return known
+
+
+def _levels(one: Levels) -> dict[str, Any]:
+    return {
+        "sentence": one.sentence,
+        "target": one.target,
+        "shares": {each.name: json_form.numbers(each.share) for each in one.levels},
+        "another_regime": None if one.another is None else json_form.numbers(one.another),
     }
 
 
@@ -130,7 +158,16 @@ def _event(one: Event) -> dict[str, Any]:
                 f"{name}_below": high,
             }
         found |= {"over": one.over, "parts": parts}
+    if one.limit is not None:
+        found["limit"] = _limit(one.limit)
     return found | _of_ranking(one.ranking)
+
+
+def _limit(one: Limit) -> dict[str, Any]:
+    ends = {name: json_form.number(getattr(one, name)) for name in ("at", "until")}
+    return (
+        {"sentence": one.sentence, "is_lower": one.is_lower} | ends | json_form.numbers(one.share)
+    )
 
 
 def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
@@ -177,5 +214,4 @@ def _change(one: Change, name: str) -> dict[str, Any]:
 
 def _advice(one: Advice) -> dict[str, Any]:
     rows = {} if one.rows is None else {"rows": one.rows}
-    others = {"others": list(one.others)} if one.others else {}
-    return {"text": one.text, "inputs": list(one.inputs)} | rows | others
+    return {"text": one.text, "inputs": list(one.inputs)} | rows

@@ -4,6 +4,7 @@ import shlex
 from dataclasses import dataclass, replace
 from math import isnan
 
+import numpy as np
 import xarray as xr
 
 from uq.analysis.earliest import (
@@ -111,7 +112,7 @@ class Earliest:
 
 
 def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates) -> Earliest | None:
-    """Return which rows end first, and what distinguishes them; None where no row ends.
+    """Return which rows end first, and what distinguishes them; None where none does.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     except InputError:
         return None
     rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
-    if not rows:
+    if not rows or (len(rows) > 1 and not np.ptp(element.values[element.present])):
         return None
     ds, lowest = findings.ds, shlex.quote(element.name)
     command = f"uq row {file_of(ds)} --lowest {lowest}{model_option(ds)}"

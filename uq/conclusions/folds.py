@@ -6,6 +6,7 @@ from markupsafe import Markup
 
 from uq.conclusions import keyed
 from uq.conclusions.remedies import Advice, Tightened
+from uq.conclusions.whole import Answer
 from uq.conclusions.words import called_together
 from uq.literals import plain
 from uq.printed import printed
@@ -24,11 +25,16 @@ def items(lines: Iterable[str]) -> Markup:
     return Markup("<ul>{}</ul>").format(found) if found else found
 
 
+def unsettled(answer: Answer) -> Markup:
+    """Return what is not settled besides what is advised; "" where there is nothing."""
+    return folded("What else is not settled", items(answer.enough.others))
+
+
 def below(one: Advice) -> Markup:
-    """Return what belongs to a piece of advice: other tolerances, what else is not settled."""
-    if len(one.tolerances) > 1:
-        return folded("Half the scatter of each input", _tolerances(one))
-    return folded("What else is not settled", items(one.others))
+    """Return what belongs to a piece of advice: what other tolerances would change."""
+    if len(one.tolerances) < 2:
+        return Markup()
+    return folded("Half the scatter of each input", _tolerances(one))
 
 
 def _tolerances(advice: Advice) -> Markup:

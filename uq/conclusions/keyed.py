@@ -1,13 +1,15 @@
 """Sentences of the answer as HTML, each with the keys of its numbers for ``uq trace``."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup, escape
 
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Answer, Event, Quantity
+from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.remedies import Advice
-from uq.conclusions.words import sentence
+from uq.conclusions.repeated import Repeated
+from uq.conclusions.whole import Answer
+from uq.conclusions.words import sentence, share_text
 from uq.keys import key_of
 from uq.literals import plain
 from uq.printed import printed
@@ -42,10 +44,28 @@ def likely(one: Quantity) -> Markup:
 
 def repeated(one: Quantity) -> Markup:
     """Return what another seed would find; "" where that is not known."""
-    known = one.repeated
-    if known.what:
-        return keyed(known.sentence, _key(one, "another_seed", "expected"))
-    return escape(plain(printed(known.sentence)))
+    return _again(one.repeated.sentence, one.repeated, _key(one, "another_seed", "expected"))
+
+
+def enough(one: Answer) -> Markup:
+    """Return whether the rows are enough, and what another seed would find."""
+    key = _answer("enough", "expected")
+    if one.lead is not None and not one.regimes_first:
+        key = _key(one.lead, "another_seed", "expected")
+    return _again(one.enough.sentence, one.enough.again, key)
+
+
+def _again(text: str, known: Repeated, key: str) -> Markup:
+    return keyed(text, key) if known.what else escape(plain(printed(text)))
+
+
+def levels(one: Answer) -> Markup:
+    """Return which level decides, as far as that is known."""
+    if (found := one.levels) is None:
+        return Markup()
+    shares = (_answer("levels", "shares", each.name, "value") for each in found.levels)
+    another = keyed(found.switching, _answer("levels", "another_regime", "value"))
+    return Markup(" ").join(filter(None, (keyed(found.sentence, *shares), another)))
 
 
 def events(one: Quantity) -> list[Markup]:
@@ -63,16 +83,31 @@ def first(one: Quantity) -> tuple[Markup, Markup]:
     if one.first is None:
         return Markup(), Markup()
     path = _path(one, one.first)
-    return _share(one.first, path), _cause(one.first, path)
+    cause = filter(None, (_cause(one.first, path), _limit(one.first, path)))
+    return _share(one.first, path), Markup(" ").join(cause)
 
 
-def regime(one: Event, with_cause: bool = True) -> Markup:
+def regime(one: Event) -> Markup:
     """Return the share of a regime, and what decides it."""
-    return _event(one, ("regimes", one.said), with_cause)
+    return _event(one, ("regimes", one.said))
 
 
-def _event(one: Event, path: Path, with_cause: bool = True) -> Markup:
-    known = [_share(one, path), _cause(one, path) if with_cause else ""]
+def cause_of(one: Event) -> Markup:
+    """Return what decides a regime, after its name."""
+    return keyed(one.named_cause, _answer(*_cause_key(one, ("regimes", one.said))))
+
+
+def shares(several: Sequence[Event]) -> Markup:
+    """Return the shares of regimes in one sentence; "" without any."""
+    known = [
+        keyed(f"{share_text(one.share)} {one.said}", _answer("regimes", one.said, "share"))
+        for one in several
+    ]
+    return Markup("{}.").format(Markup(", ").join(known)) if known else Markup()
+
+
+def _event(one: Event, path: Path) -> Markup:
+    known = (_share(one, path), _cause(one, path), _limit(one, path))
     return Markup(" ").join(filter(None, known))
 
 
@@ -81,9 +116,16 @@ def _share(one: Event, path: Path) -> Markup:
 
 
 def _cause(one: Event, path: Path) -> Markup:
-    settled = one.curve is not None
-    key = (*path, "decided_by") if settled else (*path, "ranking", "rows_factor")
-    return keyed(one.decided_by, _answer(*key))
+    return keyed(one.decided_by, _answer(*_cause_key(one, path)))
+
+
+def _cause_key(one: Event, path: Path) -> Path:
+    return (*path, "decided_by") if one.curve is not None else (*path, "ranking", "rows_factor")
+
+
+def _limit(one: Event, path: Path) -> Markup:
+    of = None if one.limit is None else "value" if one.limit.why else "at"
+    return Markup() if of is None else keyed(one.limited, _answer(*path, "limit", of))
 
 
 def _path(one: Quantity, of: Event) -> Path:

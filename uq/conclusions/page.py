@@ -6,7 +6,8 @@ from markupsafe import Markup
 
 from uq.conclusions import bars, folds, keyed
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Answer, Quantity
+from uq.conclusions.parts import Quantity
+from uq.conclusions.whole import Answer
 from uq.conclusions.words import called, sentence
 from uq.errors import choices
 from uq.literals import plain
@@ -17,11 +18,12 @@ _STYLE = """
 .answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
 @media (min-width: 60rem), print {
   .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
-    grid-template-rows: auto auto 1fr; align-items: start; }
+    grid-template-rows: auto auto 1fr auto; align-items: start; }
   .answer-verdict { grid-area: 1 / 1; }
   .answer > figure { grid-area: 1 / 2 / 3 / 3; }
   .answer-ranking { grid-area: 2 / 1 / 4 / 2; }
-  .answer-todo { grid-area: 3 / 2; }
+  .answer-todo { grid-area: 3 / 2 / 5 / 3; }
+  .answer-first { grid-area: 4 / 1; }
 }
 .answer p, .answer ul { margin: .25rem 0; }
 .answer ul { padding-left: 1.2rem; }
@@ -41,6 +43,10 @@ _STYLE = """
 """
 STYLE = Markup(_STYLE) + bars.STYLE
 
+_BAR = Markup(
+    '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>'
+    '<span class="answer-why">{}</span></div>'
+)
 _MOST_BARS = 4
 _SEEN = 0.05  # of the largest bar; a shorter one cannot be seen
 _MOST_ELEMENTS = 2  # besides the first; of more, only the last
@@ -56,8 +62,8 @@ def fragment(answer: Answer, picture: str = "") -> Markup:
     picture : str, optional
         HTML: of the quantity that the study is about.
     """
-    blocks = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer)]
-    return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, blocks)))
+    parts = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer), _first(answer)]
+    return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, parts)))
 
 
 def notebook(answer: Answer) -> str:
@@ -88,30 +94,41 @@ def regimes(answer: Answer) -> Markup:
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    told = [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
-    parts = [*told, *parts] if answer.regimes_first else [*parts, *told]
+    own = [keyed.enough(answer), keyed.levels(answer), folds.unsettled(answer)]
+    causes = [keyed.cause_of(one) for one in answer.regime_causes]
+    shares = keyed.shares(answer.main_regimes)
+    if answer.regimes_first:
+        parts = [_large(shares), *_under(own), *map(_line, causes), *parts]
+    else:
+        parts += [*_under(own), _line(shares) if shares else shares]
+        decided = folds.items([*causes, answer.starts_alike])
+        parts.append(folds.folded("What decides the regime", decided))
     if answer.failed or lead is None:
         parts.insert(0, _line(keyed.rows(answer)))
     return _block("verdict", parts)
+
+
+def _under(own: Sequence[Markup]) -> Iterator[Markup]:
+    """Yield whether the rows are enough, which level decides, and what is to be unfolded."""
+    again, levels, unsettled = own
+    yield _line(levels) if levels else levels
+    yield _small(again) if again else again
+    yield unsettled
 
 
 def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     promise = lead.promise
     share, cause = keyed.first(lead)
     if verdict := keyed.promise(lead) or share:
-        yield Markup('<p class="answer-promise">{}</p>').format(verdict)
+        yield _line(verdict) if answer.regimes_first else _large(verdict)
     if cause:
         yield _line(cause)
-    yield Markup('<p class="answer-why">{}</p>').format(
-        plain(printed(f"{capitalized(lead.words)}."))
-    )
+    yield _small(f"{capitalized(lead.words)}.")
     if promise is not None and promise.why:
         yield _small(promise.why)
     if likely := keyed.likely(lead):
         yield _line(likely)
     yield from map(_line, keyed.others(lead))
-    if again := keyed.repeated(lead):
-        yield _small(again)
     elements = [one for one in answer.quantities[1:] if one.output == lead.output]
     promised = [one for one in elements if one.promise is not None and one.promise.sentence]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:
@@ -123,21 +140,37 @@ def _ranking(answer: Answer) -> Markup:
     if lead is None or lead.ranking is None:
         return Markup()
     ranking = lead.ranking
-    title = Markup("<h3>What it depends on</h3>")
-    first = _first(lead)
+    title = Markup("<h3>What it depends on</h3>{}").format(_levels(answer))
     if ranking.leader is None:
-        return _block("ranking", [title, _line(keyed.leader(lead)), first])
+        why = keyed.leader(lead)
+        if answer.regimes_first:
+            why = Markup("{}: {}").format(plain(printed(capitalized(lead.words))), why)
+        return _block("ranking", [title, _line(why)])
     note = _small(sentence(ranking.what))
     largest = ranking.contributions[0].value
     seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
     shown = enumerate(seen[:_MOST_BARS])
-    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note, first])
+    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note])
 
 
-def _first(lead: Quantity) -> Markup:
+def _levels(answer: Answer) -> Markup:
+    """Return the levels as bars, of a study that is about the regimes."""
+    if answer.levels is None or not answer.regimes_first:
+        return Markup()
+    found = []
+    for one in answer.levels.levels:
+        track = bars.bar(one.share.value, one.share.low, one.share.high, (0.0, 1.0))
+        size = Contribution(one.inputs, (one.share,), share_of_variance=True).size
+        texts = capitalized(one.words), track, size, one.inputs_named
+        found.append(_BAR.format(*map(_shown, texts)))
+    return Markup("").join(found)
+
+
+def _first(answer: Answer) -> Markup:
     """Return which rows of a life end first, and why."""
-    found = Markup("").join(map(_line, keyed.earliest(lead)))
-    return Markup("<h3>What ends first</h3>{}").format(found) if found else found
+    found = [] if answer.lead is None else [*map(_line, keyed.earliest(answer.lead))]
+    title = Markup("<h3>What ends first</h3>")
+    return _block("first", [title, *found]) if found else Markup()
 
 
 def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
@@ -150,14 +183,11 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     words, told = one.words, bool(one.effect)
     if len(one.inputs) > _MOST_NAMED:
         words, told = choices(map(called, one.inputs), _MOST_NAMED - 1), False
-    effect = Markup('<span class="answer-why">{}</span>').format(keyed.effect(lead, number, one))
-    return Markup(
-        '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>{}</div>'
-    ).format(
+    return _BAR.format(
         plain(capitalized(words)),
         track,
         keyed.size(lead, number, one),
-        effect if told else "",
+        keyed.effect(lead, number, one) if told else "",
     )
 
 
@@ -173,6 +203,10 @@ def _to_do(answer: Answer) -> Markup:
 
 def _block(name: str, parts: list[Markup]) -> Markup:
     return Markup('<div class="answer-{}">{}</div>').format(name, Markup("").join(parts))
+
+
+def _large(text: str) -> Markup:
+    return Markup('<p class="answer-promise">{}</p>').format(_shown(text)) if text else Markup()
 
 
 def _line(text: str) -> Markup:

@@ -1,21 +1,17 @@
-"""What the answer consists of: numbers, and the sentence that each part writes from its own."""
+"""What is said of an event and of a quantity, each sentence written from its own numbers."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan
 
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import Earliest
+from uq.conclusions.limits import Limit, limit_of
 from uq.conclusions.promises import Promise, Range
-from uq.conclusions.remedies import Advice
 from uq.conclusions.repeated import Repeated, repeated_quantile, repeated_share
 from uq.conclusions.words import Unit, called_together, sentence, share_text
 from uq.estimate import Estimate
-from uq.wording import percent, percent_range
-
-RARE = 0.01
-MOST_REGIMES = 3
-"""Rarer regimes, and more of them, are left to the table."""
+from uq.wording import capitalized, percent, percent_range
 
 
 @dataclass(frozen=True)
@@ -41,6 +37,10 @@ class Event:
         Of that input.
     undefined : float
         Share of the rows in which the output is undefined, so that neither side holds.
+    is_of_single : bool
+        Whether what decides most among single inputs is not what decides most.
+    limit : Limit or None
+        Of that input, beyond which its unwanted side is rare; None where no side is unwanted.
     """
 
     name: str
@@ -52,13 +52,15 @@ class Event:
     curve: EventCurve | None = None
     over_unit: Unit = field(default_factory=Unit)
     undefined: float = 0.0
+    is_of_single: bool = False
+    limit: Limit | None = None
 
     @property
     def sentence(self) -> str:
         """Its probability, and what decides it; "" where that is not known."""
         if isnan(self.share.value):
             why = self.share.reason
-            return sentence(f"how many {self.said} is not known: {why}") if why else ""
+            return sentence(f"how many {self.clause} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
@@ -68,9 +70,35 @@ class Event:
         return f"{text}."
 
     @property
+    def clause(self) -> str:
+        """What rows do: ``exceed 5``, ``are chaotic``."""
+        return f"are {self.said}" if self.name.startswith("P(regime=") else self.said
+
+    @property
     def with_cause(self) -> str:
-        """Its probability, and what decides it."""
-        return " ".join(filter(None, (self.sentence, self.decided_by)))
+        """Its probability, what decides it, and from where on it is rare."""
+        return " ".join(filter(None, (self.sentence, self.decided_by, self.limited)))
+
+    @property
+    def named_cause(self) -> str:
+        """What decides it, after its name."""
+        cause = self.decided_by
+        return f"{capitalized(self.said)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
+
+    @property
+    def limited(self) -> str:
+        """From which value of the input that decides it the unwanted side is rare."""
+        return "" if self.limit is None else self.limit.sentence
+
+    def with_limit(self, more_is_better: bool) -> "Event":
+        """Return the same with the limit, where one input alone decides it."""
+        leader = None if self.ranking is None else self.ranking.leader
+        if self.curve is None or leader is None or len(leader.inputs) > 1:
+            return self
+        verb, _, rest = self.said.partition(" ")
+        unwanted = f"do not {verb} {rest}" if more_is_better else self.said
+        found = limit_of(self.curve, self.over, self.over_unit, unwanted, not more_is_better)
+        return replace(self, limit=found)
 
     @property
     def decided_by(self) -> str:
@@ -81,6 +109,8 @@ class Event:
         if leader is None:
             return self.ranking.sentence if self.ranking.reason else ""
         text = f"decided most by {leader.words}"
+        if self.is_of_single:
+            text = f"of single inputs, decided most by {leader.words}"
         if self.curve is not None:
             places = [self.curve.least, self.curve.most]
             first, last = (
@@ -149,6 +179,12 @@ class Quantity:
             return self.is_success
         return self.wanted == "above" if self.wanted else None
 
+    def with_limits(self) -> "Quantity":
+        """Return the same with limits of the inputs that decide its events."""
+        if (more := self.wants_more) is None:
+            return self
+        return replace(self, events=tuple(one.with_limit(more) for one in self.events))
+
     @property
     def ranking_sentence(self) -> str:
         """What contributes most; "" where there is no ranking, and an event said why already."""
@@ -190,99 +226,9 @@ class Quantity:
     def head(self) -> list[str]:
         """What can be promised, of what, and its likely range, as far as they are known."""
         found = [] if self.promise is None else [self.promise.sentence]
-        found += [] if self.first is None else [self.first.sentence, self.first.decided_by]
+        if self.first is not None:
+            found += [self.first.sentence, self.first.decided_by, self.first.limited]
         found.append(sentence(self.words))
         found += [] if self.promise is None else [self.promise.why]
         found += [] if self.range is None else [self.range.sentence]
         return [*filter(None, found)]
-
-
-@dataclass(frozen=True, repr=False)
-class Answer:
-    """The answer of a study.
-
-    Attributes
-    ----------
-    title : str
-    rows, failed : int
-    quantities : tuple of Quantity
-        The one that the study is about first.
-    regimes : tuple of Event
-        Shares of the regimes, the most frequent first.
-    advice : tuple of Advice
-    notes : tuple of str
-        What could not be said, and why.
-    regimes_first : bool
-        Whether the study is about the regimes: it names them before all other outputs.
-    """
-
-    title: str
-    rows: int
-    failed: int
-    quantities: tuple[Quantity, ...]
-    regimes: tuple[Event, ...]
-    advice: tuple[Advice, ...]
-    notes: tuple[str, ...] = ()
-    regimes_first: bool = False
-
-    @property
-    def rows_sentence(self) -> str:
-        """How many rows were computed."""
-        if self.failed:
-            return f"{self.failed} of {self.rows} rows failed."
-        return f"All {self.rows} rows were computed." if self.rows else "There are no rows."
-
-    @property
-    def main_regimes(self) -> tuple[Event, ...]:
-        """The regimes that are not rare."""
-        return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
-
-    @property
-    def events(self) -> list[Event]:
-        """All events, those of the regimes last."""
-        return [one for own in self.quantities for one in own.events] + [*self.regimes]
-
-    @property
-    def regimes_sentence(self) -> str:
-        """The shares of the main regimes; "" where there is one at most."""
-        shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
-        return f"{', '.join(shares)}." if shares else ""
-
-    @property
-    def told_regimes(self) -> list[tuple[Event, bool]]:
-        """The main regimes, and whether to say what decides each; the first is the rest."""
-        found = []
-        for place, one in enumerate(self.main_regimes):
-            known = one.ranking is not None and one.ranking.leader is not None
-            found.append((one, known and place > 0))
-        return found
-
-    @property
-    def lines(self) -> list[str]:
-        """The answer in a few sentences."""
-        lead = self.lead
-        found = [] if not self.failed and lead else [self.rows_sentence]
-        regimes = [one.with_cause for one in self.main_regimes]
-        of_lead = []
-        if lead is not None:
-            of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
-        found += [*regimes, *of_lead] if self.regimes_first else [*of_lead, *regimes]
-        found += [] if lead is None else [lead.ranking_sentence, lead.repeated.sentence]
-        if lead is not None and lead.earliest is not None:
-            found += lead.earliest.lines
-        return [*filter(None, found), *(one.text for one in self.advice)]
-
-    def __repr__(self) -> str:
-        """Return the answer in sentences, one a line."""
-        return "\n".join([self.title, *self.lines])
-
-    def _repr_html_(self) -> str:
-        """Return the answer as a notebook shows it."""
-        from uq.conclusions.page import notebook
-
-        return notebook(self)
-
-    @property
-    def lead(self) -> Quantity | None:
-        """The quantity that the study is about."""
-        return self.quantities[0] if self.quantities else None

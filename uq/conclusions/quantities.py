@@ -131,7 +131,9 @@ def _quantity(
     middle = quantile_of(described, MIDDLE)
     wanted = context.analysis.wanted.get(element.output, "below" if element.is_angle else "")
     others = (quantile_of(described, p).value for p in (LOW, HIGH))
-    typical = next(filter(isfinite, (middle.value, *others)), nan)
+    least = element.at_least[np.isfinite(element.at_least)]  # of lives, also those of censored rows
+    shortest = float(least.min()) if len(least) else nan
+    typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
     unit = unit_for(element.units, abs(typical))
     return Quantity(
         element.name,
@@ -153,7 +155,7 @@ def _quantity(
         earliest(findings, element, unit, context.replicate)
         if _may_end_badly(findings.ds, element)
         else None,
-    )
+    ).with_limits()
 
 
 def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:

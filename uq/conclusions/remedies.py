@@ -89,7 +89,9 @@ class Advice:
 
     Attributes
     ----------
-    rule : {"rows", "measure", "known", "tighten", "keep", "nothing", "failed"}
+    rule : str
+        Why: ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
+        ``keep``, ``rows`` or ``nothing``.
     said : str
         The sentence, without what would help about as much.
     inputs : tuple of str
@@ -98,8 +100,6 @@ class Advice:
     tightened : Tightened or None
     key : str
         Of its number, for ``uq trace``; "" if it has none.
-    others : tuple of str
-        What else is not settled, in sentences.
     alike : tuple of Tightened
         Which other tolerances would help about as much.
     tolerances : tuple of Tightened
@@ -112,7 +112,6 @@ class Advice:
     rows: int | None = None
     tightened: Tightened | None = None
     key: str = ""
-    others: tuple[str, ...] = ()
     alike: tuple[Tightened, ...] = ()
     tolerances: tuple[Tightened, ...] = ()
 

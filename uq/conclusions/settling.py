@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import inf, isfinite, isnan
 
 from uq.analysis.findings import Findings
 from uq.conclusions.parts import Event, Quantity
@@ -51,7 +51,7 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
     deviation of an estimate falls as one over the root of the number of rows.
     """
     for event in quantity.events:
-        yield from _of_share(event)
+        yield from unsettled_share(event)
     if quantity.promise is not None:
         yield from _of_promise(quantity.promise, quantity)
     ranking = quantity.ranking
@@ -59,7 +59,7 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
         yield Unsettled(ranking.reason, ranking.rows_factor)
     for event in quantity.events:
         if event.ranking is not None and isfinite(event.ranking.rows_factor):
-            what = f"what decides how many {event.said} is not settled"
+            what = f"what decides how many {event.clause} is not settled"
             yield Unsettled(what, event.ranking.rows_factor)
 
 
@@ -76,14 +76,17 @@ def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterat
             yield Unsettled(what or f"too many rows failed for {asked}", needed / max(rows, 1))
 
 
-def _of_share(event: Event) -> Iterator[Unsettled]:
+def unsettled_share(event: Event) -> Iterator[Unsettled]:
+    """Yield that the probability of an event is not settled."""
     one = event.share
+    if isnan(one.value) and event.sentence:
+        yield Unsettled(f"{event.sentence[:1].lower()}{event.sentence[1:-1]}", inf)
     if not one.has_interval:
         return
     half = (one.high - one.low) / 2
     goal = max(SHARE * min(one.value, 1 - one.value), POINT)
     if half > goal:
-        what = f"how many {event.said} is known to {percent(half).removesuffix(' %')} points"
+        what = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
         yield Unsettled(what, (half / goal) ** 2)
 
 

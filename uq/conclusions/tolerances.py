@@ -40,7 +40,7 @@ def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterato
         )
         return
     compared = [one for one in better if one.what == better[0].what]
-    best, *others = compared
+    best, *others = compared[:1]
     if best.wants_more is not None:
         best, *others = sorted(compared, key=lambda one: -one.gain)
     yield Advice(

@@ -59,7 +59,8 @@ def rounded(value: float, towards: float = 0.0) -> str:
     places = value / digit
     if towards and abs(places - round(places)) > 1e-9:
         places = ceil(places) if towards > 0 else floor(places)
-    return f"{places * digit:.3g}"
+    shown = f"{places * digit:.3g}"
+    return f"{float(shown):.0f}" if 1e3 <= abs(float(shown)) < 1e4 else shown
 
 
 def unit_for(units: str, typical: float) -> Unit:

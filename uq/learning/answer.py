@@ -13,7 +13,6 @@ from uq.analysis.as_json import quality_json
 from uq.errors import InputError
 from uq.learning.inputs_learnt import Confounded, InputLearnt, Spread, confounded, inputs_learnt
 from uq.learning.inspections import Inspection
-from uq.learning.integrated import not_integrated
 from uq.learning.posterior import Posterior, posterior
 from uq.learning.remaining import ANY, Remaining, remaining
 from uq.learning.result import (
@@ -92,7 +91,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
         [
             *_warnings(strange),
             *_alike(list(found.units)),
-            *not_integrated(rows, list(found.looks.values())),
+            *found.not_integrated,
             *_interpolated(found),
             *filter(None, [found.only_inspected]),
         ],

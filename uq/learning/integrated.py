@@ -1,6 +1,6 @@
 """The input that only scales lives and is integrated on a grid, not drawn."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,49 +57,36 @@ class Scale:
         return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
 
 
-def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> Scale | None:
-    """Return the input to integrate: a shared one first, of these the one that scatters lives most.
+def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> tuple[Scale | None, tuple[str, ...]]:
+    """Return the input to integrate, and sentences on those that do too much to be integrated.
 
-    One that scales all lives and depths that were inspected, and that no other output depends on:
-    that would keep the values computed with the input as drawn.
+    A shared one first, of these the one that scatters lives most. One that scales all lives and
+    depths that were inspected, and that no other output depends on: that would keep the values
+    computed with the input as drawn.
     """
     inputs, levels = inputs_of(rows), levels_of(rows)
-    scaled, common = _scaled(inputs, looks)
-    names = [name for name in _candidates(rows, inputs, looks) if not _otherwise(rows, name)]
-    if not names:
-        return None
+    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
+    exponents = {look.name: free_scales(inputs, look.declared) for look in scaled}
+    common = set.intersection(*map(set, exponents.values())) if exponents else set()
+    candidates = [name for name in inputs.laws if name in common and levels[name] in (SHARED, OWN)]
+    others = {name: list(dependent_outputs(rows, name)) for name in candidates}
+    why = [
+        f"{name} is not integrated: {' and '.join(those)}"
+        f" {'depends' if len(those) == 1 else 'depend'} on it otherwise."
+        for name, those in others.items()
+        if those
+    ]
+    free = [name for name in candidates if not others[name]]
+    if not free:
+        return None, tuple(why)
+    first = next(iter(exponents.values()))
 
     def spread(name: str) -> float:
-        return float(abs(common[0][name]) * np.log(inputs.values[name]).std())
+        return float(abs(first[name]) * np.log(inputs.values[name]).std())
 
-    best = max(names, key=lambda name: (levels[name] == SHARED, spread(name)))
-    exponents = {look.name: one[best] for look, one in zip(scaled, common, strict=True)}
-    return Scale(best, levels[best], exponents, inputs.values[best], inputs)
-
-
-def not_integrated(rows: xr.Dataset, looks: Sequence[Look]) -> Iterator[str]:
-    """Yield which inputs scale what was inspected, but are not integrated since they do more."""
-    for name in _candidates(rows, inputs_of(rows), looks):
-        if others := _otherwise(rows, name):
-            verb = "depends" if len(others) == 1 else "depend"
-            yield f"{name} is not integrated: {' and '.join(others)} {verb} on it otherwise."
-
-
-def _otherwise(rows: xr.Dataset, name: str) -> list[str]:
-    return list(dependent_outputs(rows, name))
-
-
-def _scaled(inputs: Inputs, looks: Sequence[Look]) -> tuple[list[Look], list[dict[str, float]]]:
-    """Return the lives and depths that were inspected, and what scales each."""
-    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
-    return scaled, [free_scales(inputs, look.declared) for look in scaled]
-
-
-def _candidates(rows: xr.Dataset, inputs: Inputs, looks: Sequence[Look]) -> list[str]:
-    """Return the inputs that scale all lives and depths that were inspected."""
-    common, levels = _scaled(inputs, looks)[1], levels_of(rows)
-    names = [name for name in (common[0] if common else ()) if all(name in one for one in common)]
-    return [name for name in names if levels[name] in (SHARED, OWN)]
+    best = max(free, key=lambda name: (levels[name] == SHARED, spread(name)))
+    of = {name: one[best] for name, one in exponents.items()}
+    return Scale(best, levels[best], of, inputs.values[best], inputs), tuple(why)
 
 
 def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:

@@ -7,24 +7,21 @@ from functools import partial
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy import special
 
 from uq.contract import Floats, Mask
 from uq.designs.levels import SHARED
 from uq.errors import InputError
-from uq.intervals import Replicates, replicates_of_some
 from uq.learning.contradiction import contradictions
-from uq.learning.cut_cells import Allowed, edges_of_rows
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale, scale_of
 from uq.learning.looks import Look, look_at, quantities_of
 from uq.learning.own_rows_out import log_worth
-from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
+from uq.learning.rows_as_units import Weighted, inspected, uninspected
+from uq.learning.shared_law import SharedLaw, shared_law
 from uq.learning.unit_likelihood import UnitLikelihoods
-from uq.population.learnt_scale import SCORES
-from uq.population.smoothing import Smoothed, smoothed
+from uq.population.smoothing import Smoothed
 from uq.rows.elements import replicates_of
 from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
 
@@ -34,28 +31,6 @@ NO_OTHERS = (
     "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
     " stands for an inspected one; set [design] units = {} or more"
 )
-
-_HUGE = 700.0
-
-
-@dataclass(frozen=True)
-class Weighted:
-    """Rows that stand for a unit.
-
-    Attributes
-    ----------
-    rows : ndarray of int, shape (m,)
-    weights : Smoothed
-    scale : ndarray, shape (m,), or None
-        What the integrated input is in each row.
-    scores : ndarray, shape (m, q), or None
-        Its law in each row of an inspected unit (`LearntScale`).
-    """
-
-    rows: Rows
-    weights: Smoothed
-    scale: Floats | None
-    scores: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -77,6 +52,10 @@ class Posterior:
         Of each row.
     importance : Importance
         Of each row.
+    law : SharedLaw or None
+        Of the integrated input, where it is all that units share.
+    not_integrated : tuple of str
+        Sentences on inputs that scale what was inspected, but do more.
     only_inspected : str
         Why no row stands for a unit that was not inspected, or "": `any_unit` then tells what
         units share, and nothing of their own.
@@ -90,6 +69,8 @@ class Posterior:
     looks: Mapping[Inspection, Look]
     world: Rows
     importance: Importance
+    law: SharedLaw | None
+    not_integrated: tuple[str, ...]
     only_inspected: str = ""
 
     @property
@@ -133,7 +114,7 @@ def posterior(
             f"{len(labels)} units are inspected, but a sample of this result has {place.units}:"
             f" set [design] units = {len(labels)}"
         )
-    scale = scale_of(rows, [looks[one] for one in inspections])
+    scale, others = scale_of(rows, [looks[one] for one in inspections])
     world, worlds = _worlds(rows, place, scale)
     blocks = _blocks(place, len(labels), worlds)
     importance = importance_of(rows)
@@ -149,9 +130,10 @@ def posterior(
         raise InputError(
             *contradictions(likelihoods, labels, found.grids, world, bool(scale and scale.is_own))
         )
+    law = shared_law(found, likelihoods) if scale and not scale.is_own and worlds == 1 else None
     part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
     units = {
-        label: _inspected(found, unit, likelihoods, world, scale, part)
+        label: inspected(found, unit, likelihoods, world, scale, part, law)
         for unit, label in enumerate(labels)
     }
     logs, why = found.log_worlds[world], ""
@@ -163,8 +145,9 @@ def posterior(
         why = "" if np.isfinite(apart).any() else NO_OTHERS.format(len(labels) + 1)
         logs = logs if why else apart
     runs = partial(_allowed, likelihoods, world, worlds, scale) if scale else None
-    everyone = _uninspected(logs, found, scale, place, replicates_of(rows), runs)
-    return Posterior(everyone, units, scale, found, likelihoods, looks, world, importance, why)
+    everyone = uninspected(logs, found, scale, place, replicates_of(rows), runs, law)
+    of_rows = likelihoods, looks, world, importance
+    return Posterior(everyone, units, scale, found, *of_rows, law, others, why)
 
 
 def _units_differ(rows: xr.Dataset, scale: Scale | None) -> bool:
@@ -233,84 +216,3 @@ def _allowed(
         agree = likelihoods.of(unit, values[rows])[:, 0] > -np.inf
         possible &= np.bincount(world[rows], agree, worlds) > 0
     return np.asarray(possible[world])
-
-
-def _uninspected(
-    log_rows: Floats,
-    found: Evidence,
-    scale: Scale | None,
-    place: Nesting,
-    part: Replicates,
-    allowed: Allowed | None,
-) -> Weighted:
-    """Return all rows, as units that share their world with the inspected ones.
-
-    Rows of a sample with the same law of the integrated input have the same value of it.
-    """
-    rows = np.arange(len(log_rows))
-    if scale is None or scale.is_own:
-        weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
-        return Weighted(rows, weights, None if scale is None else scale.drawn)
-    grid = found.grids[0]
-    edges = np.broadcast_to(grid.edges, (len(rows), len(grid.edges)))
-    if allowed is not None and np.isneginf(log_rows).any():
-        edges = edges_of_rows(grid, log_rows > -np.inf, allowed)
-        log_rows = log_rows + np.log(np.diff(edges) / np.diff(grid.edges))
-    weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
-    worth = np.exp(log_rows - log_rows.max())
-    at = in_order(place.samples)[place.sample]
-    drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
-    return Weighted(rows, weights, scale.quantiles(drawn))
-
-
-def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
-    """Return smoothed weights: those of a sample whose rows count alike stay alike."""
-    _, first = np.unique(place.sample, return_index=True)
-    if not np.array_equal(log_rows, log_rows[first][place.sample]):
-        return smoothed(log_rows, part)
-    found = smoothed(log_rows[first])
-    return found._replace(weights=found.weights[place.sample])
-
-
-def _inspected(
-    found: Evidence,
-    unit: int,
-    likelihoods: UnitLikelihoods,
-    world: Rows,
-    scale: Scale | None,
-    part: Replicates,
-) -> Weighted:
-    """Return the rows that stand for an inspected unit.
-
-    Where units have no world in common but all rows, the likelihood bounds their weights: no value
-    of the integrated input that the grid leaves out makes all else more probable than it does.
-    """
-    rows, grid = likelihoods.blocks[unit], found.grids[unit]
-    size = np.bincount(world[rows], minlength=len(found.rest[unit]))
-    of_unit = likelihoods.of(unit, grid.values)
-    joint = found.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
-    top = joint.max()
-    worth = np.exp(joint - top)
-    edges = np.broadcast_to(grid.edges, (len(rows), len(grid.edges)))
-    if scale is not None and np.isneginf(of_unit).any():
-
-        def allowed(places: Floats) -> Mask:
-            return likelihoods.of(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
-
-        edges = edges_of_rows(grid, of_unit > -np.inf, allowed)
-        worth *= np.diff(edges) / np.diff(grid.edges)
-    of_rows = worth.sum(axis=1)
-    most = np.inf
-    if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
-        all_else = special.logsumexp(found.rest[unit]) - np.log((grid.high - grid.low) * size[0])
-        log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
-        most = float(np.exp(min(log_most, _HUGE)))
-    kept = np.isin(np.arange(len(world)), rows)
-    with np.errstate(divide="ignore"):
-        weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
-    if scale is None:
-        return Weighted(rows, weights, None)
-    of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
-    places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
-    scores = np.asarray(special.ndtri(places[:, 1:]))
-    return Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)

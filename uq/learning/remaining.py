@@ -104,8 +104,9 @@ def _of_unit(
     rows: xr.Dataset, label: str, last_seen: Mapping[str, float], by: Sequence[float]
 ) -> Iterator[Remaining]:
     thresholds = analysis_of(rows).thresholds
-    rows = rows.isel(sample=rows[WEIGHT].values > 0)
-    part = replicates_of(rows)
+    counted = rows[WEIGHT].values > 0
+    part = replicates_of_some(replicates_of(rows), counted)
+    rows = rows.isel(sample=counted)
     for element in population(rows, [name for name, _ in shown_lives(rows)]):
         seen = last_seen.get(element.units, 0.0)
         times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]
@@ -131,7 +132,7 @@ def _of_life(
         values=np.where(still, element.values, np.nan),
         censored=element.censored & still,
         failed=~still,
-        law=None if element.law is None else Surviving(element.law, element.below(seen)),
+        law=None if element.law is None else Surviving(element.law, element.below(seen), seen),
         weights=weights,
         most=element.most * still.mean() / share,
     )

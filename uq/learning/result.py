@@ -3,25 +3,32 @@
 import json
 from collections.abc import Sequence
 from hashlib import sha256
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.special import ndtri
 
 from uq.contract import Floats
 from uq.errors import InputError, choices, nearest
+from uq.inputs.conditioning import cdf_within
 from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
-from uq.population.learnt_scale import SCORES
 from uq.population.row_inputs import inputs_of
+from uq.population.shared_terms import SCORES, terms_at
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import (
     INPUT,
+    LAW_FOLLOWS,
+    LAW_PULLS,
+    LAW_SCORES,
     MOST,
     OF_UNIT,
     ONLY_INSPECTED,
+    ROWS,
     SCALE_SCORES,
     WEIGHT,
     has_weights,
@@ -31,7 +38,9 @@ from uq.wording import counted
 PRIOR = "prior_"
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
 UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
-_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES)
+UNIT_PULLS = "unit_law_pulls"
+_LAW = (LAW_PULLS, UNIT_PULLS, LAW_FOLLOWS, LAW_SCORES)
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
 WORLDS = "worlds"
@@ -62,8 +71,10 @@ def as_result(
         leave, and the lives that it scales are those for these values; as computed they are kept
         with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
         of each inspected unit, one value of its law in each row; ``unit_scale_scores``
-        (inspected, sample, score): that law. Attributes: ``inspections``, and ``ledger``, a digest
-        of each.
+        (inspected, sample, score): that law. ``learnt_law_pulls``, ``learnt_law_follows``
+        (sample, term), ``unit_law_pulls`` (inspected, sample, term), ``learnt_law_scores``
+        (score,): what the rows say together of one that all units share
+        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
@@ -93,6 +104,7 @@ def as_result(
         meaning = f"normal score before, of {found.scale.name} of the inspected unit"
         of_law = attrs | {"long_name": meaning}
         variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
+        variables |= _of_law(found, attrs)
         meaning = "normal score given the inspections and the rest of the row"
         ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
     ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
@@ -114,6 +126,24 @@ def as_result(
     for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES} & {*ds.variables}:
         ds[name].encoding |= _COMPRESSED
     return ds.assign_attrs(found_attrs)
+
+
+def _of_law(found: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
+    """Return what the rows say together of an input that all units share."""
+    if (law := found.law) is None:
+        return {}
+    assert found.scale is not None
+    of_pulls = attrs | {"long_name": f"pull on terms of the law of {found.scale.name}"}
+    of_pulls[ROWS] = len(law.pulls)
+    of_terms = attrs | {"long_name": "terms in the row"}
+    of_scores = attrs | {"long_name": f"normal score before, of {found.scale.name}"}
+    units = np.stack([one.pulls(law) for one in _units(found)])
+    return {
+        LAW_PULLS: (("sample", "term"), found.any_unit.pulls(law), of_pulls),
+        UNIT_PULLS: (("inspected", "sample", "term"), units, of_pulls),
+        LAW_FOLLOWS: (("sample", "term"), found.any_unit.terms, of_terms),
+        LAW_SCORES: (SCORE, law.scores, of_scores),
+    }
 
 
 def prior_of(ds: xr.Dataset) -> xr.Dataset:
@@ -174,6 +204,8 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
             law = ds[UNIT_SCORES]
             attrs = law.attrs | {INPUT: name}
             rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
+        if LAW_PULLS in ds:
+            rows = rows.assign(_law_of_unit(ds, rows, place))
     if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
         # Rows of one sample have nothing in common: each has a value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
@@ -181,6 +213,18 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
     weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
     attrs = {"title": f"{_prior_title(ds)}, unit {label}", OF_UNIT: label}
     return rows.assign({WEIGHT: weight}).assign_attrs(attrs)
+
+
+def _law_of_unit(ds: xr.Dataset, rows: xr.Dataset, place: int) -> dict[str, Any]:
+    """Return what the rows of a unit have learnt with all others."""
+    name, law, pulls, inputs = ds.attrs[INTEGRATED], ds[LAW_SCORES], ds[UNIT_PULLS], inputs_of(rows)
+    below = cdf_within(inputs.laws[name], rows[name].values, inputs.bounds[name])
+    follows = terms_at(law.values, ndtri(below))
+    return {
+        LAW_PULLS: (pulls.dims[1:], pulls.values[place], pulls.attrs),
+        LAW_FOLLOWS: (pulls.dims[1:], follows),
+        LAW_SCORES: law,
+    }
 
 
 def inspections_of(ds: xr.Dataset) -> list[Inspection]:

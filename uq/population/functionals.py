@@ -7,6 +7,7 @@ from math import ceil, exp, isfinite, isnan, log, nan
 
 import numpy as np
 
+from uq.clusters import Clusters
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
 from uq.intervals import (
@@ -19,6 +20,7 @@ from uq.intervals import (
 )
 from uq.population.few_rows import fewest_rows, hits_behind
 from uq.population.means import EXACT, pulls, trusted, weighted_share
+from uq.population.surviving import learnt_terms
 from uq.roots import root
 from uq.rows.element import Element
 
@@ -53,17 +55,20 @@ class Population:
 
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
-        return self._share(self.element.below(threshold), ~self.element.failed)
+        kept = ~self.element.failed
+        return self._share(self.element.below(threshold), kept, self._part(kept, threshold))
 
     def above(self, threshold: float) -> Estimate:
         """Estimate P(Y > threshold), undefined rows on neither side."""
-        return self._share(self.element.above(threshold), ~self.element.failed)
+        kept = ~self.element.failed
+        return self._share(self.element.above(threshold), kept, self._part(kept, threshold, -1))
 
     def outliving(self, time: float) -> Estimate:
         """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
         if self.element.unknown_sides(time).any():
             return Estimate(reason=_CENSORED)
-        return self._share(self.element.above(time), self.element.present)
+        kept = self.element.present
+        return self._share(self.element.above(time), kept, self._part(kept, time, -1))
 
     def quantile(self, probability: float) -> Estimate:
         """Estimate a quantile.
@@ -96,15 +101,32 @@ class Population:
             return nan
         return float(plain.var() / own.var())
 
-    def _share(self, numbers: Floats, kept: Mask) -> Estimate:
+    def _share(self, numbers: Floats, kept: Mask, part: Replicates) -> Estimate:
         """Estimate a probability, or say why the weights do not allow it."""
-        found = weighted_share(numbers[kept], *self._of(kept), confidence=self.confidence)
+        found = weighted_share(numbers[kept], self._weights(kept), part, None, self.confidence)
         return self._trusted(found, kept)
 
-    def _of(self, kept: Mask) -> tuple[Floats | None, Replicates]:
-        """Return weight and part of some rows."""
+    def _weights(self, kept: Mask) -> Floats | None:
+        """Return the weights of some rows."""
         weights = self.element.weights
-        return None if weights is None else weights[kept], replicates_of_some(self.part, kept)
+        return None if weights is None else weights[kept]
+
+    def _part(self, kept: Mask, time: float, side: int = 1) -> Replicates:
+        """Return the part of some rows, of which P(T < time) is read, or its complement.
+
+        Where rows are means over what they have learnt together, the law that they have learnt
+        depends on how the terms go together with T < time inside each.
+        """
+        part, weights = replicates_of_some(self.part, kept), self._weights(kept)
+        if not isinstance(part, Clusters) or part.together is None or weights is None:
+            return part
+        known = learnt_terms(self.element.law, self.element.values, time)
+        if known is None:
+            return part
+        follows, by = (one[kept] for one in known)
+        worth = weights / weights.sum()
+        joint = worth @ by - (worth @ self._below(time)[kept]) * (worth @ follows)
+        return part.with_together(part.together.going_with(side * joint))
 
     def _trusted(self, found: Estimate, kept: Mask) -> Estimate:
         """Return an estimate, or why the weights of the rows behind it do not allow one.
@@ -125,7 +147,7 @@ class Population:
         where rows happen to agree. With it the fewest rows of which it has the interval of hits.
         """
         kept = self.element.present
-        weights, part = self._of(kept)
+        weights, part = self._weights(kept), self._part(kept, value)
         hits = hits_behind(self._below(value)[kept], weights, part)
 
         @cache  # both ends of an interval are sought from the same places
@@ -156,7 +178,7 @@ class Population:
 
     def _average(self, value: float) -> float:
         kept = self.element.present
-        return float(np.average(self._below(value)[kept], weights=self._of(kept)[0]))
+        return float(np.average(self._below(value)[kept], weights=self._weights(kept)))
 
     def middle(self, probability: float) -> float:
         """Return the estimate of a quantile without its interval."""

@@ -11,10 +11,9 @@ from uq.contract import Floats
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.law import Law
 from uq.population.row_inputs import Inputs
-from uq.rows.weights import INPUT, SCALE_SCORES
-
-SCORES = np.linspace(-6.0, 6.0, 25)
-"""Normal scores of the quantiles that are kept of the law of the input."""
+from uq.population.scale_laws import share_below
+from uq.population.shared_terms import SCORES, TermsOfLaws
+from uq.rows.weights import INPUT, LAW_SCORES, SCALE_SCORES
 
 _FINE = np.linspace(-6.0, 6.0, 97)
 
@@ -36,6 +35,8 @@ class LearntScale:
     scores : ndarray, shape (n, 97)
         Normal scores, by the law before the inspections, of evenly spread scores from -6 to 6 given
         them: linear between these, and nothing beyond.
+    terms : TermsOfLaws or None
+        Of the law that the rows share.
     """
 
     inputs: tuple[str, ...]
@@ -44,6 +45,7 @@ class LearntScale:
     exponent: float
     drawn: Floats
     scores: Floats
+    terms: TermsOfLaws | None = None
 
     @property
     def spread(self) -> float:
@@ -52,16 +54,16 @@ class LearntScale:
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            reached = self.drawn * (time / lives) ** (1 / self.exponent)
-            before = cdf_within(self.law, reached, self.bounds)
-            share = self._given_inspections(special.ndtri(before))
-        if self.exponent < 0:
-            share = 1 - share
-        return np.where(np.isnan(lives), 0.0, share)
+        return share_below(self._given_inspections, self.drawn, self.exponent, lives, time)
 
-    def _given_inspections(self, score: Floats) -> Floats:
-        """Return the probability that the input of each row lies below a score before them."""
+    def terms_below(self, lives: Floats, time: float, terms: TermsOfLaws) -> Floats:
+        """Return the means of the terms times whether T < time, shape (n, terms)."""
+        share = self.below(lives, time)
+        return terms.below(share) if self.exponent > 0 else terms.means - terms.below(1 - share)
+
+    def _given_inspections(self, value: Floats) -> Floats:
+        """Return the probability that the input of each row lies below a value."""
+        score = special.ndtri(cdf_within(self.law, value, self.bounds))
         passed = (self.scores <= score[:, None]).sum(axis=1)
         after = np.clip(passed, 1, len(_FINE) - 1)
         row = np.arange(len(score))
@@ -92,7 +94,10 @@ def learnt_scale(
 
     of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
     scores = PchipInterpolator(SCORES, rows[SCALE_SCORES].values, axis=1)(_FINE)
-    return LearntScale((name,), *of, scores)
+    terms = None
+    if LAW_SCORES in rows:
+        terms = TermsOfLaws(rows[LAW_SCORES].values, rows[SCALE_SCORES].values)
+    return LearntScale((name,), *of, scores, terms)
 
 
 def learnt_input(rows: xr.Dataset) -> str:

@@ -9,6 +9,7 @@ from math import inf
 import numpy as np
 from scipy import special
 
+from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.exact_shares import exact_interval
@@ -40,15 +41,19 @@ EXACT = "exact: rows differ only in what is integrated"
 def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
     """Return what each independent part says of a weighted mean, shape (parts,).
 
-    The mean of all rows, plus the influence of the part on it.
+    The mean of all rows, plus the influence of the part on it; where all rows have learnt the law
+    of an input together, also on that law (`uq.clusters.LearntTogether`).
     """
     mean = np.average(numbers, weights=weights)
     influence = weights * (numbers - mean) / weights.mean()
     if part is None:
         return mean + influence
-    _, place = np.unique(np.asarray(part), return_inverse=True)
+    of = np.asarray(part)
+    if isinstance(part, Clusters) and part.together is not None:
+        of, influence = part.together.part, part.together.with_errors(influence)
+    _, place = np.unique(of, return_inverse=True)
     sums = np.bincount(place, weights=influence)
-    return np.asarray(mean + len(sums) * sums / len(numbers))
+    return np.asarray(mean + len(sums) * sums / len(influence))
 
 
 def weighted_share(

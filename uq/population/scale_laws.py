@@ -1,6 +1,6 @@
 """The law of a life in each row, of which some inputs are integrated exactly."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,31 @@ from uq.inputs.law import Law
 from uq.population.sums import Term, normal_rule
 
 _NODES = 200
+
+
+def share_below(
+    input_below: Callable[[Floats], Floats],
+    drawn: Floats,
+    exponent: float,
+    lives: Floats,
+    time: float,
+) -> Floats:
+    """Return P(T < time) of each row, shape (n,); 0 where the life is NaN.
+
+    Parameters
+    ----------
+    input_below : callable
+        Probability that the input of each row lies below a value.
+    drawn : ndarray, shape (n,)
+        The value of each row.
+    exponent : float
+        Of the input in lives.
+    lives : ndarray, shape (n,)
+    time : float
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        share = input_below(drawn * (time / lives) ** (1 / exponent))
+    return np.where(np.isnan(lives), 0.0, share if exponent > 0 else 1 - share)
 
 
 @dataclass(frozen=True)
@@ -98,17 +123,16 @@ class ConditionalScale:
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            reached = self.drawn * (time / lives) ** (1 / self.exponent)
-            if self.other is None:
-                share = cdf_within(self.law, reached, self.bounds)
-            else:
-                ends = factor_ends(self.other, self.bounds)
-                share = cdf_between(self.law, reached / self.other, *ends)
-            share = special.ndtr((special.ndtri(share) - self.mean) / self.deviation)
-        if self.exponent < 0:
-            share = 1 - share
-        return np.where(np.isnan(lives), 0.0, share)
+        return share_below(self._given_others, self.drawn, self.exponent, lives, time)
+
+    def _given_others(self, value: Floats) -> Floats:
+        """Return the probability that the input of each row lies below a value."""
+        if self.other is None:
+            share = cdf_within(self.law, value, self.bounds)
+        else:
+            ends = factor_ends(self.other, self.bounds)
+            share = cdf_between(self.law, value / self.other, *ends)
+        return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
 
     def longer(self, z: Floats) -> Iterator[Floats]:
         """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""

@@ -8,7 +8,7 @@ from markupsafe import Markup
 from uq.analysis.findings import Findings
 from uq.analysis.summary import REGIME
 from uq.conclusions.page import sayings
-from uq.conclusions.parts import Answer
+from uq.conclusions.whole import Answer
 from uq.greek import readable
 from uq.report.cells import Table
 from uq.report.indices import Method, Subject, of_output, output_of

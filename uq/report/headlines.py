@@ -3,7 +3,7 @@
 from markupsafe import Markup
 
 from uq.conclusions.page import fragment
-from uq.conclusions.parts import Answer
+from uq.conclusions.whole import Answer
 from uq.report.pictures import Picture
 
 _FIGURE = Markup("<figure{}>{}</figure>")  # the verdict says of what

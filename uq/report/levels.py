@@ -5,6 +5,8 @@ from typing import NamedTuple
 from uq.analysis.apportioned import SOURCES
 from uq.analysis.findings import Findings
 from uq.conclusions.targets import Target
+from uq.conclusions.words import called
+from uq.designs.levels import LEVELS
 from uq.estimate import Estimate
 from uq.keys import key_of
 from uq.methods.indices import S1
@@ -43,6 +45,8 @@ def levels_of(findings: Findings) -> Levels | None:
     if (another := found.another_regime) is not None:
         said = another.reason or percent_with_interval(another)
         notes.append(f"probability that a repeat ends in another regime: {said}")
+    on = {level: found.inputs_on(level) for level in LEVELS}
+    notes += [f"{level}: {', '.join(map(called, names))}" for level, names in on.items() if names]
     return Levels(found.size, Table("Shares of the variance", ("output", *SOURCES), rows), notes)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.clusters import Clusters
+from uq.clusters import Clusters, LearntTogether
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
 from uq.contract import censored_name
@@ -23,7 +23,14 @@ from uq.rows.element import elements_in, places
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed, refuse_empty
 from uq.rows.variables import outputs_of
-from uq.rows.weights import has_rounds, largest_weight, row_weights
+from uq.rows.weights import (
+    LAW_FOLLOWS,
+    LAW_PULLS,
+    ROWS,
+    has_rounds,
+    largest_weight,
+    row_weights,
+)
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -78,13 +85,22 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
     """Return the replicate of each row, or None if the rows are independent.
 
     Where samples have several rows, `Clusters`: of independent samples, the sample of each row.
+    Also where inspections of all rows together have weighted them.
     """
-    if not is_nested(rows):
+    together = LAW_PULLS in rows.variables
+    if not is_nested(rows) and not together:
         return None if are_independent(rows) else rows["replicate"].values
     place = nesting_of(rows)
     are_samples = has_independent_samples(rows)
     of = place.sample if are_samples else rows["replicate"].values
-    return Clusters(of, place.samples, are_samples)
+    return Clusters(of, place.samples, are_samples, _learnt(rows, of) if together else None)
+
+
+def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> LearntTogether:
+    """Return what rows with weights have learnt of the law of an input that all units share."""
+    pulls = rows[LAW_PULLS]
+    some = pulls.values * (len(part) / pulls.attrs[ROWS])
+    return LearntTogether(some, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
 
 
 def are_independent(ds: xr.Dataset) -> bool:

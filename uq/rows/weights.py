@@ -20,6 +20,11 @@ SCALE_SCORES, INPUT = "scale_scores", "input"
 """The variable of rows of an inspected unit with the law of the integrated input in each, and its
 attribute: which input."""
 
+LAW_PULLS, LAW_FOLLOWS, ROWS = "learnt_law_pulls", "learnt_law_follows", "rows"
+LAW_SCORES = "learnt_law_scores"
+"""Variables of each row, if all units share the integrated input (`uq.clusters.LearntTogether`);
+the attribute of the first: of how many rows they are; and quantiles of the law."""
+
 MOST = "largest_possible"
 """Its attribute: the largest weight that a row can have, where that is known."""
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import xarray as xr
 
+from uq.analysis.convergence import compared
 from uq.analysis.earliest import inputs_apart
 from uq.analysis.effects import effects
 from uq.analysis.event_curve import event_curve
@@ -12,15 +13,18 @@ from uq.analysis.findings import Findings
 from uq.analysis.joint_bounds import SIDES
 from uq.analysis.statistics.counts import never_ending
 from uq.analysis.summary import status_counts, summarise
+from uq.analysis.switching import switching
 from uq.conclusions.answer import conclude, regimes_of
 from uq.conclusions.as_json import answer_json
-from uq.conclusions.parts import Answer
+from uq.conclusions.limits import limit_of
 from uq.conclusions.quantities import LOW, quantities, with_bounds
 from uq.conclusions.repeated import found_again
 from uq.conclusions.settling import unsettled
+from uq.conclusions.whole import Answer
 from uq.indices.targets import split_name
 from uq.intervals import share_interval
 from uq.keys import Json, Options, Path, value_at
+from uq.nested_variance import nested_shares
 from uq.population.functionals import Population
 from uq.rows.elements import analysis_of, independent_rows, named_elements
 from uq.rows.results import failed
@@ -50,6 +54,12 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     part, *names = path
     if part in ("rows", "failed"):
         return Origin((cited(status_counts),), ds)
+    if part == "levels":
+        return Origin((cited(switching if "another_regime" in names else nested_shares),), ds)
+    if part == "enough":
+        if "error" in names[-1]:
+            return Origin((cited(compared),), ds)
+        return Origin((cited(found_again), cited(share_interval)), ds)
     if part == "advice":
         return Origin((cited(unsettled),), ds)
     if "ranking" in names:
@@ -58,6 +68,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(effects) if "effects" in names else index,), ds)
     if "earliest" in names:
         return Origin((cited(inputs_apart),), ds)
+    if "limit" in names:
+        return Origin((cited(limit_of), cited(event_curve), cited(share_interval)), ds)
     if "parts" in names or "decided_by" in names:
         return Origin((cited(event_curve), cited(share_interval)), ds)
     rows = independent_rows(ds)

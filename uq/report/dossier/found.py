@@ -7,10 +7,10 @@ from uq.analysis.findings import Findings
 from uq.analysis.statistics.statistic import Reader
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import REGIME
-from uq.conclusions.advice import verdict
 from uq.conclusions.answer import conclude
 from uq.conclusions.page import fragment
 from uq.conclusions.parts import Quantity
+from uq.conclusions.verdict import verdict
 from uq.designs.registry import DESIGNS
 from uq.keys import key_of
 from uq.methods.registry import METHODS

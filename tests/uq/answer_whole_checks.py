@@ -1,0 +1,48 @@
+"""What is wrong with what an answer says of levels and of its rows: the rows deny it."""
+
+import numpy as np
+from answered import numbers_in
+from scipy.stats import binomtest
+
+import uq
+from uq.conclusions.repeated import found_again
+
+
+def denied_levels(ds, found):
+    """Compare shares with those of `uq.levels`, and count the repeats that end elsewhere."""
+    if (levels := found.levels) is None:
+        return
+    shares = uq.levels(ds)["share"].sel(output=levels.target)
+    known = [100 * float(shares.sel(level=one.name)) for one in levels.levels]
+    shown = numbers_in(levels.sentence.split(": ", 1)[1])[::3]
+    if not np.allclose(shown, known, atol=0.06):
+        yield levels.sentence
+    several = [one.share for one in levels.levels]
+    if not all(0 <= one.low <= one.value <= one.high <= 1 for one in several):
+        yield f"interval of {levels.sentence}"
+    if len(several) == 2:  # what is not on one level is on the other
+        first, last = several
+        if not np.allclose((first.low, first.high), (1 - last.high, 1 - last.low), atol=0.02):
+            yield f"intervals of {levels.sentence}"
+    if levels.switching:
+        switches = uq.levels(ds)["another_regime"].values
+        exact = binomtest(round(switches.sum()), len(switches)).proportion_ci()
+        expected = [100 * switches.mean(), 100 * exact.low, 100 * exact.high]
+        if not np.allclose(numbers_in(levels.switching)[:3], expected, atol=2.5):
+            yield levels.switching
+
+
+def denied_enough(ds, found):
+    """Compare what another seed would find and the errors with those of the rows."""
+    one, lead = found.enough, found.lead
+    if found.regimes_first:
+        low, high = found_again(found.regimes[0].share, False)
+        if one.again.what and not np.allclose((one.again.low, one.again.high), (low, high)):
+            yield one.sentence
+    elif lead is not None and one.again != lead.repeated:
+        yield one.sentence
+    if one.errors is not None:
+        errors = uq.enough(ds, lead.name).loc[lead.name]
+        known = np.array([errors["own"], errors["sampling"]]) / lead.range.unit.per
+        if not np.allclose(numbers_in(one.finer), known, rtol=0.01):
+            yield one.finer

@@ -1,0 +1,107 @@
+"""Which level decides: the machine, each unit's own, or the start, against known shares."""
+
+import numpy as np
+import pytest
+from answered import numbers
+from computed import asking, kinds, linear
+from nested_studies import nested_result
+
+from uq import answer, trace
+from uq.conclusions.page import fragment
+
+
+def test_the_level_that_decides_is_named_with_its_share():
+    """y = x1 + 2 x2 + 3 x3 + 4 x4: x4 alone has 16 of 30 parts of the variance."""
+    levels = {"x1": "own", "x2": "own", "x3": "chance", "x4": "chance"}
+    ds = nested_result(levels=levels, samples=300, units=1)
+    found = answer(ds)
+    share, low, high, rest, *_ = numbers(
+        r"Chance \(x3 and x4\) decides its scatter: # % \(# to # %\) of the variance,"
+        r" the machine # % \(# to # %\)\.",
+        found.levels.sentence,
+    )
+    assert low < 100 * 25 / 30 < high and share + rest == pytest.approx(100, abs=0.11)
+    assert found.levels.sentence in found.lines
+    assert found.levels.leader.name == "chance"
+    assert any(one.rule == "chance" for one in found.advice)
+
+
+def of_regimes(share_of_start, samples=400, meaning="speed at the start", of_pairs=False):
+    """Return pairs of repeats: the regime is that of the machine, but in this share of the start.
+
+    The start is x2, or whether x2 and x3 lie on the same side.
+    """
+    levels = {"x1": "own", "x2": "chance"} | ({"x3": "chance"} if of_pairs else {})
+    ds = nested_result(levels=levels, samples=samples, units=1)
+    random = np.random.default_rng(1)
+    machine, start = ds["x1"].values > 0.5, ds["x2"].values > 0.5
+    start ^= of_pairs and ds["x3"].values > 0.5
+    ended = np.where(random.random(ds.sizes["sample"]) < share_of_start, start, machine)
+    attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
+    attrs |= {"may_be_undefined": 0, "flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
+    ds["x2"].attrs["long_name"] = meaning
+    ds = ds.assign(regime=("sample", ended.astype(np.int8), attrs))
+    return asking(ds, outputs=["regime", "y"])
+
+
+def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
+    ds = of_regimes(0.95)
+    found = answer(ds)
+    word = found.regimes[0].said
+    share, low, high, *_ = numbers(
+        rf"The start \(x2\) decides whether it is {word}: # % \(# to # %\) of the variance,"
+        r" the machine # % \(# to # %\)\.",
+        found.levels.sentence,
+    )
+    codes = ds["regime"].values.reshape(-1, 2)
+    apart = (codes[:, 0] != codes[:, 1]).mean()
+    expected = 100 * apart / 2 / codes.var()  # between repeats, of the whole variance
+    assert share == pytest.approx(expected, abs=1) and low < expected < high
+    (another, *_) = numbers(
+        r"# % \(# to # %\) of repeats end in another regime\.", found.levels.switching
+    )
+    assert another == pytest.approx(100 * apart, abs=0.06)
+    assert found.levels.sentence in found.lines
+    assert "Expect little of tolerances: the start decides" in repr(found)
+    page = fragment(found)
+    assert page.index("answer-promise") < page.index("The start (x2)") < page.index("Value of the")
+    key = "answer/levels/shares/chance/value"
+    assert trace(ds, key)["value"] == found.levels.levels[0].share.value
+    assert key in page
+
+
+def test_single_inputs_are_called_so_where_another_level_decides():
+    """Neither x2 nor x3 alone matters, together they decide."""
+    found = answer(of_regimes(0.55, samples=1000, of_pairs=True))
+    assert found.levels.leader.inputs == ("x2", "x3")
+    assert found.regimes[0].decided_by.startswith("Of single inputs, decided most by x1: from ")
+    assert "x1 would again contribute most" not in found.enough.sentence
+    other = answer(of_regimes(0.05))
+    assert other.levels.leader.words == "the machine"
+    assert not any(one.rule == "chance" for one in other.advice)
+    assert not any(one.is_of_single for one in other.regimes)
+
+
+def test_where_no_level_decides_alone_the_shares_are_said():
+    found = answer(of_regimes(0.3))
+    assert found.levels.sentence.startswith("No level alone decides whether it is ")
+    assert not any(one.rule == "chance" for one in found.advice)
+
+
+def test_without_a_start_it_is_called_chance():
+    found = answer(of_regimes(0.95, meaning="roughness of the road"))
+    assert found.levels.sentence.startswith("Chance (x2) decides")
+
+
+def test_a_study_of_single_rows_has_no_levels():
+    assert answer(linear(samples=100)).levels is None
+
+
+def test_a_start_that_is_the_same_in_all_rows_is_said():
+    ds = kinds(samples=64, analysis={"outputs": ["regime", "work"]})
+    assert answer(ds).starts_alike == ""
+    fixed = ds.assign(initial_speed=((), 0.0, {"role": "fixed", "long_name": "speed at the start"}))
+    said = "Whether the start decides the regime is not known: initial speed is fixed."
+    assert answer(fixed).starts_alike == said and said in repr(answer(fixed))
+    ds["x2"].attrs["long_name"] = "velocity at the start"
+    assert answer(ds).starts_alike == ""

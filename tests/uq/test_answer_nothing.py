@@ -1,0 +1,112 @@
+"""The answer where little or nothing can be said."""
+
+import json
+
+import numpy as np
+import pytest
+from computed import asking, linear, with_output, with_status
+
+from uq import answer
+from uq.conclusions.as_json import answer_json
+from uq.conclusions.page import fragment
+from uq.contract import Status
+
+DAY, ROWS = 86400.0, 200
+
+
+def lives(values, censored=None, days=10):
+    ds = with_output(linear(samples=len(values)), "life", np.array(values), "lifetime", censored)
+    return asking(ds, outputs=["life"], thresholds={"life": f"{days} days"})
+
+
+def values(of, **more):
+    ds = with_output(linear(samples=len(of)), "z", np.array(of, dtype=float))
+    return asking(ds, outputs=["z"], thresholds={"z": "1 m"}, **more)
+
+
+def all_failed():
+    ds = linear(samples=ROWS)
+    ds = with_status(ds.assign(y=ds["y"] * np.nan), range(ROWS), Status.RAISED)
+    ds["y"].attrs = linear(samples=ROWS)["y"].attrs
+    return asking(ds, outputs=["y"], thresholds={"y": 5.0})
+
+
+def all_censored():
+    return lives(np.full(ROWS, 5 * DAY), np.ones(ROWS, dtype=bool))
+
+
+def none_ends():
+    return lives(np.full(ROWS, np.inf))
+
+
+def one_ends():
+    return lives([3 * DAY] + [np.inf] * (ROWS - 1))
+
+
+def one_row():
+    return lives([3 * DAY])
+
+
+def all_alike():
+    return lives(np.full(ROWS, 3 * DAY))
+
+
+def all_undefined():
+    return values(np.full(ROWS, np.nan))
+
+
+CASES = [all_failed, all_censored, none_ends, one_ends, one_row, all_alike, all_undefined]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_every_reader_gets_an_answer(case):
+    found = answer(case())
+    text = repr(found)
+    assert not {"nan", "inf", "None"} & {*text.replace("(", " ").replace("%", " ").split()}
+    assert fragment(found).startswith('<div class="answer">')
+    json.dumps(answer_json(found), allow_nan=False)
+
+
+def test_where_all_rows_fail_nothing_else_is_advised():
+    found = answer(all_failed())
+    assert found.lines[0] == "200 of 200 rows failed."
+    assert [one.rule for one in found.advice] == ["failed"] and not found.enough.sentence
+
+
+def test_an_event_beyond_the_horizon_is_not_settled_by_rows():
+    found = answer(all_censored())
+    assert found.lead.promise.sentence.endswith("last longer than 5 days.")
+    (one,) = found.advice
+    assert one.text == (
+        "More rows would not help: how many end within 10 days is not known: it is after the last"
+        " observation."
+    )
+    assert "is settled" not in repr(found)
+
+
+def test_where_none_ends_the_rows_are_enough():
+    found = answer(none_ends())
+    assert found.lead.first.sentence == "0 % (0 to 1.8 %) end within 10 days."
+    assert found.enough.sentence.startswith("The rows are enough: with another seed, 0 to ")
+    assert found.lead.earliest is None
+
+
+def test_a_single_life_has_the_unit_of_a_person():
+    found = answer(one_ends())
+    assert found.lead.earliest.first == "Row 0 (3 days) ends first."
+
+
+def test_one_row_settles_nothing():
+    found = answer(one_row())
+    assert found.enough.sentence.startswith("The rows are not enough to settle all of this.")
+    assert [one.rule for one in found.advice] == ["rows"]
+
+
+def test_of_lives_that_are_all_alike_none_ends_first():
+    found = answer(all_alike())
+    assert found.lead.earliest is None and "again be 3 days" in found.enough.sentence
+
+
+def test_an_output_that_no_row_has_is_left_out():
+    found = answer(all_undefined())
+    assert found.quantities == () and found.lines == ["All 200 rows were computed."]

@@ -1,0 +1,115 @@
+"""From which value of the input that decides an event the unwanted side is rare."""
+
+from dataclasses import dataclass, field
+from math import inf, nan
+
+from uq.analysis.event_curve import EventCurve
+from uq.conclusions.words import Unit, called, sentence
+from uq.estimate import Estimate
+
+RARE = 0.05
+"""The unwanted side of an event is rare below this probability."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit of an input, beyond which an event is rare; or why there is none.
+
+    Attributes
+    ----------
+    over : str
+        The input.
+    said : str
+        What is unwanted: ``do not succeed within 60 s``.
+    at : float
+        Beyond this value it is rare; NaN where there is no limit.
+    until : float
+        Up to this value it is not; NaN where that is not known.
+    is_lower : bool
+        Whether the input has to be larger than the limit.
+    share : Estimate
+        How probable it is in the part of the input next to the limit, or where it is least.
+    unit : Unit
+        Of the input.
+    why : str
+        Why there is no limit, or "".
+    """
+
+    over: str
+    said: str
+    at: float = nan
+    until: float = nan
+    is_lower: bool = False
+    share: Estimate = field(default_factory=lambda: Estimate(nan))
+    unit: Unit = field(default_factory=Unit)
+    why: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The limit and what is known of its place, or why there is none."""
+        if self.why:
+            return sentence(self.why)
+        side, outwards = ("least", inf) if self.is_lower else ("most", -inf)
+        at = self.unit.text(self.at, outwards)
+        where = f"where {called(self.over)} is at {side} {at}"
+        text = f"fewer than {100 * RARE:g} % {self.said} {where}"
+        if self.until == self.until:
+            low, high = sorted((self.at, self.until))
+            ends = f"{self.unit.number(low, -inf)} and {self.unit.text(high, inf)}"
+            text += f" (the limit lies between {ends})"
+        return sentence(text)
+
+
+def limit_of(
+    curve: EventCurve, over: str, unit: Unit, said: str, is_unwanted: bool
+) -> Limit | None:
+    """Return from which value of an input an event is rare, as far as its curve is settled.
+
+    Parameters
+    ----------
+    curve : EventCurve
+        The probability of the event in parts of the input.
+    over : str
+        The input.
+    unit : Unit
+        Of the input.
+    said : str
+        What is unwanted, in words.
+    is_unwanted : bool
+        Whether the event itself is unwanted; otherwise that it does not happen.
+
+    Returns
+    -------
+    Limit or None
+        None where it is rare everywhere. Where the probability falls steadily, it is smaller beyond
+        a part than the mean over this part, and larger before it: so the limit lies between the
+        first value before a part in which the mean is surely larger, and the last one behind a
+        part from which on it is surely smaller, each with the interval of its part.
+    """
+    shares = [one if is_unwanted else _opposite(one) for one in curve.shares]
+    is_lower = shares[0].value > shares[-1].value
+    edges = [float(edge) for edge in curve.edges]
+    if not is_lower:  # from the unwanted to the wanted end
+        shares, edges = shares[::-1], edges[::-1]
+    best, names = shares[-1], called(over)
+    if all(one.high < RARE for one in shares):
+        return None
+    if any(one.high < later.low for i, one in enumerate(shares) for later in shares[i + 1 :]):
+        why = f"no limit of {names}: how many {said} does not change steadily with it"
+        return Limit(over, said, share=best, why=why)
+    rare = len(shares)
+    while shares[rare - 1].high < RARE:
+        rare -= 1
+    if rare >= len(shares) - 1:
+        few = f"fewer than {100 * RARE:g} % {said}"
+        why = f"no value of {names} lets {few}"
+        if best.low <= RARE:
+            why = f"whether a value of {names} lets {few} is not settled"
+        return Limit(over, said, is_lower=is_lower, share=best, why=why)
+    frequent = max((i for i, one in enumerate(shares) if one.low > RARE), default=-1)
+    until = edges[frequent] if frequent > 0 else nan  # before the first part there are no rows
+    return Limit(over, said, edges[rare + 1], until, is_lower, shares[rare], unit)
+
+
+def _opposite(one: Estimate) -> Estimate:
+    return Estimate(1 - one.value, 1 - one.high, 1 - one.low)

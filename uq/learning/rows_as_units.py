@@ -1,0 +1,140 @@
+"""Rows that stand for a unit: weighted, each with a value or law of the integrated input."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats, Mask
+from uq.intervals import Replicates, replicates_of_some
+from uq.learning.cut_cells import Allowed, cut
+from uq.learning.evidence import Evidence
+from uq.learning.integrated import Scale
+from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
+from uq.learning.shared_law import SharedLaw
+from uq.learning.unit_likelihood import UnitLikelihoods
+from uq.population.shared_terms import SCORES, terms_at
+from uq.population.smoothing import Smoothed, smoothed
+from uq.rows.nesting import Nesting
+
+Rows = NDArray[np.intp]
+
+_HUGE = 700.0
+
+
+@dataclass(frozen=True)
+class Weighted:
+    """Rows that stand for a unit.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (m,)
+    weights : Smoothed
+    scale : ndarray, shape (m,), or None
+        What the integrated input is in each row.
+    scores : ndarray, shape (m, q), or None
+        Its law in each row of an inspected unit (`LearntScale`).
+    terms : ndarray, shape (m, terms), or None
+        Means over the law of the input in each row of the terms of one that all units share.
+    """
+
+    rows: Rows
+    weights: Smoothed
+    scale: Floats | None
+    scores: Floats | None = None
+    terms: Floats | None = None
+
+    def pulls(self, law: SharedLaw) -> Floats:
+        """Return by how much each of all rows moves the law of the input, shape (n, terms).
+
+        A row does not count for its own, nor do values drawn as evenly as the law has them.
+        """
+        assert self.terms is not None
+        found = law.pulls.copy()
+        found[self.rows] -= self.weights.weights[:, None] * self.terms
+        return found
+
+
+def uninspected(
+    log_rows: Floats,
+    found: Evidence,
+    scale: Scale | None,
+    place: Nesting,
+    part: Replicates,
+    allowed: Allowed | None,
+    law: SharedLaw | None,
+) -> Weighted:
+    """Return all rows, as units that share their world with the inspected ones.
+
+    Rows of a sample with the same law of the integrated input have the same value of it.
+    """
+    rows = np.arange(len(log_rows))
+    if scale is None or scale.is_own:
+        weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
+        return Weighted(rows, weights, None if scale is None else scale.drawn)
+    edges, log_kept = cut(found.grids[0], log_rows > -np.inf, allowed)
+    log_rows = log_rows + log_kept
+    weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
+    worth = np.exp(log_rows - log_rows.max())
+    at = in_order(place.samples)[place.sample]
+    drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
+    terms = None if law is None else terms_at(law.scores, special.ndtri(drawn))
+    return Weighted(rows, weights, scale.quantiles(drawn), terms=terms)
+
+
+def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
+    """Return smoothed weights: those of a sample whose rows count alike stay alike."""
+    _, first = np.unique(place.sample, return_index=True)
+    if not np.array_equal(log_rows, log_rows[first][place.sample]):
+        return smoothed(log_rows, part)
+    found = smoothed(log_rows[first])
+    return found._replace(weights=found.weights[place.sample])
+
+
+def inspected(
+    found: Evidence,
+    unit: int,
+    likelihoods: UnitLikelihoods,
+    world: Rows,
+    scale: Scale | None,
+    part: Replicates,
+    law: SharedLaw | None,
+) -> Weighted:
+    """Return the rows that stand for an inspected unit.
+
+    Where units have no world in common but all rows, the likelihood bounds their weights: no value
+    of the integrated input that the grid leaves out makes all else more probable than it does.
+    """
+    rows, grid = likelihoods.blocks[unit], found.grids[unit]
+    size = np.bincount(world[rows], minlength=len(found.rest[unit]))
+    of_unit = likelihoods.of(unit, grid.values)
+    joint = found.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
+    allowed = None if scale is None else partial(_allowed, likelihoods, unit, scale)
+    edges, log_kept = cut(grid, of_unit > -np.inf, allowed)
+    top = joint.max()
+    worth = np.exp(joint + log_kept - top)
+    of_rows = worth.sum(axis=1)
+    most = np.inf
+    if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
+        all_else = special.logsumexp(found.rest[unit]) - np.log((grid.high - grid.low) * size[0])
+        log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
+        most = float(np.exp(min(log_most, _HUGE)))
+    kept = np.isin(np.arange(len(world)), rows)
+    with np.errstate(divide="ignore"):
+        weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
+    if scale is None:
+        return Weighted(rows, weights, None)
+    of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
+    places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
+    scores = np.asarray(special.ndtri(places[:, 1:]))
+    terms = None
+    if law is not None:
+        terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
+    return Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores, terms)
+
+
+def _allowed(likelihoods: UnitLikelihoods, unit: int, scale: Scale, places: Floats) -> Mask:
+    """Return where the inspections of a unit allow a value of the input in each row, shape (m,)."""
+    return likelihoods.of(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
