@@ -18,6 +18,8 @@ from uq.rows.elements import elements_of
 from uq.rows.variables import outputs_of
 
 _REACH = 3.0  # standard errors of a measurement
+_SAME = 0.01  # relative difference of likelihoods that tell as much
+_FAR = 1e6  # times the last declared depth
 
 
 @dataclass(frozen=True)
@@ -90,19 +92,37 @@ class Look:
         turn = 2 * np.pi if self.unit == "rad" else 360.0
         return one.value + (truth - one.value + turn / 2) % turn - turn / 2
 
-    def bounded(self, one: Inspection, rows: NDArray[np.intp], longer: Floats) -> Mask:
-        """Return where only a bound of the truth is known, shape (n, g)."""
+    def bounded(
+        self, one: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
+    ) -> Mask:
+        """Return where only bounds of the truth are known that leave the likelihood open, (n, g).
+
+        A depth at which wear stops lies between two declared ones, and one of a censored life
+        anywhere beyond those that are reached.
+        """
         if self.depths is not None:
             assert one.time is not None
-            last = np.where(np.isfinite(self.depths.lives[rows]), self.depths.lives[rows], 0.0)
-            beyond = one.time / longer > last.max(axis=1, keepdims=True)
-            return beyond & self._stops(rows)[:, None]
+            least = self.truth(one.time, rows, longer)
+            both = (least, np.broadcast_to(self._most(rows)[:, None], least.shape))
+            first, last = (np.exp(self.log_likelihood(one, end, model_cv)) for end in both)
+            differ = np.abs(first - last) > _SAME * np.maximum(first, last)
+            return differ & self.open_depth(one.time, rows, longer)
         most = (one.time or 0.0) if one.kind in OUTCOMES else reach(one)
         return self.censored[rows, None] & (self.values[rows, None] * longer < most)
 
-    def _stops(self, rows: NDArray[np.intp]) -> Mask:
+    def open_depth(self, time: float, rows: NDArray[np.intp], longer: Floats) -> Mask:
+        """Return where only bounds of the depth at a time are known, shape (n, g)."""
         assert self.depths is not None
-        return self.depths.settled[rows]
+        lives = self.depths.lives[rows]
+        last = np.where(np.isfinite(lives), lives, 0.0).max(axis=1, keepdims=True)
+        return (time / longer > last) & self.depths.settled[rows, None]
+
+    def _most(self, rows: NDArray[np.intp]) -> Floats:
+        """Return what the depths of rows stay below, as far as their lives tell, shape (n,)."""
+        assert self.depths is not None
+        beyond = np.append(self.depths.depths, _FAR * self.depths.depths[-1])
+        reached = np.isfinite(self.depths.lives[rows]).sum(axis=1)
+        return np.where(self.censored[rows], beyond[-1], beyond[reached])
 
 
 @dataclass(frozen=True)

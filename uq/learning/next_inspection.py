@@ -158,7 +158,7 @@ def _look(quantities: Quantities, output: str, time: float | None, weights: Floa
     everyone, last = np.arange(len(weights)), look.depths.depths[-1]
     longer = np.ones((len(weights), 1))
     unknown = look.truth(time, everyone, longer) > last
-    unknown |= look.bounded(when, everyone, longer)
+    unknown |= look.open_depth(time, everyone, longer)
     if (share := np.average(unknown[:, 0], weights=weights)) > _UNKNOWN:
         raise InputError(
             f"uq next-inspection: by {beside(number(time), look.time_unit)}, {percent(share)} of"

@@ -8,6 +8,7 @@ import numpy as np
 from uq.learning.posterior import Posterior, Weighted
 from uq.population.few_rows import FEW
 from uq.population.smoothing import DOUBTFUL, refusal, rows_to_carry_little
+from uq.wording import percent
 
 HOPELESS = (
     "the rows hardly visit what the inspections leave, and no moderate number of rows helps; the"
@@ -42,9 +43,21 @@ def _censored(found: Posterior) -> Iterator[str]:
         )
         if share > _OPEN:
             yield (
-                f"unit {label}: {100 * share:.2g} % of the rows were censored before what its"
-                " inspections saw; run the study with a longer horizon"
+                f"unit {label}: {percent(share)} of the rows were censored before what its"
+                f" inspections saw{_or_stopped(found, label)}"
             )
+
+
+def _or_stopped(found: Posterior, label: str) -> str:
+    """Return what remedies rows that leave open what inspections of a unit saw."""
+    looks = [look for one, look in found.looks.items() if one.unit == label]
+    stopped = [one.depths.settled & ~one.censored for one in looks if one.depths is not None]
+    if not any(rows.any() for rows in stopped):
+        return "; run the study with a longer horizon"
+    return (
+        ", or their wear stops between two of its depths; run the study with a longer horizon, or"
+        " with more depths"
+    )
 
 
 def _reasons(found: Posterior) -> Iterator[str]:

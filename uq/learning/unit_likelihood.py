@@ -89,7 +89,7 @@ class UnitLikelihoods:
                 longer = (scale / self._scale.drawn[rows])[:, None] ** self._scale.exponents[
                     look.name
                 ]
-            found |= look.bounded(one, rows, longer)[:, 0]
+            found |= look.bounded(one, rows, longer, self._cv)[:, 0]
         return found
 
     def _truth(
