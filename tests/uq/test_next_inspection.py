@@ -78,7 +78,7 @@ def test_it_is_worth_as_much_of_a_posterior(worn):
 @pytest.mark.parametrize(
     ("asked", "why"),
     {
-        (DEPTH, 150.0): "% of the rows have worn beyond the last depth of the result",
+        (DEPTH, 300.0): "% of the rows have worn beyond the last depth of the result",
         (DEPTH, -1.0): "time = -1: must be finite, and 0 or more",
         (DEPTH, np.nan): "time = nan: must be finite, and 0 or more",
         (DEPTH, None): "time is missing: when depth[side=left] was inspected [h]",
@@ -93,6 +93,12 @@ def test_what_cannot_be_asked_is_said(worn, asked, why):
         worth(worn, output, () if time is None else (time,), life=LIFE)
     assert why in str(refused.value)
     assert len(refused.value.lines) == 1
+
+
+def test_a_depth_that_some_rows_do_not_determine_is_rough(worn):
+    """One pad in twelve has worn through 200 mm by 100 h."""
+    (note,) = worth(worn, DEPTH, (20.0, 100.0), life=LIFE).notes
+    assert note.startswith("Rough: by 100 h, 8.") and "% of the rows have worn beyond" in note
 
 
 def test_rows_that_were_not_followed_long_enough_do_not_tell():

@@ -40,6 +40,8 @@ def next_inspection(
         " deviation); each cell is the share by which the logarithm of that factor is expected to"
         " fall. The scatter between units remains."
     )
+    for text in found.notes:
+        note(text)
 
 
 def _when(found: Worth, time: float | None) -> str:
@@ -57,6 +59,7 @@ def _as_json(found: Worth) -> dict[str, Any]:
         "inspect": found.output,
         "spread": json_form.number(found.spread),
         "time_units": found.time_unit,
+        "notes": found.notes,
         "narrowing": [
             {"time": time, "units": units, "value": json_form.number(share)}
             for (time, units), share in found.narrowing.items()

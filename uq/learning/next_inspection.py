@@ -1,6 +1,6 @@
 """What the next inspection is worth: how far it narrows what units share."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, nan
 
@@ -28,8 +28,8 @@ from uq.units import beside
 from uq.wording import number, percent
 
 _ANY = 1e-300  # a value that no depth is beyond
-_UNKNOWN = 0.1
-"""Share of the rows that need not determine a depth."""
+_FEW, _MOST = 0.01, 0.5
+"""Shares of the rows that do not determine a depth: above, the numbers are rough, and none."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,8 @@ class Worth:
         do not show it.
     time_unit : str
         CF unit of the times.
+    notes : list of str
+        Which numbers are rough, and why.
     """
 
     life: str
@@ -56,6 +58,7 @@ class Worth:
     spread: float
     narrowing: dict[tuple[float | None, int], float]
     time_unit: str
+    notes: list[str]
 
 
 def worth(
@@ -91,7 +94,7 @@ def worth(
     ------
     InputError
         When samples have a single unit, there is no such output or life, the output is negative
-        in some rows, or more than 10 % of the rows do not determine a depth by one of the times.
+        in some rows, or more than half of the rows do not determine a depth by one of the times.
 
     Notes
     -----
@@ -124,9 +127,10 @@ def worth(
     weights = weights_of(rows)
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
     target = _logarithm(np.where(element.censored, np.nan, element.values))
-    quantities, found = quantities_of(rows), {}
+    quantities, found, notes = quantities_of(rows), {}, list[str]()
     for time in times or (None,):
-        look = _look(quantities, output, time, worth_of_rows)
+        look = _look(quantities, output, time)
+        notes += _rough(look, time, worth_of_rows)
         truth = look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0]
         if negative := np.mean(truth < 0):
             raise InputError(
@@ -138,7 +142,7 @@ def worth(
         for count in units:
             found[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
     spread = _Between(target, target, worth_of_rows, place).of_life
-    return Worth(element.name, output, max(spread, 0.0) ** 0.5, found, look.time_unit)
+    return Worth(element.name, output, max(spread, 0.0) ** 0.5, found, look.time_unit, notes)
 
 
 def unit_of_time(ds: xr.Dataset, output: str) -> str:
@@ -147,25 +151,31 @@ def unit_of_time(ds: xr.Dataset, output: str) -> str:
     return depths[output].time_unit if output in depths else ""
 
 
-def _look(quantities: Quantities, output: str, time: float | None, weights: Floats) -> Look:
-    """Return what is to be inspected, where its rows determine it."""
+def _look(quantities: Quantities, output: str, time: float | None) -> Look:
+    """Return what is to be inspected."""
     when = Inspection("", output, Kind.MEASURED, time, _ANY)
     if output in quantities.known and time is not None:
         raise InputError(f"uq next-inspection: {output} is not a depth: leave out when")
-    look = look_at(quantities, when)
+    return look_at(quantities, when)
+
+
+def _rough(look: Look, time: float | None, weights: Floats) -> Iterator[str]:
+    """Yield how many rows do not determine a depth by a time; refuse where most do not."""
     if look.depths is None or time is None:
-        return look
+        return
     everyone, last = np.arange(len(weights)), look.depths.depths[-1]
     longer = np.ones((len(weights), 1))
     unknown = look.truth(time, everyone, longer) > last
     unknown |= look.open_depth(time, everyone, longer)
-    if (share := np.average(unknown[:, 0], weights=weights)) > _UNKNOWN:
-        raise InputError(
-            f"uq next-inspection: by {beside(number(time), look.time_unit)}, {percent(share)} of"
-            f" the rows have worn beyond the last depth of the result, {last:g} {look.unit}, or"
-            " were censored before"
-        )
-    return look
+    share = float(np.average(unknown[:, 0], weights=weights))
+    why = (
+        f"by {beside(number(time), look.time_unit)}, {percent(share)} of the rows have worn beyond"
+        f" the last depth of the result, {last:g} {look.unit}, or were censored before"
+    )
+    if share > _MOST:
+        raise InputError(f"uq next-inspection: {why}")
+    if share > _FEW:
+        yield f"Rough: {why}; depths are continued straight."
 
 
 class _Between:
