@@ -7,10 +7,12 @@ from scipy import stats
 
 from uq.exploring.updating import update
 from uq.learning.dependent_outputs import dependent_outputs
+from uq.learning.inputs_learnt import inputs_learnt
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
 from uq.learning.remaining import remaining
 from uq.learning.result import as_unit
+from uq.population.functionals import Population
 from uq.population.learnt_scale import LearntScale
 from uq.population.row_inputs import inputs_of
 from uq.population.scale_laws import ConditionalScale
@@ -95,3 +97,26 @@ def test_a_unit_never_inspected_runs_on_where_all_is_shared_with_one_that_does()
     (anyone, inspected) = remaining(update(rows, [told]), [1e6])
     assert anyone.runs.value == pytest.approx(1, abs=1e-4)
     assert anyone.by[1e6].value == pytest.approx(inspected.by[1e6].value, abs=0.02)
+
+
+def test_the_mean_of_an_integrated_input_scatters_as_its_interval_says():
+    """Values drawn as evenly as its law would seem to scatter three times as much."""
+    lives = measured(6e5, 1e6, 1.2e6, cv=0.3)
+    found = [
+        next(one.posterior.mean for one in inputs_learnt(ds) if one.name == "depth[unit=A]")
+        for seed in range(20)
+        for ds in [update(wear(samples=300, seed=seed, rate="shared", units=3), lives)]
+    ]
+    scatter = np.std([one.value for one in found], ddof=1)
+    width = np.mean([one.high - one.low for one in found]) / 3.92
+    assert 0.6 < width / scatter < 1.6
+
+
+def test_no_end_of_an_interval_lies_before_a_time_that_the_unit_outlived():
+    rows = wear(samples=200).copy()
+    rows["life"].attrs.pop("scales")
+    told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
+    unit = as_unit(update(rows, [told]), "A")
+    (element,) = population(unit, ["life"])
+    assert element.law is None
+    assert Population(element, None).quantile(0.01).low >= SEEN

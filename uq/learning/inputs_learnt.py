@@ -12,7 +12,9 @@ from uq.designs.levels import SHARED
 from uq.estimate import Estimate
 from uq.learning.importance import importance_of
 from uq.learning.result import as_unit, prior_of
+from uq.population.learnt_scale import learnt_input, moments_of_input
 from uq.population.means import moments_of_rows, trusted
+from uq.population.row_inputs import inputs_of
 from uq.rows.elements import analysis_of, replicates_of
 from uq.rows.nesting import levels_of
 from uq.rows.weights import WEIGHT
@@ -162,10 +164,12 @@ def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread
 
 def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
     values, weights = ds[name].values, ds[WEIGHT].values
-    part = replicates_of(ds)
-    mean, sd = moments_of_rows(values, weights, part)
-    mean = trusted(mean, weights * values, part, hopeless=_FEW_ROWS)
-    sd = trusted(sd, weights * values**2, part, hopeless=_FEW_ROWS)
+    part, of_rows, within = replicates_of(ds), values, np.zeros(len(values))
+    if name == learnt_input(ds):
+        of_rows, within = moments_of_input(ds, inputs_of(ds))
+    mean, sd = moments_of_rows(of_rows, weights, part, within)
+    mean = trusted(mean, weights * of_rows, part, hopeless=_FEW_ROWS)
+    sd = trusted(sd, weights * (of_rows**2 + within), part, hopeless=_FEW_ROWS)
     return Spread(mean, sd, quantiles(values, weights, asked))
 
 

@@ -249,7 +249,8 @@ class Population:
 
     def _along_values(self, probability: float) -> Estimate:
         """Return a quantile of known values, which is one of them."""
-        values = np.unique(self.element.at_most)
+        weights, values = self._weights(self.element.present), self.element.at_most
+        values = np.unique(values if weights is None else values[weights > 0])
         values = values[np.isfinite(values)]
         if not len(values):
             return Estimate(self._never)

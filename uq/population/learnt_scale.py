@@ -8,7 +8,7 @@ import xarray as xr
 from scipy import special
 
 from uq.contract import Floats
-from uq.inputs.conditioning import cdf_within
+from uq.inputs.conditioning import cdf_within, ppf_within
 from uq.inputs.law import Law
 from uq.population.row_inputs import Inputs
 from uq.population.scale_laws import share_below
@@ -103,3 +103,13 @@ def learnt_scale(
 def learnt_input(rows: xr.Dataset) -> str:
     """Return the input whose law in each row is what inspections of a unit left, or ""."""
     return str(rows[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows else ""
+
+
+def moments_of_input(rows: xr.Dataset, inputs: Inputs) -> tuple[Floats, Floats]:
+    """Return mean and variance of the integrated input in each row of an inspected unit, (n,)."""
+    name = learnt_input(rows)
+    below = special.ndtr(rows[SCALE_SCORES].values)
+    flat = ppf_within(inputs.laws[name], below.ravel(), inputs.bounds[name])
+    values, worth = flat.reshape(below.shape), np.exp(-(SCORES**2) / 2)
+    mean = values @ worth / worth.sum()
+    return mean, (values - mean[:, None]) ** 2 @ worth / worth.sum()

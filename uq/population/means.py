@@ -156,7 +156,7 @@ def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tup
 
 
 def moments_of_rows(
-    values: Floats, weights: Floats, part: Replicates = None
+    values: Floats, weights: Floats, part: Replicates = None, within: Floats | float = 0.0
 ) -> tuple[Estimate, Estimate]:
     """Estimate mean and standard deviation from rows whose weights can be trusted.
 
@@ -164,6 +164,8 @@ def moments_of_rows(
     ----------
     values, weights : ndarray, shape (n,)
     part : ndarray of int, shape (n,), optional
+    within : ndarray, shape (n,), optional
+        Variance of each value, where it is the mean of a law.
 
     Returns
     -------
@@ -174,7 +176,7 @@ def moments_of_rows(
     mean = float(np.average(values, weights=weights))
     if len(values) == 1:
         return Estimate(mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
-    squares = (values - mean) ** 2
+    squares = (values - mean) ** 2 + within
     variance = float(np.average(squares, weights=weights))
     found = Estimate(mean, *_beyond_outliers(mean, pulls(values, weights, part)))
     relative = pulls(squares, weights, part) / max(variance, 1e-300)
