@@ -59,11 +59,17 @@ def test_dependent_rows_are_the_same_however_they_are_cut(cuts):
         (((1.0, 0.5),), "must have 2 rows of 2 numbers"),
         (((1.0, 0.5), (0.5, 0.9)), "must be 1: that of 'b' with itself"),
         (((1.0, 0.5), (0.4, 1.0)), "must be the same as [1][0] = 0.4"),
-        (((1.0, 1.0), (1.0, 1.0)), "must lie between -1 and 1; for 1 use equals"),
+        (((1.0, 1.0), (1.0, 1.0)), "must lie between -1 and 1, 2e-09 or more from both"),
+        (((1.0, -1 + 1e-10), (-1 + 1e-10, 1.0)), "between -1 and 1, 2e-09 or more from both"),
     ],
 )
 def test_a_matrix_that_is_none_says_what_is_wrong(ranks, said):
     assert said in matrix_problem(("a", "b"), ranks).problem
+
+
+def test_two_inputs_may_have_any_correlation_that_is_not_almost_one():
+    for r in (0.9995, 1 - 2.1e-9, -1 + 2.1e-9):
+        assert matrix_problem(("a", "b"), ((1.0, r), (r, 1.0))) is None
 
 
 def test_a_near_miss_is_answered_with_what_would_do():

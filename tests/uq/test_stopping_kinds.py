@@ -1,11 +1,9 @@
 """Runs that stop when a B-life, an index, or the difference between two indices is known."""
 
-import re
-
 import numpy as np
 import pytest
 from computed import UNIFORM, computed, kinds, study_of, summarised
-from until_studies import study, tables
+from until_studies import PAIR, WEAR, study, tables, wear
 
 from benchmarks.coverage import whole
 from uq.analysis import stopping
@@ -13,16 +11,6 @@ from uq.errors import InputError
 from uq.indices.as_json import sensitivity_json
 from uq.indices.sensitivities import sensitivities
 from uq.running import runner
-
-WEAR = {
-    "rate": {"distribution": "lognormal", "median": 1e-9, "sigma": 0.5},
-    "depth": {"distribution": "lognormal", "median": 1e-3, "sigma": 0.3},
-}
-
-
-def wear(until, laws=WEAR, **more):
-    given = tables({"output": "life", **until}, **more) | {"uncertain": laws}
-    return study_of(given | {"study": {"name": "wear", "model": "exponential-wear"}})
 
 
 def seen_with_confidence(monkeypatch, confidence, of, ds):
@@ -56,68 +44,17 @@ def test_a_b_life_may_rest_on_censored_rows():
 
     def look(b_life):
         until = {"output": name, "b_life": b_life, "half_width": 0.2}
-        given = tables(until, samples=256) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+        given = tables(until, samples=256) | {"uncertain": PAIR}
         return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, ds)
 
     assert look("B50").half_width < 0.2
     assert look("B90").half_width == np.inf
 
 
-def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
-    never = {"rate": WEAR["rate"]}
-    of = wear({"b_life": "B90", "half_width": "1 days"}, never, samples=64)
-    fixed = study_of(
-        tables({"output": "life", "b_life": "B90", "half_width": "1 days"}, samples=64)
-        | {"uncertain": never, "fixed": {"threshold": 1e-9}},
-        "exponential-wear",
-    )
-    assert of.design.until.half_width == 86400.0
-    ds = runner.run(fixed, tmp_path / "out.nc", workers=0)
-    (note,) = summarised(ds)["notes"]
-    assert "budget of 64 samples is spent: B90 of life is never; the required half-width" in note
-
-
-@pytest.mark.parametrize(
-    ("until", "more", "line"),
-    [
-        ({"b_life": "B90"}, {"fixed": {"threshold": 1e-9}}, "B90 of life is never, which no"),
-        ({}, {"fixed": {"threshold": 1e-9}}, r"mean of life has no interval \(some rows never end"),
-    ],
-)
-def test_a_life_that_has_no_such_number_is_announced_once(tmp_path, until, more, line):
-    design = tables({"output": "life", "half_width": "1 days", **until}, samples=512)
-    given = design | {"uncertain": {"rate": WEAR["rate"]}} | more
-    said = []
-    runner.run(study_of(given, "exponential-wear"), tmp_path / "out.nc", workers=0, say=said.append)
-    (one,) = [one for one in said if "budget" in one]
-    assert re.match(f"after 256 samples {line}.*; while that is so .* its budget of 512", one)
-
-
-@pytest.mark.parametrize("method", ["saltelli", "shapley"])
-def test_an_input_without_effect_that_a_run_waits_for_is_announced(tmp_path, method):
-    of_method = {"saltelli": ("ST", 128, 8), "shapley": ("shapley", 512, 1)}
-    index, samples, replicates = of_method[method]
-    until = {"output": "y", "index": index, "input": "x2", "half_width": 0.1}
-    given = tables(until, samples, method, replicates)
-    of = study_of(given | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}, "sample_models:PLAIN")
-    said = []
-    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
-    (line,) = [one for one in said if "budget" in one]
-    words = f"{index} x2 of y is 0 and has no interval (no row shows an effect)"
-    assert words in line and words in summarised(ds)["notes"][0]
-
-
 def test_the_shapley_effect_of_a_single_input_is_refused_before_the_run():
     given = tables({"output": "y", "index": "shapley", "half_width": 0.1}, 512, "shapley")
     with pytest.raises(InputError, match="is 1 in every study of one input, x1: no interval"):
         study_of(given | {"uncertain": {"x1": UNIFORM}})
-
-
-def test_times_are_said_in_the_unit_that_people_use(tmp_path):
-    of = wear({"b_life": "B10", "half_width": "30 hours"})
-    ds = runner.run(of, tmp_path / "out.nc", workers=0)
-    (note,) = summarised(ds)["notes"]
-    assert "B10 of life is" in note and "days: the required half-width of 30 hours was" in note
 
 
 @pytest.mark.parametrize(
@@ -147,8 +84,7 @@ def test_an_index_is_that_of_the_sensitivity(monkeypatch, more, widest):
 def test_an_input_without_effect_does_not_keep_a_run_going(tmp_path):
     until = {"output": "y", "index": "ST", "half_width": 0.1}
     given = tables(until, samples=256, method="saltelli", replicates=8)
-    inputs = {"x1": UNIFORM, "x2": UNIFORM}
-    of = study_of(given | {"uncertain": inputs}, "sample_models:PLAIN")
+    of = study_of(given | {"uncertain": PAIR}, "sample_models:PLAIN")
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     assert ds.attrs["samples"] < 256
     assert "ST x1 of y is" in summarised(ds)["notes"][0]
@@ -161,13 +97,6 @@ def test_shapley_effects_need_no_replicates(tmp_path):
     seen = stopping.interim_estimate(of.design, ds)
     assert seen.what == "shapley x4 - x1 of y"
     assert seen.estimate.low < 15 / 30 < seen.estimate.high
-
-
-def test_failed_rows_leave_with_their_groups(tmp_path):
-    settings = {"fail_above": 0.99, "fail_how": "raise"}
-    of = study(0.2, samples=128, method="saltelli", replicates=8, index="S1", settings=settings)
-    ds = runner.run(of, tmp_path / "out.nc", workers=0)
-    assert "groups with failed rows)" in summarised(ds)["notes"][0]
 
 
 @pytest.mark.parametrize(
@@ -232,7 +161,7 @@ def test_mistakes_are_one_line(until, more, words):
 
 def test_an_unknown_element_is_refused_before_any_row():
     until = {"output": "life[side=left,depth=0.6]", "half_width": 0.1}
-    given = tables(until) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+    given = tables(until) | {"uncertain": PAIR}
     with pytest.raises(InputError, match=r"until.output = .*no such element; did you mean .*0.5"):
         study_of(given, "sample_models:KINDS")
 
@@ -279,7 +208,9 @@ class Interrupted(Exception):
 
 
 SHAPLEY = {"method": "shapley", "samples": 2048}
+
 SALTELLI = {"method": "saltelli", "samples": 256, "replicates": 8}
+
 KINDS = {
     "mean": ({"half_width": 0.1}, {}),
     "probability": ({"above": 5.0, "half_width": 0.04}, {}),

@@ -10,7 +10,7 @@ from uq.estimate import Estimate
 from uq.population.means import EXACT
 from uq.rows.nesting import first_samples
 from uq.units import Unit, beside, unit_of
-from uq.wording import brief, counted, in_unit, rows_in_words, threshold
+from uq.wording import brief, in_unit, rows_in_words, threshold
 from uq.written import Written
 
 if TYPE_CHECKING:
@@ -38,8 +38,7 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
         return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
     known = f"{seen.what} {_in_words(found, unit)}"
     if seen.lost:
-        of_groups = ("group with failed rows", "groups with failed rows")
-        known += f" (without {counted(seen.lost, *of_groups if until.index else ('failed row',))})"
+        known += f" (without {seen.lost})"
     wanted = _wanted(until.half_width, unit)
     if not seen.reached:
         needed = _needed(seen, samples)

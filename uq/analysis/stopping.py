@@ -7,7 +7,7 @@ it (`uq.interim_levels`).
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import inf, isnan
+from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -32,6 +32,7 @@ from uq.population.scaling import population
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.rows.nesting import first_samples
 from uq.skewed_means import corrected_mean_interval
+from uq.wording import counted
 
 if TYPE_CHECKING:
     from uq.study.file import DesignTable, Until
@@ -51,8 +52,8 @@ class InterimEstimate(NamedTuple):
         At the confidence of one interim estimate.
     required : float
         Half-width.
-    lost : int
-        Rows, or groups of rows, that failed.
+    lost : str
+        How many rows, or groups of rows, lack a value; "" if none.
     units : str
         CF unit of the estimate.
     """
@@ -60,7 +61,7 @@ class InterimEstimate(NamedTuple):
     what: str
     estimate: Estimate
     required: float
-    lost: int
+    lost: str
     units: str = "1"
 
     @property
@@ -125,7 +126,19 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
     """
     assert design.until is not None
     estimates = _indices if design.until.index else _statistics
-    return max(estimates(design, ds), key=lambda one: one.half_width)
+    widest = max(estimates(design, ds), key=lambda one: one.half_width)
+    return widest._replace(estimate=_explained(widest.estimate, design))
+
+
+def _explained(found: Estimate, design: "DesignTable") -> Estimate:
+    """Return an estimate with the reason if it has no interval because nothing scatters."""
+    if found.reason or not (isfinite(found.value) and isnan(found.low) and isnan(found.high)):
+        return found
+    if _rests_on_replicates(design):
+        part = "replicate"
+    else:
+        part = "path" if DESIGNS[design.method].layout is PATHS else "row"
+    return replace(found, reason=f"the same in each {part}")
 
 
 def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
@@ -155,9 +168,18 @@ def _statistics(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstima
         if element.name in names:
             found = statistic(element, until, replicate, level)
             units = "1" if until.threshold is not None else element.units
-            lost = int(element.failed.sum())
+            lost = _lost(element)
             what = f"{until.estimate} of {element.name}"
             yield InterimEstimate(what, found, until.half_width, lost, units)
+
+
+def _lost(element: Element) -> str:
+    """Return how many rows of an element failed or are undefined, in words."""
+    failed, undefined = int(element.failed.sum()), int(element.undefined.sum())
+    return " and ".join(
+        [counted(failed, "failed row")] * (failed > 0)
+        + [counted(undefined, "undefined row")] * (undefined > 0)
+    )
 
 
 def statistic(
@@ -232,6 +254,8 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
     for target in _targets(ds, until.output):
         own = replace(sample, values=target.values)
         found = indices_of_target(ds, METHODS[method], target, own)
+        dropped = found.groups_dropped
+        lost = f"{counted(dropped, 'group')} with missing values" if dropped else ""
         values = found.kinds().get(kind, {})
         label = until.label
         asked = {label: values.get(label, NOTHING)} if label else dict(values)
@@ -242,7 +266,7 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
             alive = {label: Estimate(value, reason=why)}
         for name, one in alive.items():
             what = " ".join(filter(None, (until.index, name, "of", target.name)))
-            yield InterimEstimate(what, one, until.half_width, found.groups_dropped)
+            yield InterimEstimate(what, one, until.half_width, lost)
 
 
 def _targets(ds: xr.Dataset, output: str) -> Iterator[Target]:

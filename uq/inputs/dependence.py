@@ -13,6 +13,7 @@ Matrix = tuple[tuple[float, ...], ...]
 Places = NDArray[np.int_]
 
 _LEAST_EIGENVALUE = 1e-9
+_NEAREST = 2e-9  # to -1 or 1; of two inputs alone the least eigenvalue then is large enough
 
 
 def normal_correlations(ranks: Matrix) -> Floats:
@@ -59,8 +60,8 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> Fault | None:
         value, problem = ranks[i][j], ""
         if i == j and value != 1:
             problem = f"must be 1: that of '{names[i]}' with itself"
-        elif i != j and not -1 < value < 1:
-            problem = "must lie between -1 and 1; for 1 use equals"
+        elif i != j and not abs(value) <= 1 - _NEAREST:
+            problem = f"must lie between -1 and 1, {_NEAREST:g} or more from both; for 1 use equals"
         elif value != ranks[j][i]:
             problem = f"must be the same as [{j}][{i}] = {ranks[j][i]!r}"
         if problem:

@@ -7,6 +7,7 @@ intervals are therefore widened; docs/statistics.md states what they cover with 
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -63,7 +64,7 @@ def pooled_with_intervals(
 
     def with_interval(kind: IndexKind, label: str, value: float) -> Estimate:
         estimates = np.array([own[kind][label] for own in scatter])
-        return Estimate(value, *scatter_interval(value, estimates, confidence))
+        return Estimate(value, *scatter_interval(value, estimates, confidence), lacking)
 
     found = {
         kind: {label: with_interval(kind, label, value) for label, value in values.items()}
@@ -142,4 +143,4 @@ def widened(estimate: Estimate, by: float) -> Estimate:
     """Return an estimate whose half-widths are sqrt(half^2 + by^2)."""
     value = estimate.value
     below, above = (np.hypot(end - value, by) for end in (estimate.low, estimate.high))
-    return Estimate(value, float(value - below), float(value + above))
+    return replace(estimate, low=float(value - below), high=float(value + above))

@@ -1,0 +1,126 @@
+"""Shapley effects of dependent inputs."""
+
+import numpy as np
+import pytest
+from asked_indices import sensitivities
+from computed import computed, study_of, with_output, with_status
+from dependent_studies import PAIR, assert_near, entry_of, weighted
+from input_studies import UNIFORM, refusal, tables
+from scipy import stats
+
+from benchmarks.coverage import dependent, dependent_effects, problems
+from benchmarks.coverage.tally import LOW, OURS
+from uq.errors import InputError
+
+
+def test_shapley_effects_of_dependent_inputs_are_the_known_ones():
+    for r in (0.3, 0.9):
+        entry = entry_of(weighted(r))
+        assert_near(entry["shapley"], dependent.of_normal(r))
+        assert sum(one["value"] for one in entry["shapley"].values()) == pytest.approx(1.0)
+
+
+def test_shapley_effects_of_discrete_inputs_are_the_known_ones():
+    study = dependent.study("sum", dependent.SIGNED, dependent.AMONG_SIGNS, 4096)
+    assert_near(entry_of(problems.computed(study))["shapley"], dependent.of_signs())
+
+
+def test_shapley_effects_of_a_factor_and_a_truncated_law_are_the_known_ones():
+    # y = a + a f + c with a truncated, c uniform and correlated with a, and f independent of both.
+    r, mean, sd = 0.7, 2.0, 0.5
+    a_law = {"distribution": "normal", "mean": 2.0, "sd": 1.0, "truncate": [1.0, 5.0]}
+    factor = {"distribution": "normal", "mean": mean, "sd": sd, "times": "a"}
+    c_law = {"distribution": "uniform", "lower": 0.0, "upper": 9.0}
+    both = {"parameters": ["a", "c"], "rank_correlation": dependent.ranks([[1.0, r], [r, 1.0]])}
+    given = tables({"a": a_law, "b": factor, "c": c_law}, "shapley", 4096, dependence=both)
+    found = entry_of(computed(study_of(given, "sample_models:ADDED")))["shapley"]
+
+    z = np.linspace(-7.0, 7.0, 701)
+    density = stats.multivariate_normal(cov=[[1.0, r], [r, 1.0]])
+    weight = density.pdf(np.stack(np.meshgrid(z, z, indexing="ij"), axis=-1))
+    weight /= weight.sum()
+    u = stats.norm.cdf(z)
+    a = stats.truncnorm(-1.0, 3.0, loc=2.0).ppf(u)[:, None]
+    c = 9.0 * u[None, :]
+    given_a = (weight * c).sum(axis=1) / weight.sum(axis=1)
+    given_c = (weight * a).sum(axis=0) / weight.sum(axis=0)
+
+    def variance(of_a, rest):
+        """Return that of of_a (1 + f) + rest, over a, c and f."""
+        mid = (weight * (of_a * (1 + mean) + rest) ** 2).sum()
+        mid -= (weight * (of_a * (1 + mean) + rest)).sum() ** 2
+        return mid, sd**2 * (weight * (of_a + 0 * c) ** 2).sum()
+
+    one = {
+        (): (0.0, sd**2 * float((weight * a).sum()) ** 2),
+        (0,): variance(a, given_a[:, None]),
+        (2,): variance(given_c[None, :], c),
+        (0, 2): variance(a, c),
+    }
+
+    def explained(some):
+        without, of_factor = one[tuple(sorted(i for i in some if i != 1))]
+        return without + of_factor * (1 in some)
+
+    truth = dict(zip(("a", "b", "c"), dependent_effects.shares(explained, 3), strict=True))
+    assert_near(found, truth)
+
+
+def test_linear_models_of_correlated_normal_inputs_have_the_published_effects():
+    # B. Iooss, C. Prieur, "Shapley effects for sensitivity analysis with correlated inputs", Int.
+    # J. Uncertain. Quantif. 9, 493-514 (2019), linear model with normal inputs: a correlated pair
+    # with standard deviations 1 and 2, and an input beside one that the model does not use.
+    for r in (-0.5, 0.0, 0.4, 0.9):
+        whole = 1 + 1 + 4 + 4 * r
+        block = [1 * (1 - r**2 / 2) + 2 * r + 4 * r**2 / 2, 4 * (1 - r**2 / 2) + 2 * r + r**2 / 2]
+        alone = [1 - r**2 / 2, r**2 / 2]
+        expected = np.array([alone[0], *block, alone[1]]) / whole
+        assert list(dependent.of_normal(r).values()) == pytest.approx(expected)
+
+
+def test_failed_rows_leave_with_their_paths():
+    ds = weighted(0.6, 256)
+    y = ds["weighted"].values.copy()
+    y[7] = np.nan
+    found = sensitivities(with_status(with_output(ds, "weighted", y), [7], 2), output="weighted")
+    assert (found["groups_dropped"], found["rows_used"]) == (1, 255 * 5)
+    total = sum(one["value"] for one in found["outputs"]["weighted"]["shapley"].values())
+    assert total == pytest.approx(1.0)
+
+
+def test_rows_of_another_dependence_are_refused():
+    ds = weighted(0.6, 64)
+    x = ds["x2"].values.copy()
+    x[5] += 1e-3
+    with pytest.raises(InputError, match="the rows differ from those of a 'shapley' design"):
+        sensitivities(ds.assign(x2=("sample", x, ds["x2"].attrs)))
+
+
+def test_designs_for_dependent_inputs_are_named_with_what_they_feed():
+    said = refusal(tables({"x1": UNIFORM, "x3": UNIFORM}, "saltelli", 128, dependence=PAIR))
+    assert "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and" in said
+    assert said.endswith(", or shapley for shapley")
+
+
+def test_paths_have_no_effects_within_a_regime():
+    inside = {"distribution": "uniform", "lower": 0.01, "upper": 0.99}
+    given = tables({"x1": inside, "x2": inside}, "shapley", 64)
+    ds = computed(study_of(given, "sample_models:KINDS"))
+    with pytest.raises(InputError, match="'shapley' assumes inputs that depend as their design"):
+        sensitivities(ds, regime="fast")
+
+
+@pytest.mark.slow
+def test_intervals_of_dependent_effects_hold_the_truth_in_93_to_97_of_100_cases():
+    cases = ["exponential, correlation 0.6", "mild lognormal", "two signs and a number"]
+    lines = dependent.shapley(1000, cases)
+    assert len(lines) == 2 * (4 + 4 + 3)
+    assert all(line.given == 1000 for line in lines)
+    assert not [line for line in lines if line.by == OURS and line.coverage[0] < LOW]
+    assert not [line for line in lines if line.unexplained]
+
+
+def test_paths_alone_that_do_not_tell_the_variance_from_zero_give_nothing():
+    case = dependent.CASES["steep lognormal"]
+    ds = problems.computed(dependent.study(case.output, case.laws, case.correlations, 8))
+    assert dependent.of_paths_alone(ds, case.output) == {}
