@@ -8,11 +8,13 @@ import numpy as np
 from benchmarks.coverage.dependent_effects import (
     AMONG_SIGNS,
     NAMES,
+    among_waves,
     matrix,
     of_exponential,
     of_lognormal,
     of_normal,
     of_signs,
+    of_waves,
 )
 from benchmarks.coverage.problems import Settings, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
@@ -31,6 +33,7 @@ NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 EXPONENTIAL = {"distribution": "exponential", "mean": 1.0}
 SIGN = {"distribution": "discrete-choice", "values": [-1.0, 1.0]}
 SIGNED = {"x1": SIGN, "x2": SIGN, "x3": NORMAL}
+WAVING = dict.fromkeys(NAMES[:3], {"distribution": "uniform", "lower": -np.pi, "upper": np.pi})
 
 
 def _number(symbol):
@@ -55,6 +58,7 @@ def _batch(x, seed, settings):
         "mild": np.exp(MILD * weighted),
         "steep": np.exp(STEEP * weighted),
         "sum": x1 + x2 + x3,
+        "waves": np.sin(x1) * (1 + 0.1 * x3**4) + 7 * np.sin(x2) ** 2,
     }
     return found, np.zeros(len(x), np.int8)
 
@@ -71,6 +75,7 @@ SUMS = Model(
         "mild": Output("1", "e to the power of a sixth of x1 + x2 + 2 x3"),
         "steep": Output("1", "e to the power of half of x1 + x2 + 2 x3"),
         "sum": Output("1", "x1 + x2 + x3"),
+        "waves": Output("1", "Ishigami's function"),
     },
     _batch,
     block=1024,
@@ -141,6 +146,10 @@ CASES = {
     "steep lognormal": Case("steep", BELLS, matrix(0.6), of_lognormal(0.6, STEEP), TAIL),
     "two signs and a number": Case("sum", SIGNED, AMONG_SIGNS, of_signs()),
 }
+WAVES = {
+    f"waves, correlation {r:g}": Case("waves", WAVING, among_waves(r), of_waves(r))
+    for r in (0.6, 0.9)
+}
 PATHS = 512
 REFUSED = dict.fromkeys(NAMES, {"low": None, "high": None})
 ALONE = "paths without polynomials"
@@ -180,8 +189,7 @@ def title(words, rows):
 def shapley(repetitions, cases=CASES):
     """Count the Shapley effects of dependent inputs."""
     lines = []
-    for words in cases:
-        case = CASES[words]
+    for words, case in cases.items():
         tally = Tally(title(words, len(case.laws) + 1), {"shapley": case.reason})
         of = study(case.output, case.laws, case.correlations, PATHS)
         for ds in repeated(of, repetitions):

@@ -3,7 +3,7 @@
 y = x1 + x2 + 2 x3, all standard normal; x2 is correlated with x3, and x1 with x4, which the model
 does not use. The same with x1 x3 added, or e to the power of a sixth or half of y; or all four
 exponential, correlated in the same way. Or y = x1 + x2 + x3, with x1 and x2 either -1 or 1, and all
-three correlated.
+three correlated. Or Ishigami's function of uniform inputs, of which x1 and x3 are correlated.
 """
 
 from functools import cache
@@ -127,6 +127,35 @@ def of_signs(points=1201):
         weight, total = (np.bincount(place.ravel(), w.ravel()) for w in (joint, joint * y))
         weight, total = (one[weight > 0] / joint.sum() for one in (weight, total))
         return float((total**2 / weight).sum() - total.sum() ** 2)
+
+    return dict(zip(NAMES[:3], shares(explained, 3).tolist(), strict=True))
+
+
+def among_waves(r):
+    """Return the correlations of the normal variables behind the inputs of Ishigami's function."""
+    found = np.eye(3)
+    found[0, 2] = found[2, 0] = r
+    return found
+
+
+def of_waves(r, points=1601):
+    """Return the Shapley effects of Ishigami's function by the trapezoidal rule over x1 and x3.
+
+    x2 is independent, and adds 7 sin(x2)^2 to a function of the others.
+    """
+    z = np.linspace(-8.0, 8.0, points)
+    both = stats.multivariate_normal(cov=[[1.0, r], [r, 1.0]])
+    weight = both.pdf(np.stack(np.meshgrid(z, z, indexing="ij"), axis=-1))
+    weight /= weight.sum()
+    x = 2 * np.pi * (special.ndtr(z) - 0.5)
+    y = np.sin(x)[:, None] * (1 + 0.1 * x**4)
+    centred = weight * (y - (weight * y).sum())
+    given = [(centred.sum(axis=i) ** 2 / weight.sum(axis=i)).sum() for i in (1, 0)]
+    whole = (centred**2 / weight).sum()
+
+    def explained(some):
+        of_both = {(): 0.0, (0,): given[0], (2,): given[1], (0, 2): whole}
+        return of_both[tuple(sorted(set(some) - {1}))] + 49 / 8 * (1 in some)
 
     return dict(zip(NAMES[:3], shares(explained, 3).tolist(), strict=True))
 

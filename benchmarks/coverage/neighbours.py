@@ -30,10 +30,10 @@ def by_neighbours(x, y):
     return shares(lambda some: left[()] - left[tuple(sorted(some))], d)
 
 
-def neighbours(repetitions):
+def neighbours(repetitions, cases=CASES):
     """Count the intervals of nearest neighbours, by Student's t of parts of as many rows."""
     lines = []
-    for words, case in CASES.items():
+    for words, case in cases.items():
         names, rows = list(case.laws), len(case.laws) + 1
         tally = Tally(title(words, rows))
         of = study(case.output, case.laws, case.correlations, PATHS * rows, "monte-carlo")

@@ -26,7 +26,8 @@ censored; Weibull and lognormal lives; the *g-function*; a *linear function* in 
 *Pareto* values without variance or mean; gamma lives and lives with infant mortality, to which
 wrong laws are fitted; *dependent inputs*: x1 + x2 + 2 x3 of normal or exponential inputs, with x2
 and x3, and x1 and an unused x4, correlated, e to the power of a sixth (*mild*) or half (*steep*) of
-it, and the sum of two correlated signs and a number; a *random
+it, the sum of two correlated signs and a number, and Ishigami's function of uniform inputs
+(*waves*), of which x1 and x3 are correlated; a *random
 model*, x1 + (1 + 2 x2) e with noise e; limits with a probability of 1e-5; nested *random
 effects* of samples, units and repeats; lives *scaled* by a lognormal input; *fleets* of units
 that share a lognormal rate, each with a depth of its own; *curves* whose points are taken

@@ -76,6 +76,8 @@ PARTS = {
     "whole-shapley": Part(partial(whole.whole, "shapley"), 1000),
     "shapley-dependent": Part(dependent.shapley, 1000),
     "shapley-neighbours": Part(neighbours.neighbours, 100),
+    "shapley-waves": Part(partial(dependent.shapley, cases=dependent.WAVES), 1000),
+    "shapley-waves-neighbours": Part(partial(neighbours.neighbours, cases=dependent.WAVES), 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
