@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from uq.conclusions.promises import Promise
 from uq.conclusions.words import Unit, called_together, joined
 from uq.estimate import NOTHING, Estimate
 from uq.wording import capitalized, percent, percent_interval
@@ -26,6 +27,11 @@ class Tightened:
         Of `after`, for ``uq trace``; "" where it is not known.
     wants_more : bool or None
         Whether a larger number is better; None where that is not known.
+    law : str
+        What half the scatter is: ``sd 0.5 mm instead of 1 mm``.
+    promise : Promise or None
+        What is promised of the same quantile now; None where an end of the interval of `after`
+        could not be promised instead.
     """
 
     inputs: tuple[str, ...]
@@ -38,6 +44,8 @@ class Tightened:
     effective_rows: float = float("nan")
     key: str = ""
     wants_more: bool | None = None
+    law: str = ""
+    promise: Promise | None = None
 
     @property
     def is_seen(self) -> bool:
@@ -47,7 +55,20 @@ class Tightened:
     @property
     def helps(self) -> bool:
         """Whether the number moves to its better side, or none is known to be better."""
-        return self.wants_more in (None, self.after.value > self.before.value)
+        return self.wants_more in (None, self.rises)
+
+    @property
+    def harms(self) -> bool:
+        """Whether the number surely moves to its worse side."""
+        is_sure = self.after.has_interval and not (
+            self.after.low <= self.before.value <= self.after.high
+        )
+        return not self.helps and is_sure and self.is_seen
+
+    @property
+    def rises(self) -> bool:
+        """Whether the number becomes larger."""
+        return self.after.value > self.before.value
 
     @property
     def gain(self) -> float:
@@ -78,9 +99,23 @@ class Tightened:
         words = called_together(self.inputs)
         if self.reason:
             return f"Tightening {words}: {self.reason}."
-        first, then = self.text(self.before), self.text(self.after)
+        law = f" ({self.law})" if self.law else ""
+        return f"Half the scatter of {words}{law} would move {self.what} {self._from_to}."
+
+    @property
+    def promised(self) -> str:
+        """What could then be promised: an end of the interval; "" where nothing could."""
+        return "" if self.promise is None else self.promise.would_be(self.after)
+
+    @property
+    def besides(self) -> str:
+        """What would change for the worse, after a number that gets better."""
+        return f"But {self.what} would {'rise' if self.rises else 'fall'} {self._from_to}."
+
+    @property
+    def _from_to(self) -> str:
         ends = f" ({self.interval})" if self.interval else ""
-        return f"Half the scatter of {words} would move {self.what} from {first} to {then}{ends}."
+        return f"from {self.text(self.before)} to {self.text(self.after)}{ends}"
 
 
 @dataclass(frozen=True)
@@ -122,6 +157,24 @@ class Advice:
         return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
 
     @property
+    def own(self) -> list[Tightened]:
+        """All numbers that the tolerance which is advised would change."""
+        of = None if self.tightened is None else self.tightened.inputs
+        return [one for one in self.tolerances if one.inputs == of]
+
+    @property
+    def sure(self) -> Tightened | None:
+        """The number of which it says what could then be promised."""
+        return next((one for one in self.own if one.promised), None)
+
+    @property
+    def harmed(self) -> list[Tightened]:
+        """The numbers that the tolerance which is advised would worsen."""
+        return [one for one in self.own if one.harms]
+
+    @property
     def text(self) -> str:
         """All of it."""
-        return " ".join(filter(None, (self.said, self.also)))
+        sure = "" if self.sure is None else self.sure.promised
+        worse = [one.besides for one in self.harmed]
+        return " ".join(filter(None, (self.said, sure, *worse, self.also)))
