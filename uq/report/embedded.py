@@ -64,15 +64,11 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
+        None where `why_no_rows` has a reason.
     """
-    if has_weights(findings.ds):
+    if why_no_rows(findings):
         return None
-    analysis = analysis_of(findings.ds)
-    outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
-    whole = findings.rows
-    if not whole.sizes["sample"] or not any(elements_of(whole, outputs)):
-        return None
+    analysis, whole, outputs = analysis_of(findings.ds), findings.rows, _outputs(findings)
     inputs = independent_inputs(whole)
     rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
     elements = list(population(rows, outputs))
@@ -101,6 +97,25 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
         "tolerances": laws,
         **design,
     }
+
+
+def why_no_rows(findings: Findings) -> str:
+    """Return why a page cannot compute with the rows of a result; "" where it can."""
+    if has_weights(findings.ds):
+        return "Inspections have weighted the rows, and a page computes with rows that count alike."
+    if not findings.rows.sizes["sample"]:
+        return f"No row of design '{findings.ds.attrs['design']}' follows the laws of the inputs."
+    if any(elements_of(findings.rows, _outputs(findings))):
+        return ""
+    if any(elements_of(findings.rows, shown_outputs(findings.ds, analysis_of(findings.ds)))):
+        return "No row has a value of any output."
+    return "The outputs are categories; there is no number to draw."
+
+
+def _outputs(findings: Findings) -> list[str]:
+    """Return the outputs that a page shows and some row has."""
+    shown = shown_outputs(findings.ds, analysis_of(findings.ds))
+    return [one for one in shown if one not in findings.absent]
 
 
 def part_of(rows: xr.Dataset, columns: int) -> xr.Dataset:

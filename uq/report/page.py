@@ -14,7 +14,7 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
-from uq.report.embedded import rows_inside
+from uq.report.embedded import rows_inside, why_no_rows
 from uq.report.fleets import fleet_notes, fleet_table
 from uq.report.groups import groups
 from uq.report.headlines import headline
@@ -111,6 +111,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "fleet_notes": fleet_notes(findings),
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
+        "why_no_rows": why_no_rows(findings),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
         "result_file": file_of(ds),
         "model_option": model_option(ds),
