@@ -112,7 +112,7 @@ def denied_advice(ds, advice, found):
         yield advice.sure.promised
     if one.harms or (one.wants_more is not None and one.rises != one.wants_more):
         yield one.sentence
-    yield from _denied_besides(ds, advice)
+    yield from _denied_besides(ds, advice, found.lead)
     yield from _not_alike(advice)
 
 
@@ -141,7 +141,7 @@ def _denied_law(ds, one):
             yield f"{name}: {one.law}"
 
 
-def _denied_besides(ds, advice):
+def _denied_besides(ds, advice, lead):
     """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
     if (sure := advice.sure) is not None:
         known, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
@@ -152,10 +152,12 @@ def _denied_besides(ds, advice):
         if not 0 <= away * (bound - fresh) <= 0.01 * abs(fresh) or away * (bound - value) < 0:
             yield f"{sure.promised} {fresh}"
     for each in advice.harmed:
-        first, *then = numbers_in(each.besides.split(" from ")[1])
+        then = numbers_in(re.split(" to |: ", each.besides, maxsplit=1)[1])
         known, per = uq.trace(ds, each.key), 100 if each.is_share else 1 / each.unit.per
+        first = _before(lead, each) * per
         fresh = [known[name] * per for name in ("value", "low", "high")]
-        if ("rise" in each.besides) != (then[0] > first) or (then[0] > first) == each.wants_more:
+        is_more = "rise" in each.besides or "more would" in each.besides
+        if is_more != (then[0] > first) or (then[0] > first) == each.wants_more:
             yield each.besides
         if (
             first > then[1]

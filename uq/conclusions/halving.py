@@ -54,7 +54,7 @@ def halvings(ds: xr.Dataset, inputs: Sequence[str]) -> dict[str, dict[str, float
 
 
 def halvings_in_words(ds: xr.Dataset, changes: dict[str, dict[str, float]]) -> str:
-    """Return what half the scatter is: ``sd 0.5 mm instead of 1 mm``; once for laws alike."""
+    """Return what half the scatter is: ``sd 0.5 mm instead of 1``; once for laws alike."""
     texts = {name: _in_words(ds, name, arguments) for name, arguments in changes.items()}
     if len(set(texts.values())) == 1:
         return next(iter(texts.values()))
@@ -67,11 +67,11 @@ def _in_words(ds: xr.Dataset, name: str, new: dict[str, float]) -> str:
     if "lower" in new:
         is_factor = getattr(law, "times", None) is not None
         unit = unit_for("1" if is_factor else ds[name].attrs["units"], max(map(abs, old.values())))
-        first, then = (unit.between(one["lower"], one["upper"]) for one in (old, new))
-        return f"{then} instead of {first}"
+        then = unit.between(new["lower"], new["upper"])
+        return f"{then} instead of {unit.bare_between(old['lower'], old['upper'])}"
     ((key, before),) = old.items()
     if key == "sd":
         unit = unit_for(ds[name].attrs["units"], before)
-        return f"sd {unit.text(new[key])} instead of {unit.text(before)}"
+        return f"sd {unit.text(new[key])} instead of {unit.number(before)}"
     shown = percent if key == "cv" else "{:.3g}".format
     return f"{key} {shown(new[key])} instead of {shown(before)}"

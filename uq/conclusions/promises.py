@@ -93,10 +93,11 @@ class Promise:
             return ""
         return f"{self.opening('would then')} {self.unit.text(bound, (-inf, inf)[is_upper])}."
 
-    def opening(self, then: str) -> str:
-        """Return what a bound promises, up to the bound, after `then`, which says when."""
+    def opening(self, then: str = "") -> str:
+        """Return what a single bound promises, up to the bound; `then` says when."""
         side = self._side(isfinite(self.upper))
-        return f"{self._sure}, at least {100 * self.coverage:g} % {then} {side}"
+        share = f"at least {100 * self.coverage:g} %"
+        return f"{self._sure}, {' '.join(filter(None, (share, then, side)))}"
 
     @property
     def _sure(self) -> str:

@@ -7,6 +7,9 @@ from uq.conclusions.words import Unit, called_together, joined
 from uq.estimate import NOTHING, Estimate
 from uq.wording import capitalized, percent, percent_interval
 
+SHARE_OF = "the share of rows that "
+"""How the number is called that is the probability of an event."""
+
 
 @dataclass(frozen=True)
 class Tightened:
@@ -28,7 +31,7 @@ class Tightened:
     wants_more : bool or None
         Whether a larger number is better; None where that is not known.
     law : str
-        What half the scatter is: ``sd 0.5 mm instead of 1 mm``.
+        What half the scatter is: ``sd 0.5 mm instead of 1``.
     promise : Promise or None
         What is promised of the same quantile now; None where an end of the interval of `after`
         could not be promised instead.
@@ -100,7 +103,9 @@ class Tightened:
         if self.reason:
             return f"Tightening {words}: {self.reason}."
         law = f" ({self.law})" if self.law else ""
-        return f"Half the scatter of {words}{law} would move {self.what} {self._from_to}."
+        first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
+        moved = f"move {self.what} from {first} to {self._then}"
+        return f"Half the scatter of {words}{law} would {moved}."
 
     @property
     def promised(self) -> str:
@@ -110,12 +115,17 @@ class Tightened:
     @property
     def besides(self) -> str:
         """What would change for the worse, after a number that gets better."""
-        return f"But {self.what} would {'rise' if self.rises else 'fall'} {self._from_to}."
+        if self.is_share:
+            does = self.what.removeprefix(SHARE_OF)
+            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._then}."
+        return f"But {self.what} would {'rise' if self.rises else 'fall'} to {self._then}."
 
     @property
-    def _from_to(self) -> str:
-        ends = f" ({self.interval})" if self.interval else ""
-        return f"from {self.text(self.before)} to {self.text(self.after)}{ends}"
+    def _then(self) -> str:
+        if not self.after.has_interval:
+            return self.text(self.after)
+        bare = self.unit.bare_between(self.after.low, self.after.high)
+        return f"{self.text(self.after)} ({self.interval if self.is_share else bare})"
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from uq.analysis.what_if import answer as weighted
 from uq.conclusions.halving import halvings, halvings_in_words
 from uq.conclusions.parts import Quantity
 from uq.conclusions.promises import Promise
-from uq.conclusions.remedies import Tightened
+from uq.conclusions.remedies import SHARE_OF, Tightened
 from uq.conclusions.words import Unit
 from uq.errors import InputError, RunError
 from uq.estimate import Estimate
@@ -101,7 +101,7 @@ def _promised(
             continue
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
-        words = f"the share of rows that {event.said}"
+        words = SHARE_OF + event.said
         yield key, words, event.share, Unit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
