@@ -7,6 +7,7 @@ import numpy as np
 
 import uq.report
 from uq.analysis.findings import Findings
+from uq.conclusions.answer import conclude
 from uq.report.embedded import rows_inside
 from uq.report.layout import templates
 
@@ -21,7 +22,8 @@ PAGE = f"""<!DOCTYPE html><html lang=en><meta charset=utf-8>
 
 def explorer(ds):
     """Return a page with nothing else of a result."""
-    rows = rows_inside(Findings(ds), "a result.nc")
+    findings = Findings(ds)
+    rows = rows_inside(findings, "a result.nc", conclude(findings).quantities)
     return PAGE + templates().get_template("explorer.html").render(rows_inside=rows)
 
 

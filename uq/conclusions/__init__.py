@@ -19,6 +19,7 @@ Reading order; a module imports only those above it:
     enough          whether the rows are enough for what the study is about
     deciding        which level decides: what units share, each one's own, or chance
     whole           the answer as a whole
+    halving         laws with half their scatter, and in words
     tightening      what a tighter tolerance would change, from the rows that exist
     tolerances      which tolerance to tighten
     advice          what to do, by rules

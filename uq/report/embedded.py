@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.clusters import Clusters
+from uq.conclusions.parts import Quantity
 from uq.conclusions.words import called
 from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
@@ -24,7 +25,7 @@ from uq.literals import plain
 from uq.population.scaling import population
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
-from uq.report.tolerances import tolerances
+from uq.report.tolerances import promised, tolerances
 from uq.rows.commands import model_option
 from uq.rows.element import Element
 from uq.rows.elements import (
@@ -52,7 +53,9 @@ _STUDENTS = 100
 """From so many independent parts on, an expansion has enough digits."""
 
 
-def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
+def rows_inside(
+    findings: Findings, file: str, answered: Sequence[Quantity] = ()
+) -> dict[str, Any] | None:
     """Return the rows of a result, for JSON.
 
     Parameters
@@ -60,6 +63,8 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     findings : Findings
     file : str
         The name of the result.
+    answered : sequence of Quantity, optional
+        What is promised of its elements.
 
     Returns
     -------
@@ -73,7 +78,11 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
     elements = list(population(rows, outputs))
     columns = [_input(rows, name) for name in inputs]
-    columns += [_output(rows, one, analysis) for one in elements]
+    promises = {one.name: one.promise for one in answered if one.promise is not None}
+    columns += [
+        _output(rows, one, analysis) | {"promised": list(promised(promises.get(one.name)))}
+        for one in elements
+    ]
     drawn = _drawn(elements, analysis)
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
     design = _design(rows)

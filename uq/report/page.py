@@ -110,7 +110,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "fleets": fleet_table(findings),
         "fleet_notes": fleet_notes(findings),
         "methods": methods,
-        "rows_inside": rows_inside(findings, file),
+        "rows_inside": rows_inside(findings, file, answer.quantities),
         "why_no_rows": why_no_rows(findings),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
         "result_file": file_of(ds),
