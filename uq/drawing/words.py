@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import xarray as xr
@@ -33,7 +34,22 @@ def _wrapped(text: str, width: int) -> str:
     seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
     masked = re.sub(_FORMULA, lambda _: _MASK * len(next(seen)), text)
     whole = iter(formulas)
-    return re.sub(f"{_MASK}+", lambda _: next(whole), textwrap.fill(masked, width))
+    return re.sub(f"{_MASK}+", lambda _: next(whole), "\n".join(_lines(masked, width)))
+
+
+def _lines(text: str, width: int) -> list[str]:
+    """Return lines of about one length, and as few as the width allows.
+
+    Only a word that is longer than a line, such as a name, is broken, at its hyphens if it has any.
+    """
+    longest = max(map(len, text.split(" ")))
+    if longest > width:
+        return textwrap.wrap(text, width)
+    wrap = partial(textwrap.wrap, text, break_on_hyphens=False)
+    lines = wrap(width=width)
+    while width > max(longest, 1) and len(shorter := wrap(width=width - 1)) == len(lines):
+        lines, width = shorter, width - 1
+    return lines
 
 
 _FORMULA = r"(?<!\\)\$.+?(?<!\\)\$"
