@@ -59,11 +59,10 @@ def _denied_limit(event, x, hits):
     at, sign = float(at), 1 if side == "least" else -1
     known = np.isfinite(hits)
     beyond, before = known & (sign * (x - at) > 0), known & (sign * (x - at) < 0)
-    if (
-        share != ("95" if is_wanted else "5")
-        or not beyond.sum() >= 30
-        or unwanted[beyond].mean() >= 0.05
-    ):
+    if share != ("95" if is_wanted else "5") or beyond.sum() < 30 or not before.any():
+        yield event.limited
+        return
+    if unwanted[beyond].mean() >= 0.05:
         yield event.limited
     if unwanted[beyond].mean() >= unwanted[before].mean():
         yield event.limited
