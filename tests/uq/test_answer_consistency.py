@@ -76,7 +76,7 @@ def a_start_that_decides():
     ended ^= (np.arange(ds.sizes["sample"]) % 20 == 0) & (ds["x1"].values > 0.5)
     attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
     attrs |= {"may_be_undefined": 0, "flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
-    ds["x2"].attrs["long_name"] = "speed at the start"
+    ds["x2"].attrs["initial"] = 1
     ds = ds.assign(regime=("sample", ended.astype(np.int8), attrs))
     return asking(ds, outputs=["regime", "y"])
 

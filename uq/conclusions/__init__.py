@@ -13,6 +13,7 @@ Reading order; a module imports only those above it:
     limits          from which value of an input an event is rare
     earliest        which rows end first, and what distinguishes them
     parts           what is said of an event and of a quantity, each sentence from its numbers
+    measured        the index of each input, and what tells it from the others
     rankings        which inputs contribute most, with direction and size
     quantities      what can be promised of an output, its range and its probabilities
     settling        what is not settled, and how many rows would settle it

@@ -15,6 +15,7 @@ Places = NDArray[np.intp]
 
 _WIDE, _MOST = 0.05, 0.3
 _STEEPEST = 3.0
+_TINY = 1e-300
 
 
 def masses(grid: Grid, edges: Floats, worth: Floats) -> Floats:
@@ -38,6 +39,8 @@ def masses(grid: Grid, edges: Floats, worth: Floats) -> Floats:
     width = np.diff(grid.edges)
     density = worth / width
     found[:, 1:-1] *= 1 + _curvature(np.diff(special.ndtri(grid.edges)), middle, density)
+    # Of a smooth density, the sum over cells is right without: what some gain, others lose.
+    found *= worth.sum(axis=1, keepdims=True) / np.maximum(found.sum(axis=1, keepdims=True), _TINY)
     row, cell = np.nonzero(np.diff(edges) != width)
     found[row, cell] = _of_moved(edges, grid.edges, middle, density, row, cell)
     return found
@@ -53,7 +56,7 @@ def _curvature(width: Floats, middle: Floats, density: Floats) -> Floats:
     before, after = np.diff(middle)[:-1], np.diff(middle)[1:]
     low, here, high = density[:, :-2], density[:, 1:-1], density[:, 2:]
     curved = 2 * ((high - here) / after - (here - low) / before) / (before + after)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         more = np.where((low > 0) & (high > 0), variance * curved / (2 * here), 0.0)
     return np.asarray(np.nan_to_num(more).clip(-_MOST, _MOST))
 
@@ -70,6 +73,11 @@ def _of_moved(
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = np.log(density[row, side] / here) / (middle[side] - middle[cell])
         slope = slope * np.sqrt(2 * np.pi) * np.exp(middle[cell] ** 2 / 2)
+    alone = ~(density[row, side] > 0)
+    slope = np.where(alone, 0.0, slope)
     half = np.nan_to_num(slope * (end - start) / 2).clip(-_STEEPEST, _STEEPEST)
     moved = np.nan_to_num(slope * shift).clip(-_STEEPEST, _STEEPEST)
-    return np.asarray(here * (end - start) * np.exp(moved) * (1 + half**2 / 6))
+    # Of a row narrower than centres are apart, one is met as rarely: right in the mean over rows.
+    apart = np.gradient(centres(old))[cell]
+    length = np.where(alone, np.maximum(end - start, apart), end - start)
+    return np.asarray(here * length * np.exp(moved) * (1 + half**2 / 6))

@@ -63,7 +63,7 @@ def _tilted(within: Floats, edges: Floats, worth: Floats, row: Places, node: Pla
     sides = [np.clip(node + step, 0, worth.shape[1] - 1) for step in (-1, 1)]
     low, high = (np.where(worth[row, side] > 0, side, node) for side in sides)
     lengths, middles = zip(*(_length_and_middle(edges, row, i) for i in (low, high)), strict=True)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = (worth[row, high] / worth[row, low]) * (lengths[0] / lengths[1])
         rise = np.log(ratio) / (middles[1] - middles[0])
         wide = edges[row, node + 1] - edges[row, node]
