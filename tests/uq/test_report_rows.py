@@ -11,6 +11,7 @@ from explored import open_by_keyboard
 
 from uq.analysis.findings import Findings
 from uq.contract import Status
+from uq.learning.inspections import read_inspections, read_tables
 from uq.report import page
 from uq.report.embedded import MOST_ROWS, rows_inside
 
@@ -131,3 +132,18 @@ def test_a_page_that_cannot_compute_with_its_rows_says_why(ds, why):
     text = unescape(page(ds(), "a.nc"))
     section = text.partition('<section id="explore">')[2].partition("</section>")[0]
     assert why in section and "<script" not in section and 'id="rows"' not in text
+
+
+def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path):
+    found = [
+        {"unit": "A", "output": "y", "kind": "measured", "time": 2.0, "value": 0.1, "sd": 1e-3},
+        {"unit": "B", "output": "y", "kind": "above", "time": 2.0, "value": 7.0},
+    ]
+    ds = weighted_rows().assign_attrs(inspections=json.dumps(found), model_error=0.2)
+    text = unescape(page(ds, "after.nc"))
+    update = "uq update results/linear.nc inspections.csv -o after.nc --model-error 0.2"
+    assert update in text.partition("uq run linear.toml")[2]
+    given = text.partition("<h3>The inspections</h3>\n<pre>")[2].partition("</pre>")[0]
+    (tmp_path / "inspections.csv").write_text(given)
+    assert read_inspections(tmp_path / "inspections.csv") == read_tables(found)
+    assert "inspections.csv" not in page(linear(samples=4), "a.nc")

@@ -29,6 +29,7 @@ def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> st
 
 def _wrapped(text: str, width: int) -> str:
     """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
+    text = re.sub(r"(?<=\$) ([+−=]) (?=\$)", "\u00a0\\1\u00a0", text)  # a difference is one word
     formulas = re.findall(_FORMULA, text)
     letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
     seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
@@ -115,8 +116,10 @@ def meaning_of(variable: xr.DataArray) -> str:
 
 
 def symbol_of(variable: xr.DataArray) -> str:
-    """Return the symbol of a variable, or ""."""
-    return str(variable.attrs.get("symbol", ""))
+    """Return the symbol of a variable, or "" where it is only its meaning in one word."""
+    symbol = str(variable.attrs.get("symbol", ""))
+    is_name = "_" in symbol and symbol.replace("_", " ") == meaning_of(variable)
+    return "" if is_name else symbol
 
 
 def labelled(variable: xr.DataArray, unit: str = "", width: int = 44) -> str:

@@ -20,6 +20,7 @@ from uq.report.groups import groups
 from uq.report.headlines import headline
 from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
+from uq.report.inspected import inspections_csv
 from uq.report.layout import laid_out
 from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_tables, status_table
@@ -114,6 +115,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "why_no_rows": why_no_rows(findings),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
         "result_file": file_of(ds),
+        "inspections": inspections_csv(ds),
         "model_option": model_option(ds),
         "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
         "references": references(ds),
