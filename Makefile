@@ -68,6 +68,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.outside
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
+	@$(BIN)/python -m benchmarks.campaigns
 	@$(BIN)/python -m benchmarks.scaling
 	@$(BIN)/python -m benchmarks.cluster
 	@$(BIN)/python -m benchmarks.table

@@ -38,6 +38,8 @@ class Parameter:
         The admissible (not the plausible) range, both ends included.
     source : str
         Where the nominal value comes from, and whether it is given, inferred, fitted or assumed.
+    initial : bool
+        Whether it is part of the initial condition: the start of a motion, not its machine.
     """
 
     symbol: str
@@ -45,6 +47,7 @@ class Parameter:
     meaning: str
     bounds: tuple[float, float]
     source: str
+    initial: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from uq.contract import Status
+from uq.greek import readable
 from uq.study.reading import read_study_text
 from uq.study.registry import find_model, model_names, module_of
 from uq.wording import listed
@@ -26,7 +27,7 @@ def parameters(name: str) -> str:
         lines.append(
             (
                 formula(one.symbol),
-                f"`{parameter}`<br>{one.meaning}",
+                f"`{parameter}`<br>{readable(one.meaning)}",
                 minus(stated),
                 interval(one.bounds),
                 one.source,
@@ -45,7 +46,7 @@ def settings(name: str) -> str:
         default = f"`{value(field.default)}`"
         if one.unit != "1":
             default += f"\u00a0{unit(one.unit)}"
-        lines.append((f"`{field.name}`", default, allowed, one.meaning))
+        lines.append((f"`{field.name}`", default, allowed, readable(one.meaning)))
     return table(("setting", "default", "allowed", "meaning"), lines)
 
 
@@ -53,7 +54,9 @@ def outputs(name: str) -> str:
     """Tabulate the outputs of a model."""
     lines = []
     for output, one in find_model(name).outputs.items():
-        meaning = one.meaning + (f"<br>{listed(one.categories)}" if one.categories else "")
+        meaning = readable(one.meaning) + (
+            f"<br>{listed(one.categories)}" if one.categories else ""
+        )
         more = [] if one.kind == "value" else [one.kind]
         more += ["may be undefined"] if one.may_be_undefined else []
         late = one.has_censored_flag and not one.never_known_at_once
@@ -83,7 +86,7 @@ def references(name: str) -> str:
 def nomenclature() -> str:
     """Tabulate every parameter of every model, by name."""
     lines = [
-        (f"`{name}`", formula(one.symbol), unit(one.unit), one.meaning, machine)
+        (f"`{name}`", formula(one.symbol), unit(one.unit), readable(one.meaning), machine)
         for machine in model_names()
         for name in find_model(machine).nominal
         for one in [find_model(machine).parameter(name)]
@@ -94,7 +97,7 @@ def nomenclature() -> str:
 def all_outputs() -> str:
     """Tabulate every output of every model, by name."""
     lines = [
-        (f"`{name}`", unit(one.unit), one.meaning, machine)
+        (f"`{name}`", unit(one.unit), readable(one.meaning), machine)
         for machine in model_names()
         for name, one in find_model(machine).outputs.items()
     ]

@@ -67,10 +67,10 @@ class Params(NamedTuple):
         "S", "m2", "worn area of each site", (1e-8, 1e-2), "assumed")] = 4e-6
     initial_displacement: Annotated[float, Parameter(
         "X_c(0)", "m", "tip displacement at the start, in the shape of the first mode", (-0.1, 0.1),
-        "at rest, assumed")] = 0.0
+        "at rest, assumed", initial=True)] = 0.0
     initial_velocity: Annotated[float, Parameter(
         "dX_c/dt(0)", "m s-1", "tip velocity at the start, in the shape of the first mode",
-        (-10.0, 10.0), "at rest, assumed")] = 0.0
+        (-10.0, 10.0), "at rest, assumed", initial=True)] = 0.0
     random_force_level: Annotated[float, Parameter(
         "S_F", "N2 Hz-1", "one-sided spectral level of the random force at the tip", (0.0, 1e3),
         "no random force, assumed: the paper names it as the next step")] = 0.0

@@ -69,9 +69,10 @@ class Params(NamedTuple):
     supply_phase: Annotated[float, Parameter(
         "phi", "rad", "phase of the supply when the relay first closes", (-TURN, TURN), ZERO)] = 0.0
     initial_displacement: Annotated[float, Parameter(
-        "u(0)", "m", "displacement u at the start", (-0.66, 0.66), GIVEN)] = -0.022
+        "u(0)", "m", "displacement u at the start", (-0.66, 0.66), GIVEN,
+        initial=True)] = -0.022
     initial_velocity: Annotated[float, Parameter(
-        "v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), GIVEN)] = 0.0
+        "v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), GIVEN, initial=True)] = 0.0
 # fmt: on
 
 

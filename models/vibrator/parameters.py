@@ -122,10 +122,10 @@ class Params(NamedTuple):
         "x_n", "m", "position of the feed from C along x", (-30.0, 30.0), "assumed: at C")] = 0.0
     initial_phase_1: Annotated[float, Parameter(
         "psi_1(0)", "rad", "phase of vibrator 1 at the start, from hanging down", (-pi, pi),
-        HANGING)] = 0.0
+        HANGING, initial=True)] = 0.0
     initial_phase_2: Annotated[float, Parameter(
         "psi_2(0)", "rad", "phase of vibrator 2 at the start, from hanging down", (-pi, pi),
-        HANGING)] = 0.0
+        HANGING, initial=True)] = 0.0
 # fmt: on
 
 

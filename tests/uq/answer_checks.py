@@ -185,7 +185,9 @@ class Checker:
         if element.is_angle and "its signed value" not in text:
             yield f"of the magnitude: {text}"
         x, y = self.rows[name].values, element.values
-        if change.unit.name == "%":
+        if change.unit.name == "%" and change.step == "one standard deviation":
+            expected = 100 * abs(np.exp(np.polyfit(x, np.log(y), 1)[0] * x.std()) - 1)
+        elif change.unit.name == "%":
             slope = np.polyfit(np.log(x), np.log(y), 1)[0]
             per_cent = float(change.step.removesuffix(" %"))
             expected = 100 * abs((1 + per_cent / 100) ** slope - 1)

@@ -7,7 +7,7 @@ from answered import numbers_in
 from scipy.stats import binomtest
 
 import uq
-from uq.rows.elements import are_independent
+from uq.rows.elements import are_independent, study_file_of
 
 
 def denied_event(rows, event, hits):
@@ -50,15 +50,19 @@ def _denied_limit(event, x, hits):
     if event.limit is None or event.limit.why:
         return
     share, side, at, *band = re.fullmatch(
-        r"Fewer than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
+        r"(?:Fewer|More) than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
         r"(?: \(the limit lies between ([\d.e-]+) and ([\d.e-]+)\D*\))?\.",
         event.limited,
     ).groups()
-    unwanted = 1 - hits if "do not" in event.limited else hits
+    is_wanted = event.limited.startswith("More")
+    unwanted = 1 - hits if is_wanted else hits
     at, sign = float(at), 1 if side == "least" else -1
     known = np.isfinite(hits)
     beyond, before = known & (sign * (x - at) > 0), known & (sign * (x - at) < 0)
-    if share != "5" or not beyond.sum() >= 30 or unwanted[beyond].mean() >= 0.05:
+    if share != ("95" if is_wanted else "5") or beyond.sum() < 30 or not before.any():
+        yield event.limited
+        return
+    if unwanted[beyond].mean() >= 0.05:
         yield event.limited
     if unwanted[beyond].mean() >= unwanted[before].mean():
         yield event.limited
@@ -94,7 +98,72 @@ def denied_advice(ds, advice, found):
         fresh, shown = uq.trace(ds, each.key)["value"] * per, numbers_in(each.text(each.after))[0]
         if abs(shown - fresh) > 0.01 * abs(fresh) + 0.06:
             yield f"{each.sentence} {fresh}"
+        before = _before(found.lead, each)
+        if abs(each.before.value - before) > 1e-9 * abs(before):
+            yield f"before: {each.sentence}"
+        yield from _denied_law(ds, each)
+    told = (
+        [float(share) for share in re.findall(r"(\S+) %", advice.sure.promised)]
+        if advice.sure
+        else []
+    )
+    if told and (told != [95, 95] or found.lead.promise.coverage != 0.95):
+        yield advice.sure.promised
+    if one.harms or (one.wants_more is not None and one.rises != one.wants_more):
+        yield one.sentence
+    yield from _denied_besides(ds, advice, found.lead)
     yield from _not_alike(advice)
+
+
+def _before(lead, one):
+    """Return the same number of the answer."""
+    if one.is_share:
+        return next(event.share.value for event in lead.events if event.said in one.what)
+    return lead.promise.quantiles["95 %" in one.what].value
+
+
+def _denied_law(ds, one):
+    """Compare half the scatter with the law of the study, and the numbers behind the key."""
+    laws = {name: study_file_of(ds).uncertain[name] for name in one.inputs}
+    texts = dict(re.findall(r"(?:^|; )([^:;]+): ([^:;]+)", one.law)) or dict.fromkeys(
+        (name.replace("_", " ") for name in laws), one.law
+    )
+    for name, law in laws.items():
+        then, now = (numbers_in(text) for text in texts[name.replace("_", " ")].split("instead of"))
+        widths = [getattr(law, key, None) for key in ("sd", "cv", "sigma")]
+        wide = next((width for width in widths if width is not None), None)
+        if wide is None:
+            ratio = (then[1] - then[0]) / (now[1] - now[0])
+            if law.distribution != "loguniform" and abs(ratio - 0.5) > 0.01:
+                yield f"{name}: {one.law}"
+        elif abs(then[0] / now[0] - 0.5) > 0.01 or f"{wide:.2e}"[:4] != f"{now[0]:.2e}"[:4]:
+            yield f"{name}: {one.law}"
+
+
+def _denied_besides(ds, advice, lead):
+    """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
+    if (sure := advice.sure) is not None:
+        known, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
+        end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
+        (*_, bound) = numbers_in(sure.promised)
+        fresh = known[end] / sure.unit.per
+        value = known["value"] / sure.unit.per
+        if not 0 <= away * (bound - fresh) <= 0.01 * abs(fresh) or away * (bound - value) < 0:
+            yield f"{sure.promised} {fresh}"
+    for each in advice.harmed:
+        then = numbers_in(re.split(" to |: ", each.besides, maxsplit=1)[1])
+        known, per = uq.trace(ds, each.key), 100 if each.is_share else 1 / each.unit.per
+        first = _before(lead, each) * per
+        fresh = [known[name] * per for name in ("value", "low", "high")]
+        is_more = "rise" in each.besides or "more would" in each.besides
+        if is_more != (then[0] > first) or (then[0] > first) == each.wants_more:
+            yield each.besides
+        if (
+            first > then[1]
+            and first < then[2]
+            or not np.allclose(then, fresh, atol=0.06, rtol=0.01)
+        ):
+            yield f"{each.besides} {fresh}"
 
 
 def _not_alike(advice):

@@ -3,7 +3,8 @@
 import re
 from functools import cache
 
-from computed import computed, study_of
+import numpy as np
+from computed import asking, computed, linear, study_of, with_output
 
 from uq.conclusions.answer import answer
 
@@ -38,3 +39,12 @@ def lifetime():
     }
     ds = computed(study_of(tables))
     return ds, answer(ds)
+
+
+def locking(samples):
+    """A success that weak motors miss: x4 below 0.3 never locks."""
+    ds = linear(samples=samples)
+    x = ds["x4"].values
+    ds = with_output(ds, "locking", np.where(x > 0.3, 9 - 5 * x, np.inf), "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    return asking(ds, outputs=["locking"], thresholds={"locking": 20.0})

@@ -1,11 +1,13 @@
-"""The part of a report that answers back, and its numbers."""
+"""The part of a report that answers back: its numbers, and what a user does to it."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 
 import uq.report
 from uq.analysis.findings import Findings
+from uq.conclusions.answer import conclude
 from uq.report.embedded import rows_inside
 from uq.report.layout import templates
 
@@ -20,7 +22,8 @@ PAGE = f"""<!DOCTYPE html><html lang=en><meta charset=utf-8>
 
 def explorer(ds):
     """Return a page with nothing else of a result."""
-    rows = rows_inside(Findings(ds), "a result.nc")
+    findings = Findings(ds)
+    rows = rows_inside(findings, "a result.nc", conclude(findings).quantities)
     return PAGE + templates().get_template("explorer.html").render(rows_inside=rows)
 
 
@@ -29,3 +32,41 @@ def cells(browser, place="#explorer"):
     browser.painted()
     numbers = browser.value(CELLS.replace("PLACE", place))
     return {key: [np.array(one, dtype=float) for one in found] for key, *found in numbers}
+
+
+def ranges(browser):
+    """Return the ends of each range."""
+    ends = "one => [one.dataset.low, one.dataset.high]"
+    found = browser.value(f"[...document.querySelectorAll('.range')].map({ends})")
+    return [tuple(map(float, pair)) for pair in found]
+
+
+def drag_handle(browser, name, end, steps):
+    """Move a handle as its element does when it is dragged."""
+    selector = f".range[data-name={json.dumps(name)}]"
+    browser.value(
+        f"(() => {{ const range = document.querySelector({json.dumps(selector)});"
+        f" const handle = range.querySelectorAll('input')[{end}];"
+        f" handle.value = {steps}; handle.dispatchEvent(new Event('input')) }})()"
+    )
+    browser.painted()
+
+
+def place_of_a_point(browser):
+    """Return a place of the page where a point is drawn, in the colour of rows."""
+    return browser.value(
+        "(() => { const c = document.querySelector('.scatter canvas');"
+        " c.scrollIntoView({behavior: 'instant'});"
+        " const box = c.getBoundingClientRect();"
+        " const p = c.getContext('2d').getImageData(100, 20, c.width - 140, c.height - 60);"
+        " for (let i = 0; i < p.data.length; i += 4) if (p.data[i] === 160 && p.data[i + 1] === 166"
+        " && p.data[i + 2] === 173) return [box.left + 100.5 + (i / 4) % p.width,"
+        " box.top + 20.5 + Math.floor(i / 4 / p.width)] })()"
+    )
+
+
+def open_by_keyboard(browser, key="Enter"):
+    """Open the card of the row in the middle."""
+    browser.value("document.querySelector('.scatter canvas').focus()")
+    browser.press("ArrowRight", key)
+    browser.painted()

@@ -17,8 +17,8 @@ from computed import (
 
 import uq
 from uq.conclusions.answer import answer
+from uq.conclusions.halving import halved
 from uq.conclusions.remedies import Tightened
-from uq.conclusions.tightening import halved
 from uq.estimate import Estimate
 from uq.study.reading import read_study_text
 
@@ -52,7 +52,8 @@ def test_half_the_scatter_is_what_the_weighted_rows_say(lifetime):
     ds, found = lifetime
     one = next(one.tightened for one in found.advice if one.rule == "tighten")
     _, now, then, low, high = numbers(
-        r"Half the scatter of rate would move the share of rows that end within # days"
+        r"Half the scatter of rate \(sigma 0.25 instead of 0.5\) would move the share of rows that"
+        r" end within # days"
         r" from # % to # % \(# to # %\)\.",
         one.sentence,
     )

@@ -8,6 +8,8 @@ from nested_studies import nested_result
 
 from uq import answer, trace
 from uq.conclusions.page import fragment
+from uq.rows.variables import parameter_variable
+from uq.study.registry import find_model
 
 
 def test_the_level_that_decides_is_named_with_its_share():
@@ -26,7 +28,7 @@ def test_the_level_that_decides_is_named_with_its_share():
     assert any(one.rule == "chance" for one in found.advice)
 
 
-def of_regimes(share_of_start, samples=400, meaning="speed at the start", of_pairs=False):
+def of_regimes(share_of_start, samples=400, is_initial=True, of_pairs=False):
     """Return pairs of repeats: the regime is that of the machine, but in this share of the start.
 
     The start is x2, or whether x2 and x3 lie on the same side.
@@ -39,7 +41,8 @@ def of_regimes(share_of_start, samples=400, meaning="speed at the start", of_pai
     ended = np.where(random.random(ds.sizes["sample"]) < share_of_start, start, machine)
     attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
     attrs |= {"may_be_undefined": 0, "flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
-    ds["x2"].attrs["long_name"] = meaning
+    if is_initial:
+        ds["x2"].attrs["initial"] = 1
     ds = ds.assign(regime=("sample", ended.astype(np.int8), attrs))
     return asking(ds, outputs=["regime", "y"])
 
@@ -89,7 +92,7 @@ def test_where_no_level_decides_alone_the_shares_are_said():
 
 
 def test_without_a_start_it_is_called_chance():
-    found = answer(of_regimes(0.95, meaning="roughness of the road"))
+    found = answer(of_regimes(0.95, is_initial=False))
     assert found.levels.sentence.startswith("Chance (x2) decides")
 
 
@@ -100,8 +103,23 @@ def test_a_study_of_single_rows_has_no_levels():
 def test_a_start_that_is_the_same_in_all_rows_is_said():
     ds = kinds(samples=64, analysis={"outputs": ["regime", "work"]})
     assert answer(ds).starts_alike == ""
-    fixed = ds.assign(initial_speed=((), 0.0, {"role": "fixed", "long_name": "speed at the start"}))
+    attrs = {"role": "fixed", "long_name": "speed", "initial": 1}
+    fixed = ds.assign(initial_speed=((), 0.0, attrs))
     said = "Whether the start decides the regime is not known: initial speed is fixed."
     assert answer(fixed).starts_alike == said and said in repr(answer(fixed))
-    ds["x2"].attrs["long_name"] = "velocity at the start"
+    ds["x2"].attrs["initial"] = 1
     assert answer(ds).starts_alike == ""
+
+
+@pytest.mark.parametrize(
+    ("machine", "starts"),
+    [
+        ("beam", {"initial_displacement", "initial_velocity"}),
+        ("mole", {"initial_displacement", "initial_velocity"}),
+        ("vibrator", {"initial_phase_1", "initial_phase_2"}),
+    ],
+)
+def test_results_say_which_inputs_are_the_start(machine, starts):
+    model = find_model(machine)
+    attrs = {name: parameter_variable(model, name, 0.0)[2] for name in model.parameter_names}
+    assert {name for name, own in attrs.items() if "initial" in own} == starts

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from answered import numbers
+from answered import locking, numbers
 from computed import asking, linear, with_output
 
 from uq import answer, summary, trace
@@ -71,21 +71,12 @@ def test_a_few_rows_settle_no_limit():
     assert "is not settled" in limit(falling, rows=80).sentence
 
 
-def locking():
-    """A success that weak motors miss: x4 below 0.3 never locks."""
-    ds = linear(samples=1000)
-    x = ds["x4"].values
-    ds = with_output(ds, "locking", np.where(x > 0.3, 9 - 5 * x, np.inf), "lifetime")
-    ds["locking"].attrs["success"] = "the motors have locked"
-    return asking(ds, outputs=["locking"], thresholds={"locking": 20.0})
-
-
 def test_how_weak_the_motors_may_be():
-    ds = locking()
+    ds = locking(samples=1000)
     found = answer(ds)
     event = found.lead.events[0]
     at, low, high = numbers(
-        r"Fewer than 5 % do not succeed within 20 s where x4 is at least # "
+        r"More than 95 % succeed within 20 s where x4 is at least # "
         r"\(the limit lies between # and #\)\.",
         event.limited,
     )
@@ -105,7 +96,7 @@ def test_no_side_is_unwanted_where_the_study_states_none():
     for side in ("below", "above"):
         (event,) = answer(asking(ds, **asked, wanted={"level": side})).lead.events
         at[side] = event.limit.at
-        assert ("do not exceed" in event.limited) == (side == "above")
+        assert event.limited.startswith("More than 95 % exceed") == (side == "above")
     assert at["below"] < 0.7 < at["above"]
 
 

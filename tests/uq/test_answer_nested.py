@@ -100,7 +100,8 @@ def test_half_the_scatter_is_what_the_weighted_rows_say(nested):
     ds, found, _ = nested
     one = next(one.tightened for one in found.advice if one.rule == "tighten")
     now, then, low, high = numbers(
-        r"Half the scatter of rate would move the share of rows that end within 10 days"
+        r"Half the scatter of rate \(sigma 0.25 instead of 0.5\) would move the share of rows that"
+        r" end within 10 days"
         r" from # % to # % \(# to # %\)\.",
         one.sentence,
     )
@@ -117,7 +118,7 @@ def test_rows_of_samples_in_replicates_are_weighted():
         " Cautiously: the end of the 95 % interval."
     )
     (tighten,) = [one.text for one in found.advice if one.rule == "tighten"]
-    assert tighten.startswith("Half the scatter of rate would move the share of rows that end")
+    assert re.match(r"Half the scatter of rate .* would move the share of rows that end", tighten)
     assert "inf" not in repr(found)
 
 

@@ -40,10 +40,20 @@ ALIKE = {"x2": 0.05, "x3": 0.062, "x4": 0.05}  # deviations of the terms: 0.1, 0
 
 def test_tolerances_that_help_about_as_much_are_named_together():
     one = advised(sum_of(ALIKE))
-    assert one.said.startswith("Half the scatter of x4 would move the 5 % quantile from 4.")
+    now, then, low, high = numbers(
+        r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
+        r" from # to # \(# to #\)\.",
+        one.said,
+    )
+    assert now == pytest.approx(quantile(ALIKE), abs=0.03)
+    assert low < then < high and low < quantile(ALIKE | {"x4": 0.025}) < high
     (then,) = numbers(r"x3 \(#\) would help about as much\.", one.also)
     assert then == pytest.approx(quantile(ALIKE | {"x3": 0.031}), abs=0.03)
-    assert one.text == f"{one.said} {one.also}"
+    (sure,) = numbers(
+        "With 95 % confidence, at least 95 % would then stay above #.", one.sure.promised
+    )
+    assert now < sure <= low
+    assert one.text == f"{one.said} {one.sure.promised} {one.also}"
 
 
 def test_each_tolerance_has_its_line_in_the_report():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from learnt_studies import DEPTH, measured, wear
+from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 from uq.exploring.updating import update
@@ -42,6 +42,21 @@ def test_each_row_is_the_law_of_its_life_given_that_it_runs(time):
     exact, found = truncated(rate)(time), element.below(time)
     assert np.abs(found - exact)[counts].max() < 2e-3
     assert np.average(found - exact, weights=element.weights) == pytest.approx(0, abs=4e-4)
+
+
+def test_a_life_known_within_a_narrow_window_is_that_life():
+    """Where hardly a value of the depth agrees in a row, rows count as if all values were tried."""
+    told = [
+        {"unit": "A", "output": "life", "kind": "survived", "time": 4e5},
+        {"unit": "A", "output": "life", "kind": "ended", "time": 4e5 * 1.002},
+    ]
+    found = posterior(wear(samples=6000), read_tables(told)).units["A"]
+    depth, weights = np.log(found.scale), found.weights.weights
+    mean, cov = exactly([4e5 * 1.001], cv=1e-9)
+    center = np.average(depth, weights=weights)
+    sd = np.average((depth - center) ** 2, weights=weights) ** 0.5
+    assert center == pytest.approx(mean[1], abs=0.1 * cov[1, 1] ** 0.5)
+    assert sd == pytest.approx(cov[1, 1] ** 0.5, rel=0.06)
 
 
 def test_a_unit_seen_running_has_not_ended_before():

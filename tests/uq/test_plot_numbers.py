@@ -5,12 +5,14 @@ import io
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from answered import lifetime
 from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
 from uq.drawing.style import COLOURS, thinned
+from uq.drawing.words import as_label
 
 DAY = 86400.0
 
@@ -55,6 +57,22 @@ def test_values_that_differ_by_rounding_alone_are_drawn_as_one():
 def test_an_interval_is_spoken_of_where_there_is_one():
     for ds, there in ((linear(samples=64), True), (linear("sobol", samples=64), False)):
         assert ("95 % interval" in words(plots.convergence(ds, "y"))) is there
+
+
+def test_a_band_that_ends_before_its_line_is_said_to():
+    ds = linear(samples=512)
+    heavy = with_output(ds, "heavy", np.random.default_rng(1).pareto(1.5, 512))
+    said = " where the rows allow one"
+    assert said in words(plots.convergence(heavy, "heavy"))
+    assert said not in words(plots.convergence(ds, "y"))
+
+
+def test_elements_that_are_not_drawn_are_counted():
+    ds = kinds(samples=16)
+    many = xr.concat([ds["life"].isel(depth=0, drop=True)] * 3, "third").transpose("sample", ...)
+    ds = ds.drop_vars(["life", "life_censored"]).assign(life=many.assign_attrs(ds["life"].attrs))
+    assert "the first 4 of 6 elements" in words(plots.histogram_by_regime(ds, "life"))
+    assert "the first" not in words(plots.histogram_by_regime(kinds(samples=16), "life"))
 
 
 def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
@@ -149,7 +167,23 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     (event,) = found.lead.events
     figure = plots.event_probability(ds, event.name)
     (panel,) = figure.axes
+    assert panel.get_title("left") == f"Rows that {event.said}"
     assert event.decided_by.startswith("Decided most by rate")
     assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
     drawn = panel.patches[-1].get_data().values
     assert np.allclose(drawn, [one.value for one in event.curve.shares])
+
+
+def test_labels_are_lines_of_about_one_length_and_break_no_word_that_fits():
+    assert as_label("whether the period of the response is 1", width=38).splitlines() == [
+        "Whether the period",
+        "of the response is 1",
+    ]
+    assert as_label("the larger of the two sites' work-rates", width=36).splitlines() == [
+        "The larger of the two",
+        "sites' work-rates",
+    ]
+    assert as_label("stiffness-proportional", width=12).splitlines() == [
+        "Stiffness-",
+        "proportional",
+    ]

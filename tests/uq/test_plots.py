@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 from wordings import sentence
 
 from uq import plots
-from uq.drawing.scatter_plot import _fragments, _is_empty
+from uq.drawing.scatter_plot import _fragments, _is_empty, _is_torn
 from uq.errors import InputError
+from uq.order_statistics import quantile_interval
 
 
 def test_lifetime_figure_shows_share_band_and_what_never_ends():
@@ -154,6 +155,17 @@ def test_a_mean_through_empty_space_is_no_line_but_one_between_few_rows_is():
     found = [_is_empty(rows, float(rows.mean()), axes) for rows in few]
     assert np.mean(found) < 0.02
     assert not _is_empty(apart, np.inf, axes)
+
+
+def test_a_median_whose_interval_reaches_over_empty_space_is_no_line():
+    axes = Figure().subplots()
+    axes.set_ylim(0, 10)
+    rng = np.random.default_rng(1)
+    apart = np.r_[np.linspace(0, 1, 10), np.linspace(9, 10, 10)]
+    assert _is_torn(apart, *quantile_interval(apart, 0.5), axes)
+    assert not _is_torn(apart, 0.0, 0.9, axes) and not _is_torn(apart, np.nan, np.nan, axes)
+    whole = [np.sort(one) for one in rng.uniform(0, 10, (200, 20))]
+    assert not any(_is_torn(one, *quantile_interval(one, 0.5), axes) for one in whole)
 
 
 def test_scatter_leads_with_what_matters_and_shows_conditional_means():

@@ -175,3 +175,16 @@ def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(bro
     places = browser.value(f"{tables}.map(t => {bars}.map({place}))")
     signs = browser.value(f"{tables}.map(t => t.textContent).join(' ')").count("\u2212")
     assert signs and all(len(set(one)) == 1 for one in places if one)
+
+
+def test_a_printed_answer_fills_its_columns(browser, report):
+    browser.open(report, width=690)
+    browser.do("Emulation.setEmulatedMedia", media="print")
+    used = browser.value(
+        "(() => { const a = document.querySelector('.answer'), box = a.getBoundingClientRect();"
+        " const parts = [...a.children].flatMap(one => [...one.getClientRects()]);"
+        " return parts.reduce((sum, b) => sum + b.width * b.height, 0) / box.width / box.height"
+        " })()"
+    )
+    browser.do("Emulation.setEmulatedMedia", media="")
+    assert used > 0.78  # the gap between the columns is no part of any

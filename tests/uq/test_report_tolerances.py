@@ -9,6 +9,7 @@ from computed import computed, study_of
 from explored import cells
 from report_scripts import scripts
 
+import uq as api
 from uq.analysis.findings import Findings
 from uq.analysis.what_if import _changed, answer, read_changes, what_if_json
 from uq.errors import RunError
@@ -24,6 +25,7 @@ NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 SIGMA = {"distribution": "lognormal", "median": 1.0, "sigma": 0.4}
 GAMMA = {"distribution": "gamma", "shape": 4.0, "scale": 0.25}
 COUNTS = {"distribution": "histogram", "edges": [-2.0, 0.0, 1.0, 3.0], "counts": [3.0, 5.0, 2.0]}
+TIMES = SIGMA | {"sigma": 0.3, "times": "a"}
 NESTED = {"samples": 200, "units": 3}
 RANKS = {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.4], [0.4, 1.0]]}
 CASES = {
@@ -113,6 +115,70 @@ def test_inputs_without_a_slider_are_named(shown):
     assert browser.value("document.querySelectorAll('.tolerance').length") == 1
     notes = browser.value("document.querySelector('#tolerances .note').innerText")
     assert "its values are listed" in notes
+
+
+QUANTILES = """(() => { const all = new Reweighting(rows); MOVES
+  const changes = all.changed.flatMap(name => all.laws.get(name).changes(all.old.get(name))
+    .map(([key, value]) => [`uncertain.${name}.${key}`, value]));
+  const found = (name, p) => {
+    const steps = new WeightedQuantile(all, all.columns.get(name)).of(p);
+    for (let one = steps.next(); ; one = steps.next()) if (one.done) return one.value;
+  };
+  return [changes, ...["life", "y"].map(name => [0.05, 0.5, 0.95].map(p => found(name, p)))];
+})()"""
+
+
+@pytest.mark.parametrize(
+    ("laws", "design"),
+    [({"c": GAMMA}, {"samples": 300}), ({"c": GAMMA}, NESTED), ({"b": TIMES}, {"samples": 80})],
+    ids=["rows", "units", "few"],
+)
+def test_quantiles_and_their_intervals_are_those_of_python(browser, tmp_path, laws, design):
+    ds = independent_rows(scaled(laws, **design))
+    inside = json.dumps(rows_inside(Findings(ds), "a.nc"))
+    path = tmp_path / "quantiles.html"
+    script = f"{scripts()}; const rows = new Rows({inside})"
+    path.write_text(f"<meta charset=utf-8><script>{script}</script>", encoding="utf-8")
+    browser.open(path)
+    for moves in ({"z": (0.8, 0.1)}, {"a": (0.7, 0.2), "z": (0.9, 0.0)}):
+        moved = "".join(f"all.move({json.dumps(n)}, {a}, {b});" for n, (a, b) in moves.items())
+        changes, *columns = browser.value(QUANTILES.replace("MOVES", moved))
+        outputs = what_if_json(answer(ds, dict(changes)))["outputs"]
+        for name, found in zip(("life", "y"), columns, strict=True):
+            for p, one in zip(("0.05", "0.5", "0.95"), found, strict=True):
+                expected = outputs[name]["quantiles"][p]
+                for end in ("value", "low", "high"):
+                    known = np.nan if expected[end] is None else expected[end]
+                    here = np.nan if one[end] is None else one[end]
+                    assert here == pytest.approx(known, rel=1e-7, nan_ok=True), (name, p, end)
+    assert browser.complaints() == []
+
+
+def test_the_page_says_what_could_then_be_promised(shown):
+    ds = scaled({})
+    browser = shown(ds)
+    now = api.answer(ds).lead.promise
+
+    def promised(words):
+        cells = "[...document.querySelectorAll('#tolerances .promised data')]"
+        for _ in range(100):
+            browser.painted()
+            values = browser.value(f"{cells}.map(one => Number(one.value))")
+            text = browser.value("document.querySelector('#tolerances .promised').innerText")
+            if words in text:
+                return values, text.replace("\N{NO-BREAK SPACE}", " ")
+        raise AssertionError("nothing is promised")
+
+    values, text = promised("last longer than")
+    assert values == [now.lower] and text == now.sentence
+    move(browser, "z", 0.8, 0.0)
+    (then, before), text = promised("would then")
+    _, found = asked_of_python(browser, ds)
+    known = what_if_json(found)["outputs"]["life"]["quantiles"]["0.05"]
+    assert before == now.lower and then == pytest.approx(known["low"], rel=1e-7)
+    shown_then = float(text.split("last longer than ")[1].split()[0])
+    assert shown_then <= then < shown_then * 1.01
+    assert text.startswith("With 95 % confidence, at least 95 % would then last longer than")
 
 
 CURVES = """(() => { const all = new Reweighting(rows); MOVES

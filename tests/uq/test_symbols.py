@@ -1,10 +1,14 @@
 """Symbols in figures are formulas, and other text is left alone."""
 
 import pytest
+from computed import linear
+from drawn import words as written_in
 from matplotlib.mathtext import MathTextParser
 
 from models import beam, mole, vibrator
+from uq import plots
 from uq.drawing.symbols import formula, typeset
+from uq.drawing.words import labelled
 
 
 @pytest.mark.parametrize(
@@ -18,11 +22,21 @@ from uq.drawing.symbols import formula, typeset
         ("X0", "$X_{0}$"),
         ("k_psi", r"$k_{\psi}$"),
         ("a__b", "a__b"),
+        ("gap_at_stop_2", "gap_at_stop_2"),
         ("$^{", r"\$^{"),
     ],
 )
 def test_a_symbol_is_written_with_greek_letters_and_subscripts(symbol, written):
     assert formula(symbol) == written
+
+
+def test_a_name_of_several_words_is_no_symbol_of_its_own():
+    ds = linear(samples=20)
+    ds["x1"].attrs |= {"long_name": "gap at stop 2", "symbol": "gap_at_stop_2"}
+    assert labelled(ds["x1"]) == "Gap at stop 2"
+    figure = plots.scatter(ds, "y")
+    figure.draw_without_rendering()
+    assert "_at_" not in written_in(figure)
 
 
 def test_only_symbols_in_text_are_formulas():

@@ -1,6 +1,6 @@
 """What a result would say if its inputs followed other laws: the same rows, weighted."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.analysis.as_json import summary_json
 from uq.analysis.overview import table_of
+from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Summary, summarise
 from uq.contract import Parameter
 from uq.designs.registry import DESIGNS
@@ -29,7 +30,7 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.rows.weights import refuse_weights
-from uq.study.file import StudyFile
+from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
 SAME = "what if: which inputs are the same cannot be changed"
@@ -92,8 +93,13 @@ def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
     return table
 
 
-def answer(ds: xr.Dataset, changes: Mapping[str, Any]) -> WhatIf:
-    """Return what `what_if` tabulates."""
+def answer(
+    ds: xr.Dataset,
+    changes: Mapping[str, Any],
+    asked: AnalysisTable | None = None,
+    parts: Collection[str] = STATISTICS,
+) -> WhatIf:
+    """Return what `what_if` tabulates, or that part of it which is asked for."""
     refuse_weights(ds, "what if")
     if why := why_no_statistics(ds):
         raise InputError(f"what if: the rows of a '{ds.attrs['design']}' design {why}")
@@ -101,7 +107,7 @@ def answer(ds: xr.Dataset, changes: Mapping[str, Any]) -> WhatIf:
     old, new = inputs_of(rows), _changed(rows, changes)
     _refuse(ds, old, new)
     weighting = Weighting(rows, old, new, replicates_of(rows))
-    summary = summarise(ds, weighting=weighting)
+    summary = summarise(ds, asked, weighting=weighting, parts=parts)
     if not weighting.used and weighting.refused:
         first = next(iter(weighting.refused.values()))
         raise (InputError if first.impossible else RunError)(first.refusal)

@@ -39,7 +39,7 @@ _MOST_EFFECTS = 3
 
 def show_findings(findings: Findings) -> None:
     """Print the answer of a study, then its summary."""
-    show_answer(conclude(findings, weighed=False))
+    show_answer(conclude(findings))
     show_summary(findings.ds, findings.summary, findings.boundary)
 
 

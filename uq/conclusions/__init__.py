@@ -13,12 +13,14 @@ Reading order; a module imports only those above it:
     limits          from which value of an input an event is rare
     earliest        which rows end first, and what distinguishes them
     parts           what is said of an event and of a quantity, each sentence from its numbers
+    measured        the index of each input, and what tells it from the others
     rankings        which inputs contribute most, with direction and size
     quantities      what can be promised of an output, its range and its probabilities
     settling        what is not settled, and how many rows would settle it
     enough          whether the rows are enough for what the study is about
     deciding        which level decides: what units share, each one's own, or chance
     whole           the answer as a whole
+    halving         laws with half their scatter, and in words
     tightening      what a tighter tolerance would change, from the rows that exist
     tolerances      which tolerance to tighten
     advice          what to do, by rules

@@ -13,14 +13,9 @@ from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, bounds_unsettled
 from uq.conclusions.sources import ASSUMED, mark
-from uq.conclusions.tightening import changes_of
-from uq.conclusions.tolerances import tighten, twins
+from uq.conclusions.tolerances import tighten
 from uq.conclusions.whole import Answer
-from uq.conclusions.words import (
-    called,
-    called_together,
-    share_text,
-)
+from uq.conclusions.words import called, called_together, share_text
 from uq.designs.levels import CHANCE
 from uq.keys import key_of
 from uq.rows.commands import file_of, model_option
@@ -33,7 +28,7 @@ _AS_SETTLED = ("known", "tighten", "keep", "chance")
 """Rules of advice that is given also where everything is settled."""
 
 
-def advise(findings: Findings, found: Answer, weighed: bool = True) -> Iterator[Advice]:
+def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
     """Yield what to do, the most urgent first; nothing where inspections have weighted the rows.
 
     Parameters
@@ -41,13 +36,9 @@ def advise(findings: Findings, found: Answer, weighed: bool = True) -> Iterator[
     findings : Findings
     found : Answer
         Without advice.
-    weighed : bool
-        Whether the rows are weighed to say what a tighter tolerance would change; otherwise a
-        command says it.
     """
     if has_weights(findings.ds):
         return
-    how = _tighten if weighed else _ask
     enough = found.enough
     told = [
         *_mend(findings, found.quantities),
@@ -55,7 +46,7 @@ def advise(findings: Findings, found: Answer, weighed: bool = True) -> Iterator[
         *_unknown(found),
         *_leave_to_chance(found.levels),
         *_measure(findings, found),
-        *([] if found.regimes_first else [*how(findings, found)] or _keep(found)),
+        *([] if found.regimes_first else [*_tighten(findings, found)] or _keep(found)),
         *(_add_rows(findings.ds, enough) if found.quantities else ()),
     ]
     answered = found.quantities
@@ -167,21 +158,6 @@ def _keep(found: Answer) -> Iterator[Advice]:
             (event.over,),
             key=key_of(*path, verb="answer"),
         )
-
-
-def _ask(findings: Findings, found: Answer) -> Iterator[Advice]:
-    leader, _ = _leading(found)
-    if leader is None:
-        return
-    inputs = twins(leader)  # of many at once, the rows may show nothing
-    changes = changes_of(findings.ds, found.quantities[0], inputs)
-    if not changes:
-        return
-    given = " ".join(f"--set {name}={value:.6g}" for name, value in changes.items())
-    words = called_together(inputs)
-    command = f"uq what-if {file_of(findings.ds)} {given}"
-    text = f"See what half the scatter of {words} would change: {command}"
-    yield Advice("tighten", text, inputs)
 
 
 def _add_rows(ds: xr.Dataset, enough: Enough) -> Iterator[Advice]:

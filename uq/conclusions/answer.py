@@ -40,25 +40,19 @@ def answer(ds: xr.Dataset) -> Answer:
     return conclude(Findings(ds))
 
 
-_KNOWN: WeakKeyDictionary[Findings, dict[bool, Answer]] = WeakKeyDictionary()
+_KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
 
 
-def conclude(findings: Findings, weighed: bool = True) -> Answer:
-    """Return the answer from what is known of a result, computed once.
-
-    Parameters
-    ----------
-    findings : Findings
-    weighed : bool
-        As for `advise`. Weighing takes half a second, most of it for loading scipy.stats.
-    """
-    known = _KNOWN.setdefault(findings, {})
-    if weighed not in known:
-        known[weighed] = _concluded(findings, weighed)
-    return known[weighed]
+def conclude(findings: Findings) -> Answer:
+    """Return the answer from what is known of a result, computed once."""
+    if findings not in _KNOWN:
+        found = without_advice(findings)
+        _KNOWN[findings] = replace(found, advice=tuple(advise(findings, found)))
+    return _KNOWN[findings]
 
 
-def _concluded(findings: Findings, weighed: bool) -> Answer:
+def without_advice(findings: Findings) -> Answer:
+    """Return the answer but for what to do, for which rows are weighted."""
     ds = findings.ds
     found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
     regimes = tuple(regimes_of(findings))
@@ -75,8 +69,7 @@ def _concluded(findings: Findings, weighed: bool) -> Answer:
     )
     known = beside_levels(plain, _levels(findings, plain))
     about = known.main_regimes if known.regimes_first else ()
-    known = replace(known, enough=enough_of(findings, known.quantities, about))
-    return replace(known, advice=tuple(advise(findings, known, weighed)))
+    return replace(known, enough=enough_of(findings, known.quantities, about))
 
 
 def beside_levels(found: Answer, levels: Levels | None) -> Answer:

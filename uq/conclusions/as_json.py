@@ -13,7 +13,7 @@ from uq.conclusions.enough import Enough
 from uq.conclusions.limits import Limit
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise, Range
-from uq.conclusions.remedies import Advice
+from uq.conclusions.remedies import Advice, Tightened
 from uq.conclusions.repeated import Repeated
 from uq.conclusions.whole import Answer
 
@@ -30,7 +30,8 @@ def answer_json(found: Answer) -> dict[str, Any]:
         settled besides (``others``), what another seed would find of a share (``expected``), and
         the errors of what the study is about where that of the rows is the larger; ``levels``: the
         ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
-        ``text``, ``inputs`` and ``rows``. The numbers
+        ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were compared: what half the
+        scatter of their ``inputs`` would make ``after`` of the number ``what``. The numbers
         of a sentence stand side by side, with the sentence, under a key of their own. An event has
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
         input ``over``, and the ``limit`` of this input, ``at`` which its unwanted side becomes
@@ -213,5 +214,21 @@ def _change(one: Change, name: str) -> dict[str, Any]:
 
 
 def _advice(one: Advice) -> dict[str, Any]:
-    rows = {} if one.rows is None else {"rows": one.rows}
-    return {"text": one.text, "inputs": list(one.inputs)} | rows
+    found: dict[str, Any] = {"text": one.text, "inputs": list(one.inputs)}
+    if one.rows is not None:
+        found["rows"] = one.rows
+    if one.tolerances:
+        found["tolerances"] = [_tightened(each) for each in one.tolerances]
+    return found
+
+
+def _tightened(one: Tightened) -> dict[str, Any]:
+    return {
+        "inputs": list(one.inputs),
+        "law": one.law,
+        "what": one.what,
+        "before": json_form.numbers(one.before),
+        "after": json_form.numbers(one.after),
+        "promised": one.promised,
+        "key": one.key,
+    }

@@ -14,9 +14,6 @@ from uq.indices.targets import FORMS, split_name
 from uq.rows.nesting import is_nested
 from uq.rows.weights import has_weights
 
-START = "at the start"
-"""What the meaning of an input says that is part of how a motion starts."""
-
 _MOST_NAMED = 4
 
 
@@ -137,7 +134,7 @@ def levels_of(findings: Findings, target: str, of: str) -> Levels | None:
 def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[str, str]:
     """Return what the levels are called: by what is on them."""
     drawn_anew = [name for name, level in inputs.items() if level == CHANCE]
-    starts = any(START in str(findings.ds[name].attrs["long_name"]) for name in drawn_anew)
+    starts = any("initial" in findings.ds[name].attrs for name in drawn_anew)
     return {
         SHARED: "what all units share",
         OWN: "the machine" if units == 1 else "what is each unit's own",
@@ -150,7 +147,7 @@ def starts_alike(ds: xr.Dataset) -> str:
     starts = [
         name
         for name, one in ds.variables.items()
-        if one.attrs.get("role") in ("input", "fixed") and START in str(one.attrs["long_name"])
+        if one.attrs.get("role") in ("input", "fixed") and "initial" in one.attrs
     ]
     if not starts or any(ds[name].attrs["role"] == "input" for name in starts):
         return ""

@@ -47,7 +47,8 @@ def _tolerances(advice: Advice) -> Markup:
         cells = (
             _cell(own[what], above) if what in own else Markup("<td></td>") for what in numbers
         )
-        lines.append([capitalized(called_together(inputs)), *cells])
+        law = Markup("<small>{}</small>").format(_shown(next(iter(own.values())).law))
+        lines.append([_shown(capitalized(called_together(inputs))) + law, *cells])
     head = Markup("").join(
         Markup('<th scope="col" class="number">{}</th>').format(
             _shown(capitalized(what.removeprefix("the ")))

@@ -172,8 +172,11 @@ def effect(one: Quantity, number: int, of: Contribution) -> Markup:
 def advice(one: Advice) -> Markup:
     """Return one thing to do."""
     if one.key:
+        sure = Markup() if one.sure is None else keyed(one.sure.promised, one.sure.key)
+        worse = (keyed(each.besides, each.key) for each in one.harmed)
         also = keyed(one.also, *(each.key for each in one.alike))
-        return Markup(" ").join(filter(None, (keyed(one.said, one.key), also)))
+        said = keyed(one.said, one.key)
+        return Markup(" ").join(filter(None, (said, sure, *worse, also)))
     if one.rows is not None:
         return keyed(one.said, _answer("advice", one.rule, "rows"))
     return escape(plain(printed(one.said)))

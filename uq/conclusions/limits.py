@@ -1,6 +1,6 @@
 """From which value of the input that decides an event the unwanted side is rare."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, nan
 
 from uq.analysis.event_curve import EventCurve
@@ -20,7 +20,9 @@ class Limit:
     over : str
         The input.
     said : str
-        What is unwanted: ``do not succeed within 60 s``.
+        What is rare beyond it: ``end within 60 s``; or what is then frequent.
+    is_wanted : bool
+        Whether that is wanted, so that it is the frequent side.
     at : float
         Beyond this value it is rare; NaN where there is no limit.
     until : float
@@ -37,6 +39,7 @@ class Limit:
 
     over: str
     said: str
+    is_wanted: bool = False
     at: float = nan
     until: float = nan
     is_lower: bool = False
@@ -52,12 +55,19 @@ class Limit:
         side, outwards = ("least", inf) if self.is_lower else ("most", -inf)
         at = self.unit.text(self.at, outwards)
         where = f"where {called(self.over)} is at {side} {at}"
-        text = f"fewer than {100 * RARE:g} % {self.said} {where}"
+        text = f"{self.few} {where}"
         if self.until == self.until:
             low, high = sorted((self.at, self.until))
             ends = f"{self.unit.number(low, -inf)} and {self.unit.text(high, inf)}"
             text += f" (the limit lies between {ends})"
         return sentence(text)
+
+    @property
+    def few(self) -> str:
+        """How many there are beyond the limit."""
+        if self.is_wanted:
+            return f"more than {100 * (1 - RARE):g} % {self.said}"
+        return f"fewer than {100 * RARE:g} % {self.said}"
 
 
 def limit_of(
@@ -74,9 +84,9 @@ def limit_of(
     unit : Unit
         Of the input.
     said : str
-        What is unwanted, in words.
+        What happens, in words.
     is_unwanted : bool
-        Whether the event itself is unwanted; otherwise that it does not happen.
+        Whether that is unwanted; otherwise that it does not happen.
 
     Returns
     -------
@@ -92,23 +102,23 @@ def limit_of(
     if not is_lower:  # from the unwanted to the wanted end
         shares, edges = shares[::-1], edges[::-1]
     best, names = shares[-1], called(over)
+    plain = Limit(over, said, not is_unwanted, is_lower=is_lower, share=best, unit=unit)
     if all(one.high < RARE for one in shares):
         return None
     if any(one.high < later.low for i, one in enumerate(shares) for later in shares[i + 1 :]):
         why = f"no limit of {names}: how many {said} does not change steadily with it"
-        return Limit(over, said, share=best, why=why)
+        return replace(plain, why=why)
     rare = len(shares)
     while shares[rare - 1].high < RARE:
         rare -= 1
     if rare >= len(shares) - 1:
-        few = f"fewer than {100 * RARE:g} % {said}"
-        why = f"no value of {names} lets {few}"
+        why = f"no value of {names} lets {plain.few}"
         if best.low <= RARE:
-            why = f"whether a value of {names} lets {few} is not settled"
-        return Limit(over, said, is_lower=is_lower, share=best, why=why)
+            why = f"whether a value of {names} lets {plain.few} is not settled"
+        return replace(plain, why=why)
     frequent = max((i for i, one in enumerate(shares) if one.low > RARE), default=-1)
     until = edges[frequent] if frequent > 0 else nan  # before the first part there are no rows
-    return Limit(over, said, edges[rare + 1], until, is_lower, shares[rare], unit)
+    return replace(plain, at=edges[rare + 1], until=until, share=shares[rare])
 
 
 def _opposite(one: Estimate) -> Estimate:

@@ -16,7 +16,7 @@ from uq.wording import capitalized
 
 _STYLE = """
 .answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
-@media (min-width: 60rem), print {
+@media screen and (min-width: 60rem) {
   .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
     grid-template-rows: auto auto 1fr auto; align-items: start; }
   .answer-verdict { grid-area: 1 / 1; }
@@ -38,8 +38,10 @@ _STYLE = """
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
 }
-@media print { .answer { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: .3rem 8mm; } }
-@media print { .answer > * { break-inside: avoid; } }
+@media print { /* columns, unlike cells of a grid, fill a page before the next begins */
+  .answer { display: block; columns: 2; column-gap: 8mm; }
+  .answer :is(p, li, .answer-bar) { break-inside: avoid; }
+}
 """
 STYLE = Markup(_STYLE) + bars.STYLE
 

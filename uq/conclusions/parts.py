@@ -95,9 +95,7 @@ class Event:
         leader = None if self.ranking is None else self.ranking.leader
         if self.curve is None or leader is None or len(leader.inputs) > 1:
             return self
-        verb, _, rest = self.said.partition(" ")
-        unwanted = f"do not {verb} {rest}" if more_is_better else self.said
-        found = limit_of(self.curve, self.over, self.over_unit, unwanted, not more_is_better)
+        found = limit_of(self.curve, self.over, self.over_unit, self.said, not more_is_better)
         return replace(self, limit=found)
 
     @property

@@ -1,11 +1,15 @@
 """What can be promised of an output, and its likely range."""
 
-from dataclasses import dataclass
-from math import inf, isfinite
+from dataclasses import dataclass, replace
+from math import inf, isfinite, nan
 
 from uq.conclusions.words import Unit, rounded, sentence, share_text
 from uq.estimate import NOTHING, Estimate
+from uq.intervals import CONFIDENCE
 from uq.wording import listed
+
+_ONE_END = (1 + CONFIDENCE) / 2
+"""Confidence in one end of an interval."""
 
 
 @dataclass(frozen=True)
@@ -53,12 +57,11 @@ class Promise:
             for i, bound in enumerate((self.lower, self.upper))
             if isfinite(bound)
         ]
+        if bounds and self.joint:
+            return f"{self._sure}, at least {share} {' and '.join(bounds)}{self._others}."
         if bounds:
-            sure = f"With {100 * self.confidence:g} % confidence"
-            if self.joint:
-                return f"{sure}, at least {share} {' and '.join(bounds)}{self._others}."
-            each = " each" if len(bounds) > 1 else ""
-            return f"{sure}{each}, at least {share} {f', and at least {share} '.join(bounds)}."
+            each, joined = " each" * (len(bounds) > 1), f", and at least {share} ".join(bounds)
+            return f"{self._sure}{each}, at least {share} {joined}."
         cautious = []
         for i, one in enumerate(self.quantiles):
             end = (one.low, one.high)[i]
@@ -69,6 +72,36 @@ class Promise:
                 text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
             cautious.append(text)
         return f"{'; '.join(cautious)}." if cautious else ""
+
+    def of_quantile(self, probability: float) -> "Promise | None":
+        """Return the same with the bound of one quantile alone.
+
+        None where there is none, or an end of the interval of the quantile would not bound it with
+        this confidence.
+        """
+        if self.confidence > _ONE_END or self.joint or self.of_magnitude:
+            return None
+        if probability == self.coverage:
+            return replace(self, lower=nan) if isfinite(self.upper) else None
+        return replace(self, upper=nan) if isfinite(self.lower) else None
+
+    def would_be(self, quantile: Estimate) -> str:
+        """Return what an end of the interval of the quantile would promise; "" without it."""
+        is_upper = isfinite(self.upper)
+        bound = quantile.high if is_upper else quantile.low
+        if not isfinite(bound):
+            return ""
+        return f"{self.opening('would then')} {self.unit.text(bound, (-inf, inf)[is_upper])}."
+
+    def opening(self, then: str = "") -> str:
+        """Return what a single bound promises, up to the bound; `then` says when."""
+        side = self._side(isfinite(self.upper))
+        share = f"at least {100 * self.coverage:g} %"
+        return f"{self._sure}, {' '.join(filter(None, (share, then, side)))}"
+
+    @property
+    def _sure(self) -> str:
+        return f"With {100 * self.confidence:g} % confidence"
 
     @property
     def why(self) -> str:

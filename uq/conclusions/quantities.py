@@ -24,9 +24,10 @@ from uq.conclusions.bounds import (
 )
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import earliest
+from uq.conclusions.measured import method_for
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Range
-from uq.conclusions.rankings import method_for, ranking_of
+from uq.conclusions.rankings import ranking_of
 from uq.conclusions.words import Unit, element_called, unit_for
 from uq.errors import InputError
 from uq.estimate import NOTHING

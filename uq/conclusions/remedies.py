@@ -2,9 +2,13 @@
 
 from dataclasses import dataclass, field
 
+from uq.conclusions.promises import Promise
 from uq.conclusions.words import Unit, called_together, joined
 from uq.estimate import NOTHING, Estimate
 from uq.wording import capitalized, percent, percent_interval
+
+SHARE_OF = "the share of rows that "
+"""How the number is called that is the probability of an event."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +30,11 @@ class Tightened:
         Of `after`, for ``uq trace``; "" where it is not known.
     wants_more : bool or None
         Whether a larger number is better; None where that is not known.
+    law : str
+        What half the scatter is: ``sd 0.5 mm instead of 1``.
+    promise : Promise or None
+        What is promised of the same quantile now; None where an end of the interval of `after`
+        could not be promised instead.
     """
 
     inputs: tuple[str, ...]
@@ -38,6 +47,8 @@ class Tightened:
     effective_rows: float = float("nan")
     key: str = ""
     wants_more: bool | None = None
+    law: str = ""
+    promise: Promise | None = None
 
     @property
     def is_seen(self) -> bool:
@@ -47,7 +58,20 @@ class Tightened:
     @property
     def helps(self) -> bool:
         """Whether the number moves to its better side, or none is known to be better."""
-        return self.wants_more in (None, self.after.value > self.before.value)
+        return self.wants_more in (None, self.rises)
+
+    @property
+    def harms(self) -> bool:
+        """Whether the number surely moves to its worse side."""
+        is_sure = self.after.has_interval and not (
+            self.after.low <= self.before.value <= self.after.high
+        )
+        return not self.helps and is_sure and self.is_seen
+
+    @property
+    def rises(self) -> bool:
+        """Whether the number becomes larger."""
+        return self.after.value > self.before.value
 
     @property
     def gain(self) -> float:
@@ -78,9 +102,30 @@ class Tightened:
         words = called_together(self.inputs)
         if self.reason:
             return f"Tightening {words}: {self.reason}."
-        first, then = self.text(self.before), self.text(self.after)
-        ends = f" ({self.interval})" if self.interval else ""
-        return f"Half the scatter of {words} would move {self.what} from {first} to {then}{ends}."
+        law = f" ({self.law})" if self.law else ""
+        first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
+        moved = f"move {self.what} from {first} to {self._then}"
+        return f"Half the scatter of {words}{law} would {moved}."
+
+    @property
+    def promised(self) -> str:
+        """What could then be promised: an end of the interval; "" where nothing could."""
+        return "" if self.promise is None else self.promise.would_be(self.after)
+
+    @property
+    def besides(self) -> str:
+        """What would change for the worse, after a number that gets better."""
+        if self.is_share:
+            does = self.what.removeprefix(SHARE_OF)
+            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._then}."
+        return f"But {self.what} would {'rise' if self.rises else 'fall'} to {self._then}."
+
+    @property
+    def _then(self) -> str:
+        if not self.after.has_interval:
+            return self.text(self.after)
+        bare = self.unit.bare_between(self.after.low, self.after.high)
+        return f"{self.text(self.after)} ({self.interval if self.is_share else bare})"
 
 
 @dataclass(frozen=True)
@@ -122,6 +167,24 @@ class Advice:
         return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
 
     @property
+    def own(self) -> list[Tightened]:
+        """All numbers that the tolerance which is advised would change."""
+        of = None if self.tightened is None else self.tightened.inputs
+        return [one for one in self.tolerances if one.inputs == of]
+
+    @property
+    def sure(self) -> Tightened | None:
+        """The number of which it says what could then be promised."""
+        return next((one for one in self.own if one.promised), None)
+
+    @property
+    def harmed(self) -> list[Tightened]:
+        """The numbers that the tolerance which is advised would worsen."""
+        return [one for one in self.own if one.harms]
+
+    @property
     def text(self) -> str:
         """All of it."""
-        return " ".join(filter(None, (self.said, self.also)))
+        sure = "" if self.sure is None else self.sure.promised
+        worse = [one.besides for one in self.harmed]
+        return " ".join(filter(None, (self.said, sure, *worse, self.also)))

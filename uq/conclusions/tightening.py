@@ -1,61 +1,26 @@
 """What half the scatter of an input would change, from the rows that exist: they are weighted."""
 
 from collections.abc import Iterator, Sequence
-from math import isfinite, sqrt
+from dataclasses import replace
+from math import isfinite
 
 import xarray as xr
 
 from uq.analysis.what_if import answer as weighted
+from uq.conclusions.halving import halvings, halvings_in_words
 from uq.conclusions.parts import Quantity
-from uq.conclusions.remedies import Tightened
+from uq.conclusions.promises import Promise
+from uq.conclusions.remedies import SHARE_OF, Tightened
 from uq.conclusions.words import Unit
 from uq.errors import InputError, RunError
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
-from uq.inputs.distributions import LogUniform
-from uq.inputs.law import Law
 from uq.keys import key_of
-from uq.rows.elements import study_file_of
-from uq.study.file import Tied
+from uq.rows.elements import analysis_of
+from uq.study.file import AnalysisTable
 
-_WIDTHS = ("sd", "cv", "sigma")
-
-
-def halved(law: Law) -> dict[str, float]:
-    """Return the arguments that give a law half its scatter about its middle; none if unknown.
-
-    Parameters
-    ----------
-    law : Law
-    """
-    for name in _WIDTHS:
-        if (width := getattr(law, name, None)) is not None:
-            return {name: width / 2}
-    lower, upper = getattr(law, "lower", None), getattr(law, "upper", None)
-    if lower is None or upper is None:
-        return {}
-    if isinstance(law, LogUniform):
-        centre, ratio = sqrt(lower * upper), (upper / lower) ** 0.25
-        return {"lower": centre / ratio, "upper": centre * ratio}
-    mode: float | None = getattr(law, "mode", None)
-    middle = (lower + upper) / 2 if mode is None else mode
-    return {"lower": (lower + middle) / 2, "upper": (upper + middle) / 2}
-
-
-def changes_of(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> dict[str, float]:
-    """Return the entries of the study file that give inputs half their scatter.
-
-    None where nothing is promised of the quantity, or a law has no middle.
-    """
-    laws = study_file_of(ds).uncertain
-    changes: dict[str, float] = {}
-    for name in inputs:
-        law = laws[name]
-        changed = {} if isinstance(law, Tied) else halved(law)
-        if not changed:
-            return {}
-        changes |= {f"uncertain.{name}.{key}": value for key, value in changed.items()}
-    return changes if any(_promised(quantity)) else {}
+_PARTS = ("quantiles", "thresholds")
+_UNKNOWN = "the rows cannot show what it would change"
 
 
 def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iterator[Tightened]:
@@ -69,31 +34,59 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
     inputs : sequence of str
         All of them at once.
     """
-    changes = changes_of(ds, quantity, inputs)
-    if not changes:
+    known = list(_promised(quantity))
+    laws = halvings(ds, inputs)
+    if not known or not laws:
         return
     names = tuple(inputs)
+    what = Tightened(names, "", law=halvings_in_words(ds, laws))
+    changes = {
+        f"uncertain.{name}.{key}": value
+        for name, arguments in laws.items()
+        for key, value in arguments.items()
+    }
     try:
-        found = weighted(ds, changes)
+        found = weighted(ds, changes, _asked(ds, quantity, [key for key, *_ in known]), _PARTS)
     except (InputError, RunError) as refused:
-        yield Tightened(names, "", reason=f"the rows cannot show what it would change ({refused})")
+        yield replace(what, reason=f"{_UNKNOWN} ({refused})")
         return
     described = found.summary.outputs.get(quantity.name)
-    for key, what, before, unit, more in _promised(quantity):
+    for key, words, before, unit, more in known:
         one = described.find(*key) if described is not None else None
         if one is None:
-            yield Tightened(names, what, reason="the rows cannot show what it would change")
-        elif not isfinite(one.best.estimate.value):
-            why = one.best.estimate.reason
-            yield Tightened(
-                names, what, reason=f"the rows cannot show what it would change ({why})"
-            )
-        else:
-            is_share = key[0] == "thresholds"
-            after, rows = one.best.estimate, found.effective_rows
-            given = {name: repr(value) for name, value in changes.items()}
-            path = key_of("outputs", quantity.name, *key, verb="what-if", options=given)
-            yield Tightened(names, what, before, after, is_share, unit, "", rows, path, more)
+            yield replace(what, what=words, reason=_UNKNOWN)
+            continue
+        after = one.best.estimate
+        if not isfinite(after.value):
+            yield replace(what, what=words, reason=f"{_UNKNOWN} ({after.reason})")
+            continue
+        given = {name: repr(value) for name, value in changes.items()}
+        yield replace(
+            what,
+            what=words,
+            before=before,
+            after=after,
+            is_share=key[0] == "thresholds",
+            unit=unit,
+            effective_rows=found.effective_rows,
+            key=key_of("outputs", quantity.name, *key, verb="what-if", options=given),
+            wants_more=more,
+            promise=_bounding(quantity, key),
+        )
+
+
+def _asked(ds: xr.Dataset, quantity: Quantity, keys: Sequence[Sequence[str]]) -> AnalysisTable:
+    """Return what a study asks for, of this quantity and these quantiles alone."""
+    asked = analysis_of(ds, quantity.output)
+    wanted = {key[1] for key in keys if key[0] == "quantiles"}
+    some = tuple(p for p in asked.quantiles if repr(p) in wanted)
+    return asked.model_copy(update={"quantiles": some})
+
+
+def _bounding(quantity: Quantity, key: Sequence[str]) -> Promise | None:
+    if quantity.promise is None or key[0] != "quantiles":
+        return None
+    return quantity.promise.of_quantile(float(key[1]))
 
 
 def _promised(
@@ -108,7 +101,7 @@ def _promised(
             continue
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
-        words = f"the share of rows that {event.said}"
+        words = SHARE_OF + event.said
         yield key, words, event.share, Unit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign

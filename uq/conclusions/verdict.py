@@ -3,7 +3,7 @@
 from math import isfinite
 
 from uq.analysis.findings import Findings
-from uq.conclusions.answer import conclude
+from uq.conclusions.answer import without_advice
 from uq.conclusions.enough import enough_of, settled
 from uq.conclusions.quantities import quantities
 from uq.conclusions.words import sentence
@@ -20,7 +20,7 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     """
     ds = findings.ds
     if output is None:
-        answer = conclude(findings, weighed=False)
+        answer = without_advice(findings)
         asked, found = answer.quantities, answer.enough
     else:
         asked = tuple(one for one in quantities(findings) if output in (one.name, one.output))

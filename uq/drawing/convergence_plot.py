@@ -65,6 +65,8 @@ def convergence(
         )
     what = "mean" if kind == "mean" else "median"
     known = _over_samples(panel, ds)
+    if known and not np.isfinite(own[["low", "high"]].astype(float)).all(axis=None):
+        known += " where the rows allow one"
     whole_numbers(panel.yaxis)
     title(panel, as_label(f"{what}: {chosen[0].meaning}", unit.name, 46), known)
     return finish(panel)

@@ -94,7 +94,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     matplotlib.figure.Figure
     """
     rows = independent_rows(ds)
-    chosen = named_elements(rows, output)[:_MOST_PANELS]
+    every = named_elements(rows, output)
+    chosen = every[:_MOST_PANELS]
     codes = rows["regime"].values
     ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
     drawn = set(codes[np.any(ended, axis=0)].tolist())
@@ -112,7 +113,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             base = top
         panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
         entitle(panel, [element], of=label(ds, element))
-    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name))
+    below = "" if chosen == every else f"\nthe first {len(chosen)} of {len(every)} elements"
+    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name) + below)
     if wide:
         logarithmic(panels[-1])
     for panel in panels:

@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from uq.analysis.summary import REGIME
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Event
 from uq.conclusions.words import called
@@ -54,7 +55,8 @@ def event_probability(
     panel.stairs(value, edges, baseline=None, color=colour, lw=1.4)
     panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9)
     panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
-    title(panel, as_label(f"share: {event.said}", width=46))
+    what = f"are {event.said}" if event.name.startswith(f"P({REGIME}=") else event.said
+    title(panel, as_label(f"rows that {what}", width=46))
     over = called(event.over)  # as the sentence beside the figure does
     panel.set_xlabel(as_label(over, event.over_unit.name, symbol=symbol_of(ds[event.over])))
     return finish(panel)

@@ -56,7 +56,7 @@ def inputs(
     for panel in panels[len(found) :]:
         panel.set_axis_off()
     for panel, (name, (law, values)) in zip(panels, found.items(), strict=False):
-        width = 44 // columns
+        width = 44 if columns == 1 else 20
         per = 1.0
         if law.times is None:
             per = input_axis(panel, ds[name], values, width)

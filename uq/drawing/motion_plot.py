@@ -17,7 +17,7 @@ from uq.errors import InputError
 from uq.rows.elements import Floats
 
 _LAST = 4  # periods of the drive
-_ABOVE = 50  # width of a label above a panel [characters]
+_ABOVE = 66  # width of a label above a panel of two columns [characters]
 _BESIDE = 32  # width of the label of the vertical axis [characters]
 
 

@@ -42,6 +42,7 @@ _MOST_POINTS = 3000
 _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
 _EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
 _RARELY = 3  # times the mean distance of neighbours, which chance leaves empty once in hundreds
+_TORN = 8  # times that distance, which chance hardly ever leaves empty within a median's interval
 _SHORTEST = 3  # slices that make a line
 _GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
 
@@ -161,6 +162,10 @@ def _conditional(
     empty = np.array(
         [_is_empty(values[rows], at, axes) for rows, at in zip(slices, line, strict=True)]
     )
+    if medians:
+        empty |= [
+            _is_torn(values[rows], *one, axes) for rows, one in zip(slices, ends, strict=True)
+        ]
     empty |= _fragments(~empty)
     seen = np.isfinite(line) & ~empty
     line = np.where(seen & ~_fragments(seen), line, np.nan)
@@ -190,6 +195,15 @@ def _is_empty(values: Floats, at: float, axes: Axes) -> bool:
     by_chance = _RARELY * np.ptp(ended) / len(ended)
     away = np.min(np.abs(ended - at))
     return bool(away > max(_EMPTY * np.ptp(axes.get_ylim()), by_chance))
+
+
+def _is_torn(values: Floats, low: float, high: float, axes: Axes) -> bool:
+    """Whether the interval of a median reaches over an empty space to other rows."""
+    ended = np.sort(values[np.isfinite(values)])
+    inside = ended[(low <= ended) & (ended <= high)]
+    by_chance = _TORN * np.ptp(ended) / len(ended) if len(ended) else 0.0
+    widest = np.diff(inside).max(initial=0.0)
+    return bool(widest > max(2 * _EMPTY * np.ptp(axes.get_ylim()), by_chance))
 
 
 def _fragments(there: Mask) -> Mask:

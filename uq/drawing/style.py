@@ -19,7 +19,7 @@ INK = "black"
 ROWS = "#A0A6AD"
 """Of rows, one by one or counted."""
 LIMIT = "#C2185B"
-"""Of the thresholds of a study."""
+"""Of limits: the thresholds of a study, the stops of a machine."""
 SHADES = (INK, "#9A9A9A", "#707070", "#BBBBBB")
 """Of the elements of an output, together with `LINES`."""
 BARS = ("#6B7580", "#B4BBC2", "#8E979F", "#D0D5DA")

@@ -5,7 +5,7 @@ import re
 from uq.greek import IN_TEXT, WORD
 from uq.printed import minus
 
-_WHOLE = re.compile(r"(?:[A-Za-z]+(?:_[A-Za-z0-9]+)?|[\d ()+*/'.-])+")
+_WHOLE = re.compile(r"(?:[A-Za-z]+(?:_[A-Za-z0-9]+)?(?![A-Za-z_])|[\d ()+*/'.-])+")
 
 
 def literal(text: str) -> str:
@@ -19,7 +19,8 @@ def formula(symbol: str) -> str:
     Parameters
     ----------
     symbol : str
-        Of ASCII letters, digits and signs; anything else is returned as text.
+        Of ASCII letters, digits and signs, each letter with one index at most; anything else is
+        returned as text.
 
     Returns
     -------

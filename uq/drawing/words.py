@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import xarray as xr
@@ -28,12 +29,28 @@ def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> st
 
 def _wrapped(text: str, width: int) -> str:
     """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
+    text = re.sub(r"(?<=\$) ([+−=]) (?=\$)", "\u00a0\\1\u00a0", text)  # a difference is one word
     formulas = re.findall(_FORMULA, text)
     letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
     seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
     masked = re.sub(_FORMULA, lambda _: _MASK * len(next(seen)), text)
     whole = iter(formulas)
-    return re.sub(f"{_MASK}+", lambda _: next(whole), textwrap.fill(masked, width))
+    return re.sub(f"{_MASK}+", lambda _: next(whole), "\n".join(_lines(masked, width)))
+
+
+def _lines(text: str, width: int) -> list[str]:
+    """Return lines of about one length, and as few as the width allows.
+
+    Only a word that is longer than a line, such as a name, is broken, at its hyphens if it has any.
+    """
+    longest = max(map(len, text.split(" ")))
+    if longest > width:
+        return textwrap.wrap(text, width)
+    wrap = partial(textwrap.wrap, text, break_on_hyphens=False)
+    lines = wrap(width=width)
+    while width > max(longest, 1) and len(shorter := wrap(width=width - 1)) == len(lines):
+        lines, width = shorter, width - 1
+    return lines
 
 
 _FORMULA = r"(?<!\\)\$.+?(?<!\\)\$"
@@ -99,8 +116,10 @@ def meaning_of(variable: xr.DataArray) -> str:
 
 
 def symbol_of(variable: xr.DataArray) -> str:
-    """Return the symbol of a variable, or ""."""
-    return str(variable.attrs.get("symbol", ""))
+    """Return the symbol of a variable, or "" where it is only its meaning in one word."""
+    symbol = str(variable.attrs.get("symbol", ""))
+    is_name = "_" in symbol and symbol.replace("_", " ") == meaning_of(variable)
+    return "" if is_name else symbol
 
 
 def labelled(variable: xr.DataArray, unit: str = "", width: int = 44) -> str:

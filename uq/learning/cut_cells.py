@@ -14,7 +14,7 @@ Allowed = Callable[[Floats], Mask]
 shape (n,)."""
 
 
-def cut(grid: Grid, possible: Mask, allowed: Allowed | None) -> tuple[Floats, Floats]:
+def edges_of_rows(grid: Grid, possible: Mask, allowed: Allowed | None) -> Floats:
     """Return between which prior probabilities each value of a grid stands, in each row.
 
     A unit that was seen running has lives from then on alone: the first value that a row allows
@@ -29,18 +29,15 @@ def cut(grid: Grid, possible: Mask, allowed: Allowed | None) -> tuple[Floats, Fl
 
     Returns
     -------
-    edges : ndarray, shape (n, g + 1)
-    log_kept : ndarray, shape (n, g)
-        Logarithm of the part that is left of what each value stands for.
+    ndarray, shape (n, g + 1)
     """
     edges = np.broadcast_to(grid.edges, (len(possible), len(grid.edges)))
     if allowed is None or possible.all():
-        return edges, np.zeros(possible.shape)
-    edges = _edges_of_rows(grid, possible, allowed)
-    return edges, np.log(np.diff(edges) / np.diff(grid.edges))
+        return edges
+    return _cut(grid, possible, allowed)
 
 
-def _edges_of_rows(grid: Grid, possible: Mask, allowed: Allowed) -> Floats:
+def _cut(grid: Grid, possible: Mask, allowed: Allowed) -> Floats:
     edges, middle = np.repeat(grid.edges[None], len(possible), axis=0), centres(grid.edges)
     some, last = possible.any(axis=1), possible.shape[1] - 1
     first, final = possible.argmax(axis=1), last - possible[:, ::-1].argmax(axis=1)

@@ -29,6 +29,9 @@ _MOST_NODES = 512
 _FINE = 8.0
 """Nodes that share the law of the integrated input in a row, at least."""
 
+_MET = 2.0
+"""Fewer leave out rows."""
+
 _FAR = 7.5
 _PASSES = 8
 
@@ -120,7 +123,10 @@ def weigh(
         narrower = [_narrower(*one) for one in zip(grids, units, found.rest, strict=True)]
         if not own:
             narrower = narrower[:1] * len(grids)
-        if not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
+        if found.nodes < _MET and nodes < _MOST_NODES:
+            # Values that no row has met may be possible: finer before narrower.
+            narrower, nodes = [(grid.low, grid.high) for grid in grids], nodes * 2
+        elif not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
             if nodes == _MOST_NODES or found.nodes >= _FINE:
                 break
             nodes *= 2

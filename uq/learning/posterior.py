@@ -78,6 +78,12 @@ class Posterior:
         """Of all units."""
         return [self.any_unit.weights, *(one.weights for one in self.units.values())]
 
+    @property
+    def pulls(self) -> Floats:
+        """By how much each row moves the law, shape (n, terms)."""
+        total = sum(one.pulls for one in self.units.values() if one.pulls is not None)
+        return np.asarray(total - np.mean(total, axis=0))
+
 
 def posterior(
     rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float = 0.0
@@ -130,7 +136,7 @@ def posterior(
         raise InputError(
             *contradictions(likelihoods, labels, found.grids, world, bool(scale and scale.is_own))
         )
-    law = shared_law(found, likelihoods) if scale and not scale.is_own and worlds == 1 else None
+    law = shared_law(found) if scale and not scale.is_own and worlds == 1 else None
     part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
     units = {
         label: inspected(found, unit, likelihoods, world, scale, part, law)

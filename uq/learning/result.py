@@ -123,7 +123,7 @@ def as_result(
     }
     for variable in ds.variables.values():
         variable.encoding["_FillValue"] = None
-    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES} & {*ds.variables}:
+    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS} & {*ds.variables}:
         ds[name].encoding |= _COMPRESSED
     return ds.assign_attrs(found_attrs)
 
@@ -134,12 +134,13 @@ def _of_law(found: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
         return {}
     assert found.scale is not None
     of_pulls = attrs | {"long_name": f"pull on terms of the law of {found.scale.name}"}
-    of_pulls[ROWS] = len(law.pulls)
+    pulls = found.pulls
+    of_pulls[ROWS] = len(pulls)
     of_terms = attrs | {"long_name": "terms in the row"}
     of_scores = attrs | {"long_name": f"normal score before, of {found.scale.name}"}
-    units = np.stack([one.pulls(law) for one in _units(found)])
+    units = np.stack([one.without_own(pulls) for one in _units(found)])
     return {
-        LAW_PULLS: (("sample", "term"), found.any_unit.pulls(law), of_pulls),
+        LAW_PULLS: (("sample", "term"), found.any_unit.without_own(pulls), of_pulls),
         UNIT_PULLS: (("inspected", "sample", "term"), units, of_pulls),
         LAW_FOLLOWS: (("sample", "term"), found.any_unit.terms, of_terms),
         LAW_SCORES: (SCORE, law.scores, of_scores),

@@ -1,6 +1,6 @@
 """Rows that stand for a unit: weighted, each with a value or law of the integrated input."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -9,11 +9,12 @@ from scipy import special
 
 from uq.contract import Floats, Mask
 from uq.intervals import Replicates, replicates_of_some
-from uq.learning.cut_cells import Allowed, cut
+from uq.learning.cell_masses import masses
+from uq.learning.cut_cells import Allowed, edges_of_rows
 from uq.learning.evidence import Evidence
 from uq.learning.integrated import Scale
 from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
-from uq.learning.shared_law import SharedLaw
+from uq.learning.shared_law import SharedLaw, pulls_of
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.population.shared_terms import SCORES, terms_at
 from uq.population.smoothing import Smoothed, smoothed
@@ -38,6 +39,8 @@ class Weighted:
         Its law in each row of an inspected unit (`LearntScale`).
     terms : ndarray, shape (m, terms), or None
         Means over the law of the input in each row of the terms of one that all units share.
+    pulls : ndarray, shape (m, terms), or None
+        By how much each row moves that law as an inspected unit.
     """
 
     rows: Rows
@@ -45,14 +48,15 @@ class Weighted:
     scale: Floats | None
     scores: Floats | None = None
     terms: Floats | None = None
+    pulls: Floats | None = None
 
-    def pulls(self, law: SharedLaw) -> Floats:
-        """Return by how much each of all rows moves the law of the input, shape (n, terms).
+    def without_own(self, pulls: Floats) -> Floats:
+        """Return by how much each of all rows moves the law for others, shape (n, terms).
 
         A row does not count for its own, nor do values drawn as evenly as the law has them.
         """
         assert self.terms is not None
-        found = law.pulls.copy()
+        found = pulls.copy()
         found[self.rows] -= self.weights.weights[:, None] * self.terms
         return found
 
@@ -74,10 +78,11 @@ def uninspected(
     if scale is None or scale.is_own:
         weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
         return Weighted(rows, weights, None if scale is None else scale.drawn)
-    edges, log_kept = cut(found.grids[0], log_rows > -np.inf, allowed)
-    log_rows = log_rows + log_kept
-    weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
-    worth = np.exp(log_rows - log_rows.max())
+    grid = found.grids[0]
+    edges = edges_of_rows(grid, log_rows > -np.inf, allowed)
+    worth = masses(grid, edges, np.exp(log_rows - log_rows.max()))
+    with np.errstate(divide="ignore"):
+        weights = _smoothed_alike(np.log(worth.sum(axis=1)), place, part)
     at = in_order(place.samples)[place.sample]
     drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
     terms = None if law is None else terms_at(law.scores, special.ndtri(drawn))
@@ -112,9 +117,9 @@ def inspected(
     of_unit = likelihoods.of(unit, grid.values)
     joint = found.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
     allowed = None if scale is None else partial(_allowed, likelihoods, unit, scale)
-    edges, log_kept = cut(grid, of_unit > -np.inf, allowed)
+    edges = edges_of_rows(grid, of_unit > -np.inf, allowed)
     top = joint.max()
-    worth = np.exp(joint + log_kept - top)
+    worth = masses(grid, edges, np.exp(joint - top))
     of_rows = worth.sum(axis=1)
     most = np.inf
     if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
@@ -129,10 +134,11 @@ def inspected(
     of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
     places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
     scores = np.asarray(special.ndtri(places[:, 1:]))
-    terms = None
-    if law is not None:
-        terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
-    return Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores, terms)
+    one = Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)
+    if law is None:
+        return one
+    terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
+    return replace(one, terms=terms, pulls=pulls_of(unit, of_unit, found, law))
 
 
 def _allowed(likelihoods: UnitLikelihoods, unit: int, scale: Scale, places: Floats) -> Mask:

@@ -20,7 +20,7 @@ def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
     edges : ndarray, shape (n, g + 1)
         The prior probabilities between which each of its values stands, in each row.
     worth : ndarray, shape (n, g)
-        The probability of each value.
+        The probability of each value (`cell_masses.masses`).
     at : ndarray, shape (n, q)
         The probabilities of the quantiles of each row.
 
@@ -58,18 +58,16 @@ def in_order_of_weight(weights: Floats) -> Floats:
 def _tilted(within: Floats, edges: Floats, worth: Floats, row: Places, node: Places) -> Floats:
     """Return places within nodes, 0 to 1, drawn to the side on which the density is higher.
 
-    By half its slope: evenly spread places would add the variance of a node to that of the density,
-    of which the values at the middles of nodes, equally spaced, have all. Where a neighbour is
-    impossible, the slope is that to the other.
+    Where a neighbour is impossible, the slope is that to the other.
     """
     sides = [np.clip(node + step, 0, worth.shape[1] - 1) for step in (-1, 1)]
     low, high = (np.where(worth[row, side] > 0, side, node) for side in sides)
     lengths, middles = zip(*(_length_and_middle(edges, row, i) for i in (low, high)), strict=True)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = (worth[row, high] / worth[row, low]) * (lengths[0] / lengths[1])
         rise = np.log(ratio) / (middles[1] - middles[0])
         wide = edges[row, node + 1] - edges[row, node]
-        tilt = (wide * rise / 2).clip(-_STEEPEST, _STEEPEST)
+        tilt = (wide * rise).clip(-_STEEPEST, _STEEPEST)
         moved = np.log1p(within * np.expm1(tilt)) / tilt
     return np.where(np.isfinite(tilt) & (np.abs(tilt) > _FLAT), moved, within)
 

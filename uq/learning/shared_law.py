@@ -11,40 +11,45 @@ import numpy as np
 from scipy import special
 
 from uq.contract import Floats
+from uq.learning.cell_masses import masses
 from uq.learning.evidence import Evidence
 from uq.learning.scale_quantiles import prior_places
-from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.population.shared_terms import SCORES, terms
 
 
 class SharedLaw(NamedTuple):
-    """What the rows say of the input that all units share.
+    """The law, given the inspections, of an input that all units share.
 
     Attributes
     ----------
-    pulls : ndarray, shape (n, terms)
-        By how much each row moves the terms of the density: errors are their means.
+    share : ndarray, shape (g,)
+        Probabilities of the values of the grid.
     terms : ndarray, shape (g, terms)
-        At the values of the grid.
+        At these values.
     scores : ndarray, shape (q,)
         Normal scores, by the law before the inspections, of its quantiles at `SCORES` given them.
     """
 
-    pulls: Floats
+    share: Floats
     terms: Floats
     scores: Floats
 
 
-def shared_law(found: Evidence, likelihoods: UnitLikelihoods) -> SharedLaw:
-    """Return what the rows say, each of which stands for every inspected unit."""
-    grid, log_share = found.grids[0], found.log_worlds[0]
-    share = np.exp(log_share)
-    of_values = terms(np.cumsum(share) - share / 2)
-    pulls = 0.0
-    for unit, rest in enumerate(found.rest):
-        with np.errstate(invalid="ignore"):
-            log_mean = log_share + found.log_evidence - rest[0]
-        log_rows = likelihoods.of(unit, grid.values) - np.where(share > 0, log_mean, np.inf)
-        pulls = pulls + np.exp(log_rows) @ (share[:, None] * of_values)
-    places = prior_places(grid.edges[None], share[None], special.ndtr(SCORES)[None])[0]
-    return SharedLaw(pulls - np.mean(pulls, axis=0), of_values, special.ndtri(places))
+def shared_law(found: Evidence) -> SharedLaw:
+    """Return the law that inspections leave, where each row stands for every inspected unit."""
+    share, edges = np.exp(found.log_worlds), found.grids[0].edges[None]
+    of_cells = masses(found.grids[0], edges, share)
+    places = prior_places(edges, of_cells, special.ndtr(SCORES)[None])[0]
+    middle = np.cumsum(share[0]) - share[0] / 2
+    return SharedLaw(share[0], terms(middle), special.ndtri(places))
+
+
+def pulls_of(unit: int, log_likelihood: Floats, found: Evidence, law: SharedLaw) -> Floats:
+    """Return by how much each row moves the terms of the law, as one unit, shape (n, terms).
+
+    Errors of the law are the means over rows of the sum over units.
+    """
+    with np.errstate(invalid="ignore"):
+        log_mean = found.log_worlds[0] + found.log_evidence - found.rest[unit][0]
+    log_rows = log_likelihood - np.where(law.share > 0, log_mean, np.inf)
+    return np.asarray(np.exp(log_rows) @ (law.share[:, None] * law.terms))

@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.clusters import Clusters
+from uq.conclusions.parts import Quantity
 from uq.conclusions.words import called
 from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
@@ -24,7 +25,7 @@ from uq.literals import plain
 from uq.population.scaling import population
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
-from uq.report.tolerances import tolerances
+from uq.report.tolerances import promised, tolerances
 from uq.rows.commands import model_option
 from uq.rows.element import Element
 from uq.rows.elements import (
@@ -52,7 +53,9 @@ _STUDENTS = 100
 """From so many independent parts on, an expansion has enough digits."""
 
 
-def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
+def rows_inside(
+    findings: Findings, file: str, answered: Sequence[Quantity] = ()
+) -> dict[str, Any] | None:
     """Return the rows of a result, for JSON.
 
     Parameters
@@ -60,24 +63,26 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     findings : Findings
     file : str
         The name of the result.
+    answered : sequence of Quantity, optional
+        What is promised of its elements.
 
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
+        None where `why_no_rows` has a reason.
     """
-    if has_weights(findings.ds):
+    if why_no_rows(findings):
         return None
-    analysis = analysis_of(findings.ds)
-    outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
-    whole = findings.rows
-    if not whole.sizes["sample"] or not any(elements_of(whole, outputs)):
-        return None
+    analysis, whole, outputs = analysis_of(findings.ds), findings.rows, _outputs(findings)
     inputs = independent_inputs(whole)
     rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
     elements = list(population(rows, outputs))
     columns = [_input(rows, name) for name in inputs]
-    columns += [_output(rows, one, analysis) for one in elements]
+    promises = {one.name: one.promise for one in answered if one.promise is not None}
+    columns += [
+        _output(rows, one, analysis) | {"promised": list(promised(promises.get(one.name)))}
+        for one in elements
+    ]
     drawn = _drawn(elements, analysis)
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
     design = _design(rows)
@@ -101,6 +106,25 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
         "tolerances": laws,
         **design,
     }
+
+
+def why_no_rows(findings: Findings) -> str:
+    """Return why a page cannot compute with the rows of a result; "" where it can."""
+    if has_weights(findings.ds):
+        return "Inspections have weighted the rows, and a page computes with rows that count alike."
+    if not findings.rows.sizes["sample"]:
+        return f"No row of design '{findings.ds.attrs['design']}' follows the laws of the inputs."
+    if any(elements_of(findings.rows, _outputs(findings))):
+        return ""
+    if any(elements_of(findings.rows, shown_outputs(findings.ds, analysis_of(findings.ds)))):
+        return "No row has a value of any output."
+    return "The outputs are categories; there is no number to draw."
+
+
+def _outputs(findings: Findings) -> list[str]:
+    """Return the outputs that a page shows and some row has."""
+    shown = shown_outputs(findings.ds, analysis_of(findings.ds))
+    return [one for one in shown if one not in findings.absent]
 
 
 def part_of(rows: xr.Dataset, columns: int) -> xr.Dataset:

@@ -10,7 +10,7 @@ from uq.analysis.sampled_inputs import PROBABILITIES, compare, laws_and_values, 
 from uq.conclusions.sources import mark
 from uq.conclusions.words import unit_for
 from uq.contract import Floats
-from uq.drawing.words import unbroken
+from uq.drawing.words import meaning_of, symbol_of, unbroken
 from uq.greek import readable, symbol
 from uq.inputs.law import Law
 from uq.keys import key_of
@@ -105,8 +105,9 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
 
 
 def _name(ds: xr.Dataset, name: str) -> Cell:
-    attrs = ds[name].attrs
-    return Cell(name, f"{symbol(attrs['symbol'])}: {readable(attrs['long_name'])}")
+    words = readable(meaning_of(ds[name]))
+    written = symbol(symbol_of(ds[name]))
+    return Cell(name, f"{written}: {words}" if written else words)
 
 
 def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:

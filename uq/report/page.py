@@ -14,12 +14,13 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
-from uq.report.embedded import rows_inside
+from uq.report.embedded import rows_inside, why_no_rows
 from uq.report.fleets import fleet_notes, fleet_table
 from uq.report.groups import groups
 from uq.report.headlines import headline
 from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
+from uq.report.inspected import inspections_csv
 from uq.report.layout import laid_out
 from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_tables, status_table
@@ -110,9 +111,11 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "fleets": fleet_table(findings),
         "fleet_notes": fleet_notes(findings),
         "methods": methods,
-        "rows_inside": rows_inside(findings, file),
+        "rows_inside": rows_inside(findings, file, answer.quantities),
+        "why_no_rows": why_no_rows(findings),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
         "result_file": file_of(ds),
+        "inspections": inspections_csv(ds),
         "model_option": model_option(ds),
         "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
         "references": references(ds),

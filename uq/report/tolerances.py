@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from uq.conclusions.promises import Promise
 from uq.conclusions.words import called
 from uq.designs.registry import DESIGNS
 from uq.drawing.words import with_symbol
@@ -17,6 +18,7 @@ from uq.literals import plain
 from uq.population.densities import correlations
 from uq.population.row_inputs import Inputs, inputs_of
 from uq.population.scaling import given_others, scalers
+from uq.printed import printed
 from uq.rows.element import Element
 
 KNOWN = (
@@ -68,6 +70,22 @@ def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] 
         "lives": {name: _scales(one, inputs) for name, one in integrated.items()},
         "refused": refused,
     }
+
+
+def promised(promise: Promise | None) -> Iterator[dict[str, Any]]:
+    """Yield bounds that are promised, and that a quantile of weighted rows could replace."""
+    if promise is None:
+        return
+    for p in (round(1 - promise.coverage, 12), promise.coverage):
+        if (one := promise.of_quantile(p)) is not None:
+            upper = isfinite(one.upper)
+            yield {
+                "probability": p,
+                "upper": upper,
+                "bound": one.upper if upper else one.lower,
+                "opening": plain(printed(one.opening())),
+                "then": plain(printed(one.opening("would then"))),
+            }
 
 
 def _kind(law: Law) -> str:

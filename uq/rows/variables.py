@@ -38,6 +38,7 @@ def parameter_variable(
     }
     if uncertain:
         attrs["admissible"] = np.array(declared.bounds)
+    attrs |= {"initial": 1} if declared.initial else {}
     attrs |= {"level": level} if level else {}
     return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
 

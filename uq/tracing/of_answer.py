@@ -14,7 +14,8 @@ from uq.analysis.joint_bounds import SIDES
 from uq.analysis.statistics.counts import never_ending
 from uq.analysis.summary import status_counts, summarise
 from uq.analysis.switching import switching
-from uq.conclusions.answer import conclude, regimes_of
+from uq.analysis.what_if import what_if
+from uq.conclusions.answer import conclude, regimes_of, without_advice
 from uq.conclusions.as_json import answer_json
 from uq.conclusions.limits import limit_of
 from uq.conclusions.quantities import LOW, quantities, with_bounds
@@ -46,7 +47,8 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
         return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
     if part in ("rows", "failed"):
         return answer_json(Answer("", ds.sizes["sample"], int(failed(ds).sum()), (), (), ()))
-    return answer_json(conclude(findings, weighed=False))
+    whole = conclude if part in ("", "advice") else without_advice
+    return answer_json(whole(findings))
 
 
 def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
@@ -61,7 +63,7 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
             return Origin((cited(compared),), ds)
         return Origin((cited(found_again), cited(share_interval)), ds)
     if part == "advice":
-        return Origin((cited(unsettled),), ds)
+        return Origin((cited(what_if if "tolerances" in names else unsettled),), ds)
     if "ranking" in names:
         ranking = value_at(said, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])

@@ -125,7 +125,7 @@ def summary(
     if not json:
         tables.show_summary(ds, found)
         return
-    answer = {"answer": answer_json(conclude(findings, weighed=False))} if answered else {}
+    answer = {"answer": answer_json(conclude(findings))} if answered else {}
     between = boundary_json(findings.boundary) if answered else {}
     print_json(summary_json(found) | between | answer)
 

@@ -1,6 +1,6 @@
 // Where the points of a column lie: on an axis, or on a margin for each state without a value.
 
-const LEFT = 62, BOTTOM = 26, EDGE = 8, STRIP = 20, TICK = 4, LETTER = 7; // pixels
+const LEFT = 62, BOTTOM = 26, EDGE = 8, STRIP = 20, TICK = 4, LETTER = 7, MARGIN = 6; // pixels
 const MARGINS = [[NEVER, "never"], [CENSORED, "censored"]]; // beyond the upper end of an axis
 
 // From one pixel to another.
@@ -19,7 +19,7 @@ class Axis {
       to -= sign * STRIP;
       this.strips.set(name, to);
     }
-    [this.from, this.to, this.sign] = [from, to, sign];
+    [this.from, this.to, this.sign] = [from + sign * MARGIN, to - sign * MARGIN, sign]; // whole points at the ends
   }
 
   pixel(value) {

@@ -95,7 +95,7 @@ class Scatter {
   // Rows that are not chosen lie behind, faint; chosen ones have the colour of their regime.
   drawPoints(pen, faint, accent) {
     const {mask} = this.selection, {regime, count} = this.rows;
-    const size = count > 4000 ? 2 : count > 800 ? 3 : 4;
+    const size = count > 4000 ? 2 : count > 800 ? 3 : count > 60 ? 4 : 7;
     const points = (colour, alpha, shown) => {
       pen.fillStyle = colour;
       pen.globalAlpha = alpha;

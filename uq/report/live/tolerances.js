@@ -9,7 +9,7 @@ function tolerancesOf(rows) {
   let shown = outputs.find(one => one === rows.columns[rows.first[1]]) ?? outputs[0];
   const before = events.map(event => reweighting.probability(event)), curves = new Map();
   const said = make("p", {class: "said", role: "status"}), table = make("table", {class: "found"});
-  const picture = make("figure"), done = make("span", {role: "status"}), command = make("code", {});
+  const promised = promisedOf(), picture = make("figure"), done = make("span", {role: "status"}), command = make("code", {});
   const copy = make("button", {type: "button", "on:click": () => copied(command.textContent, done)}, "Copy");
   const reset = make("button", {type: "button", "on:click": () => sliders.forEach(one => one.reset())}, "As studied");
   const show = eventually(update), later = laterOf();
@@ -34,7 +34,8 @@ function tolerancesOf(rows) {
     if (!curves.has(shown)) curves.set(shown, asStudied().curve);
     const now = changed && !problem ? new WeightedCurve(reweighting, shown) : null, curve = now?.curve;
     drawCurves(curve);
-    later(withBand(now, curve));
+    promised.element.replaceChildren();
+    later(afterwards(now, curve, changed && !problem));
   }
 
   function say(changed, problem) {
@@ -62,6 +63,11 @@ function tolerancesOf(rows) {
       curve ? `${title}: these laws (bold${intervals}) and as studied (thin).` : `${title}${intervals}.`));
   }
 
+  function* afterwards(now, curve, isChanged) {
+    yield* promised.fill(shown, reweighting, isChanged);
+    yield* withBand(now, curve);
+  }
+
   // All rows take some time: for intervals, and for what was only sketched.
   function* withBand(now, curve) {
     let band;
@@ -79,7 +85,7 @@ function tolerancesOf(rows) {
   const element = make("div", {class: "explorer"},
     make("div", {}, ...sliders.map(one => one.element), reset,
       ...(notes.length ? [make("p", {class: "note"}, `Not here: ${notes.join(" ")}`)] : [])),
-    make("div", {}, chooser, said, make("div", {class: "wide"}, table), picture,
+    make("div", {}, chooser, said, make("div", {class: "wide"}, table), promised.element, picture,
       make("p", {class: "command"}, command, " ", copy, " ", done)));
   return {element, update};
 }

@@ -15,19 +15,33 @@ class Weighed {
     this.refusal = this.weights ? refusal(tailShape(this.ofSamples), this.ofSamples.length) : "";
   }
 
-  // The mean of the numbers of all rows.
-  share(all) {
-    const {places, worth, sum} = this, numbers = Float64Array.from(places, row => all[row]);
-    if (!(sum > 0)) return {share: NaN, low: NaN, high: NaN};
-    if (this.refusal) return {share: NaN, low: NaN, high: NaN, more: this.refusal};
-    let mean = 0;
-    for (let i = 0; i < worth.length; i++) mean += numbers[i] * worth[i];
-    mean = Math.min(1, Math.max(0, mean / sum));
-    if (numbers.every(one => one >= 1 - ROUNDING)) mean = 1; // the complement has no digits
-    return {share: mean, low: NaN, high: NaN, ...this.ends(numbers, mean)};
+  // Of numbers of all rows, those that take part.
+  of(all) {
+    return Float64Array.from(this.places, row => all[row]);
   }
 
-  ends(numbers, mean) {
+  mean(all) {
+    const {places, worth, sum} = this;
+    let mean = 0;
+    for (let i = 0; i < worth.length; i++) mean += all[places[i]] * worth[i];
+    return Math.min(1, Math.max(0, mean / sum));
+  }
+
+  // The mean of the numbers of all rows; `hits` are those that its interval must allow for.
+  share(all, hits) {
+    const numbers = this.of(all);
+    if (!(this.sum > 0)) return {share: NaN, low: NaN, high: NaN};
+    if (this.refusal) return {share: NaN, low: NaN, high: NaN, more: this.refusal};
+    const mean = numbers.every(one => one >= 1 - ROUNDING) ? 1 : this.mean(all); // the complement has no digits
+    return {share: mean, low: NaN, high: NaN, ...this.ends(numbers, mean, hits ?? this.hits(numbers))};
+  }
+
+  // Of how many rows the interval is no narrower than that of hits, for the mean and its complement.
+  hits(numbers) {
+    return [numbers, numbers.map(one => 1 - one)].map(side => this.hitsBehind(side)).filter(({extent}) => extent > 0);
+  }
+
+  ends(numbers, mean, behind) {
     if (!this.rows.independent && !this.part) return {};
     const found = this.pulls(numbers, mean), parts = found.length;
     if (parts < 2) return {};
@@ -52,8 +66,7 @@ class Weighed {
       low = Math.max(1 / (1 + Math.exp(half - logit)) + Math.min(outlier, 0), 0);
       high = Math.min(1 / (1 + Math.exp(-half - logit)) + Math.max(outlier, 0), 1);
     }
-    const hits = [numbers, other].map(side => this.hitsBehind(side)).filter(({extent}) => extent > 0).map(
-      ({rows, extent}) => [exact(mean, rows), extent]);
+    const hits = behind.map(({rows, extent}) => [exact(mean, rows), extent]);
     return {
       low: Math.min(low, ...hits.map(([[end], extent]) => low + extent * Math.min(0, end - low))),
       high: Math.max(high, ...hits.map(([[, end], extent]) => high + extent * Math.max(0, end - high))),

@@ -1,0 +1,129 @@
+"""The index of each input, and what tells it from the others."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import isfinite, nan
+
+import numpy as np
+import xarray as xr
+
+from uq.designs.layouts import PLAIN
+from uq.designs.registry import DESIGNS
+from uq.estimate import Estimate
+from uq.indices.chosen import chosen
+from uq.indices.independent_inputs import why_dependent
+from uq.indices.samples import sample_of
+from uq.indices.sensitivities import TargetIndices, methods
+from uq.intervals import scatter_interval
+from uq.methods.given_data import MIN_ROWS
+from uq.methods.indices import IndexKind, Null, RefusedError
+from uq.methods.method import Method
+from uq.methods.registry import METHODS, fed_by
+from uq.rows.elements import has_independent_samples
+from uq.rows.nesting import one_of_each_sample
+from uq.rows.weights import has_weights
+
+_PARTS = 8
+_FEWEST_PARTS = 4
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The index of one input.
+
+    Attributes
+    ----------
+    name : str
+    index : Estimate
+        With an interval where one is known.
+    half : float
+        Half the width of its interval, or what tells it from another.
+    counts : bool
+        Whether it is larger than those of inputs without effect.
+    """
+
+    name: str
+    index: Estimate
+    half: float
+    counts: bool
+
+
+def method_for(ds: xr.Dataset, event: bool) -> str | None:
+    """Return the method that ranks: the first that the study asks for, or that its design feeds.
+
+    Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
+    probability of a rare one. None for rows with weights.
+    """
+    if has_weights(ds):
+        return None
+    fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
+    found = [name for name in (*methods(ds), *fed) if name in fed]
+    known = [name for name in found if not METHODS[name].conditional]
+    if not event:
+        return next((name for name in known if METHODS[name].takes_numbers), None)
+    of_events = [name for name in known if METHODS[name].takes_events]
+    return min(of_events, key=lambda name: not _has_scale(METHODS[name]), default=None)
+
+
+def _has_scale(method: Method) -> bool:
+    return method.of_variance or not method.takes_numbers
+
+
+def measured_inputs(
+    ds: xr.Dataset, method: str, name: str, kind: IndexKind, found: TargetIndices
+) -> Iterator[Measured]:
+    """Yield the indices of one kind, the largest first, of inputs with an effect of their own."""
+    every, borrowed = found.kinds()[kind], found.indices.by_correlation
+    values = {label: one for label, one in every.items() if label not in borrowed} or every
+    null = found.indices.nulls.get(kind, Null(nan))
+    limit = null.largest if isfinite(null.largest) else null.one
+    parts = {} if any(one.has_interval for one in values.values()) else _parts(ds, method, name)
+    scatter = parts.get(kind.key, {})
+    known = sorted(values, key=lambda label: -_size(values[label]))
+    # Where no other input has an effect in any row, it is certain without an interval.
+    alone = kind.unit == "variance" and all(values[label].value == 0 for label in known[1:])
+    for label in known:
+        one = values[label]
+        if not isfinite(one.value):
+            continue
+        half = (one.high - one.low) / 2 if one.has_interval else null.one
+        if label in scatter:
+            low, high = scatter_interval(one.value, np.array(scatter[label]))
+            half = (high - low) / 2
+            # Estimates from fewer rows may be biased, which only shares of the variance are not.
+            one = Estimate(one.value, low, high) if kind.unit == "variance" else one
+        counts = one.value > limit if isfinite(limit) else one.low > 0
+        counts |= alone and one.value > 0 and not one.has_interval
+        yield Measured(label, one, half, bool(counts and not one.low <= 0))
+
+
+def _size(one: Estimate) -> float:
+    return one.value if isfinite(one.value) else -1.0
+
+
+def _parts(ds: xr.Dataset, method: str, name: str) -> dict[str, dict[str, list[float]]]:
+    """Return the indices from independent parts of the rows: kind -> input -> one of each part."""
+    if DESIGNS[ds.attrs["design"]].layout is not PLAIN:
+        return {}
+    ds = one_of_each_sample(ds)
+    (target,) = chosen(ds, method, [name])
+    sample = replace(sample_of(ds), values=target.values)
+    rows = np.flatnonzero(sample.whole)
+    if (most := METHODS[method].most_rows) and len(rows) > most:
+        rows = np.sort(np.random.default_rng(0).choice(rows, most, replace=False))
+    if has_independent_samples(ds):
+        part = np.arange(len(rows)) % max(min(_PARTS, len(rows) // MIN_ROWS), 1)
+    else:
+        part = ds["replicate"].values[rows]
+    found: dict[str, dict[str, list[float]]] = {}
+    if len(np.unique(part)) < _FEWEST_PARTS:
+        return found
+    for one in np.unique(part):
+        try:
+            indices = METHODS[method].indices(sample.rows(rows[part == one]))
+        except RefusedError:
+            return {}
+        for kind, values in indices.values.items():
+            for label, index in values.items():
+                found.setdefault(kind.key, {}).setdefault(label, []).append(index.value)
+    return found

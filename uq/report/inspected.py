@@ -1,0 +1,20 @@
+"""The inspections from which a result was learnt, as a file to write them into."""
+
+import csv
+import io
+import json
+
+import xarray as xr
+
+
+def inspections_csv(ds: xr.Dataset) -> str:
+    """Return the inspections inside a result as `uq update` reads them; "" where there are none."""
+    inspections = json.loads(ds.attrs.get("inspections", "[]"))
+    if not inspections:
+        return ""
+    text = io.StringIO()
+    columns = dict.fromkeys(name for one in inspections for name in one)
+    lines = csv.DictWriter(text, list(columns), lineterminator="\n")
+    lines.writeheader()
+    lines.writerows(inspections)
+    return text.getvalue()
