@@ -129,15 +129,6 @@ def test_what_does_not_resemble_one_has_intervals_as_without():
         assert (widths(ours) < 1.2 * widths(alone))[[0, 2]].all()
 
 
-def test_a_path_that_decides_the_regression_alone_leaves_the_shares_to_the_paths():
-    ds, case = of_case("mild lognormal", 512, seed=116)
-    found = entry_of(ds)["shapley"]
-    assert found == {
-        name: {"value": one.value, "low": one.low, "high": one.high}
-        for name, one in dependent.of_paths_alone(ds, case.output).items()
-    }
-
-
 def test_elements_of_an_output_add_up():
     # Of x1 + x2 + 2 x3, and of x3 alone, whose correlated inputs are x2 and x3.
     r = 0.6

@@ -50,7 +50,7 @@ def shapley_indices(sample: Sample) -> Indices:
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
     path is (y - end)^2/2. A polynomial of known effects serves as control variate
     (`uq.methods.controlled`); a path's error is that from the regression on all others, "HC3" of
-    [4]_. Where that leaves the variance unknown, the paths alone serve.
+    [4]_.
 
     References
     ----------
@@ -75,13 +75,7 @@ def shapley_indices(sample: Sample) -> Indices:
     plain = parts_of(sample, y)
     seen = _linearised(plain)
     parts = controlled(sample, plain)
-    if not _knows_variance(*parts, sample.confidence):
-        parts = plain, np.zeros_like(plain)  # a single path may decide the regression
-        if not _knows_variance(*parts, sample.confidence):
-            raise RefusedError(
-                f"{len(plain)} paths do not tell the variance from zero, and shares of it are not"
-                " known: more samples are needed"
-            )
+    _refuse_unknown_variance(*parts, sample.confidence)
     shares, errors = _linearised(*parts)
     names, single = list(sample.inputs), np.eye(plain.shape[1])
     contrasts = dict(zip(names, single, strict=True))
@@ -118,8 +112,11 @@ def _linearised(parts: Floats, leverage: Floats | float = 0.0) -> tuple[Floats, 
     return shares, (scatter - shares * scatter.sum(axis=1, keepdims=True)) / mean.sum()
 
 
-def _knows_variance(parts: Floats, leverage: Floats, confidence: float) -> bool:
-    """Whether the paths tell the variance from zero."""
+def _refuse_unknown_variance(parts: Floats, leverage: Floats, confidence: float) -> None:
     mean = parts.mean(axis=0)
     variance, errors = float(mean.sum()), ((parts - mean) / (1 - leverage)).sum(axis=1)
-    return variance > 0 and scatter_interval(variance, errors, confidence)[0] > 0
+    if variance <= 0 or scatter_interval(variance, errors, confidence)[0] <= 0:
+        raise RefusedError(
+            f"{len(parts)} paths do not tell the variance from zero, and shares of it are not"
+            " known: more samples are needed"
+        )
