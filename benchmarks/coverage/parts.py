@@ -80,7 +80,7 @@ PARTS = {
     "shapley-waves-neighbours": Part(partial(neighbours.neighbours, cases=dependent.WAVES), 1000),
     "noise": Part(noise.noise),
     **{f"nested-{name}": Part(partial(nested.statistics, name), 1000) for name in nested.SIZES},
-    **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
+    **{f"levels-{name}": Part(partial(nested.effects, name)) for name in nested.EFFECTS},
     "levels-integrated": Part(nested.integrated),
     "levels-weighted": Part(nested.weighted),
     "morris": Part(indices.morris),

@@ -114,8 +114,8 @@ def test_paths_have_no_effects_within_a_regime():
 def test_intervals_of_dependent_effects_hold_the_truth_in_93_to_97_of_100_cases():
     names = ["exponential, correlation 0.6", "mild lognormal", "two signs and a number"]
     lines = dependent.shapley(1000, {name: dependent.CASES[name] for name in names})
-    assert len(lines) == 2 * (4 + 4 + 3)
-    assert all(line.given == 1000 for line in lines)
+    assert len(lines) == 3 * (4 + 4) + 2 * 3
+    assert all(line.given >= 995 for line in lines)  # five decided by one path are refused
     assert not [line for line in lines if line.by == OURS and line.coverage[0] < LOW]
     assert not [line for line in lines if line.unexplained]
 

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from typing import Any
 
 from uq.cli.printing import console, grid, heading, number, paragraph
-from uq.contract import Model, Setting
+from uq.contract import Model, Parameter, Setting
 from uq.errors import InputError
 from uq.greek import readable
 from uq.study.registry import find_model, model_names
@@ -32,7 +32,7 @@ def as_json(model: Model) -> dict[str, Any]:
         "version": model.version,
         "title": model.title,
         "parameters": {
-            name: {"nominal": nominal} | asdict(model.parameter(name))
+            name: {"nominal": nominal} | _declared(model.parameter(name))
             for name, nominal in model.nominal.items()
         },
         "settings": {
@@ -43,6 +43,12 @@ def as_json(model: Model) -> dict[str, Any]:
         "coordinates": {dim: list(values) for dim, values in model.coordinates(defaults).items()},
         "references": list(model.references),
     }
+
+
+def _declared(parameter: Parameter) -> dict[str, Any]:
+    """Return what a parameter declares; that it belongs to the initial condition only where so."""
+    declared = asdict(parameter)
+    return {name: value for name, value in declared.items() if name != "initial" or value}
 
 
 def show_list(listed: list[dict[str, str]]) -> None:
