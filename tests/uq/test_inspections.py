@@ -153,6 +153,11 @@ def test_tables_of_a_toml_file():
     with pytest.raises(InputError) as refused:
         ledger.read("found.toml")
     assert refused.value.lines[0] == "found.toml, inspection at line 1: output is missing"
+    FILE.with_suffix(".toml").write_text(
+        '[[inspection]]\nunit = ""\noutput = "life"\nkind = "survived"\ntime = 1\n'
+    )
+    with pytest.raises(InputError, match="^found.toml, inspection at line 1: unit is missing$"):
+        ledger.read("found.toml")
     FILE.with_suffix(".toml").write_text('inspection = [{unit = "A", output = "life"}]')
     with pytest.raises(InputError, match="^found.toml: inspection 1: kind is missing"):
         ledger.read("found.toml")

@@ -201,7 +201,7 @@ def _no_column(name: str) -> str:
 
 def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list[str]]:
     """Return an inspection, or what is wrong with its cells."""
-    faults = [f"{name} is missing" for name in _REQUIRED if name not in cells]
+    faults = [f"{name} is missing" for name in _REQUIRED if not cells.get(name, "").strip()]
     if not cells.get("unit", "").isprintable():
         faults.append(f"unit = {cells['unit']!r}: must consist of printable characters")
     numbers: dict[str, float] = {}
@@ -212,7 +212,7 @@ def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list
             except (ValueError, OverflowError):
                 since = ", in the unit of the life, since that began" if name == "time" else ""
                 faults.append(f"{name} = {cells[name]}: must be a finite number{since}")
-    if "kind" in cells and cells["kind"] not in list(Kind):
+    if cells.get("kind") and cells["kind"] not in list(Kind):
         allowed = f"(allowed: {', '.join(Kind)})"
         like = nearest(cells["kind"], list(Kind))
         faults.append(f"kind = {cells['kind']}: no such kind{like} {allowed}")

@@ -11,8 +11,8 @@ from uq.population.smoothing import DOUBTFUL, refusal, rows_to_carry_little
 from uq.wording import percent
 
 HOPELESS = (
-    "the rows hardly visit what the inspections leave, and no moderate number of rows helps; the"
-    " laws, the model (--model-error) or an inspection may be wrong"
+    "the rows hardly visit what the inspections leave, and it takes many times the rows; where"
+    " these do not help either, the laws, the model (--model-error) or an inspection may be wrong"
 )
 
 _MODERATE = 100.0
