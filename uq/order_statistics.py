@@ -56,8 +56,11 @@ def quantile(values: Floats, probability: float) -> float:
     """
     if not is_within(probability, len(values)):
         return np.nan
+    huge = np.finfo(float).max / 4
+    if -huge < values.min() and values.max() < huge:
+        return float(np.quantile(values, probability, method="median_unbiased"))
     # Infinity times zero is NaN: numpy interpolates towards a huge number instead.
-    huge, finite = np.finfo(float).max / 4, values[np.isfinite(values)]
+    finite = values[np.isfinite(values)]
     found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
     if found > finite.max(initial=-huge):
         return np.inf

@@ -39,7 +39,11 @@ from uq.places import refuse_standard_output
 FIGURES: dict[str, Entry] = {
     "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,), needs=("summary",)),
     "histogram": Entry(
-        histogram, of.outputs, applies=(of.is_no_lifetime,), in_report=(of.in_one_regime,)
+        histogram,
+        of.outputs,
+        applies=(of.is_no_lifetime,),
+        in_report=(of.in_one_regime,),
+        needs=("summary",),
     ),
     "regimes": Entry(histogram_by_regime, of.outputs, "{name} by regime", applies=(of.in_regimes,)),
     "quantiles": Entry(

@@ -5,6 +5,7 @@ import pytest
 from computed import asking, kinds, linear, with_output
 from drawn import collisions
 
+import uq
 from models import beam, mole, vibrator
 from uq.analysis.findings import Findings
 from uq.drawing.catalogue import drawables
@@ -74,3 +75,22 @@ def test_thresholds_are_drawn_wherever_the_output_is():
         assert "threshold ±12°" in labels
     lines = [line.get_xdata()[0] for line in shown["histogram-psi"].axes[0].lines]
     assert lines == pytest.approx([-12, 12])
+
+
+@pytest.mark.parametrize(
+    ("wanted", "sides"), [({"y": "above"}, ["lower"]), ({}, ["lower", "upper"])]
+)
+def test_a_histogram_draws_the_tolerance_bounds_on_the_sides_that_matter(wanted, sides):
+    asked = {"tolerance": {"coverage": 0.9, "confidence": 0.9}, "wanted": wanted}
+    ds = asking(linear(samples=100), outputs=["y"], **asked)
+    figure = dict(figures(ds))["histogram-y"]
+    found = uq.summary(ds).T["y"]
+    drawn = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_linestyle() == ":"]
+    assert drawn == [found[f"tolerance_{side}"] for side in sides]
+    assert "dotted: tolerance bound" in figure.axes[0].get_title(loc="left")
+
+
+def test_bounds_of_the_sign_of_an_angle_are_not_drawn():
+    ds = with_output(linear(samples=100), "psi", np.radians(np.linspace(-20, 20, 100)), "angle")
+    ds = asking(ds, outputs=["psi"], tolerance={"coverage": 0.9, "confidence": 0.9})
+    assert not dict(figures(ds))["histogram-psi"].axes[0].lines

@@ -1,5 +1,7 @@
 """Given-data methods against closed forms, brute force and OpenTURNS, a second implementation."""
 
+from dataclasses import replace
+
 import numpy as np
 import openturns as ot
 import pytest
@@ -261,3 +263,20 @@ def test_sobol_indices_are_those_of_openturns(model):
     assert values(entry, "ST") == pytest.approx(list(second.getTotalOrderIndices()), abs=0.02)
     saltelli = ot.SaltelliSensitivityAlgorithm(ot.Sample(x), ot.Sample(y[:, None]), 1024)
     assert values(entry, "S1") == pytest.approx(list(saltelli.getFirstOrderIndices()), abs=0.03)
+
+
+@pytest.mark.parametrize("method", ["rbd-fast", "delta", "pawn", "quantile", "regional"])
+def test_inputs_without_effect_are_estimated_only_where_they_are_wanted(method):
+    rng = np.random.default_rng(5)
+    x, listed = rng.random(200), rng.integers(0, 3, 200).astype(float)
+    values = x + listed if METHODS[method].takes_numbers else (x > 0.5).astype(float)
+    quantiles = {"q0.5": 0.5} if method == "quantile" else {}
+    sample = Sample.plain(values, {"x": x, "listed": listed}, quantiles=quantiles)
+    compared = METHODS[method].indices(sample)
+    alone = METHODS[method].indices(replace(sample, nulls=False))
+    assert compared.nulls
+    corrected = method == "quantile"  # by the inputs without effect themselves
+    assert bool(alone.nulls) == corrected
+    for kind, found in compared.values.items():
+        for name, one in found.items():
+            assert alone.values[kind][name].value == pytest.approx(one.value, nan_ok=True, abs=0)

@@ -65,7 +65,8 @@ class Findings:
         samples, rows = self.ds.attrs["samples"], self.ds.sizes["sample"]
         if rows <= RANKED or DESIGNS[self.ds.attrs["design"]].layout is not PLAIN:
             return self
-        return Findings(first_samples(self.ds, max(RANKED * samples // rows, 1)))
+        # Loaded: they are few, and read once for each target.
+        return Findings(first_samples(self.ds, max(RANKED * samples // rows, 1)).load())
 
     @cached_property
     def absent(self) -> frozenset[str]:

@@ -107,7 +107,7 @@ def _parts(ds: xr.Dataset, method: str, name: str) -> dict[str, dict[str, list[f
         return {}
     ds = one_of_each_sample(ds)
     (target,) = chosen(ds, method, [name])
-    sample = replace(sample_of(ds), values=target.values)
+    sample = replace(sample_of(ds), values=target.values, nulls=False)
     rows = np.flatnonzero(sample.whole)
     if (most := METHODS[method].most_rows) and len(rows) > most:
         rows = np.sort(np.random.default_rng(0).choice(rows, most, replace=False))

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
 from uq.analysis.statistics.statistic import Statistic
-from uq.analysis.summary import Summary, summarise
+from uq.analysis.summary import Described, Summary, summarise
 from uq.drawing.elements_plot import (
     bins,
     curve_style,
@@ -27,19 +27,31 @@ from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
 from uq.printed import minus
-from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
+from uq.rows.elements import (
+    Element,
+    analysis_of,
+    independent_rows,
+    named_elements,
+    replicates_of,
+)
 from uq.units import Unit
 from uq.wording import brief
 
 _MOST_PANELS = 4
 _LINE = 0.16  # of the table [inch]
 _COLUMNS = (0.25, 0.55, 1.0)  # right ends
+_BOUND = "dotted: tolerance bound"
 _BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneous band"))
 
 
 @styled
-def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+def histogram(
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+) -> Figure:
     """Draw a histogram of an output.
+
+    Dotted lines are the tolerance bounds that the study asks for, on the side that it wants; an
+    angle has none, as bounds of its sign are not those of its magnitude.
 
     Parameters
     ----------
@@ -47,6 +59,8 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
         A result.
     output : str
         An output other than a lifetime or category, or one element of it.
+    summary : Summary, optional
+        What `uq.analysis.summary.summarise` returns, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -59,8 +73,11 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     together = np.concatenate([element.at_least for element in chosen])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
+    known = (summary or summarise(ds)).outputs
+    marked = False
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
+        marked |= _mark_bounds(panel, ds, element, known.get(element.name), unit, colour)
         style: Any = {"color": colour, "ls": line, "lw": 1.2}
         if len(chosen) == 1:
             style = {"color": ROWS, "fill": True, "lw": 0}
@@ -71,7 +88,7 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     logarithmic(panel) if wide else None
     mark_thresholds(panel, ds, chosen[0], unit)
     None if wide else roomy(panel)
-    entitle(panel, chosen)
+    entitle(panel, chosen, *[_BOUND] * marked)
     return finish(panel)
 
 
@@ -171,12 +188,8 @@ def lifetime(
             if np.isfinite(low).any():
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
-        described = known.get(element.name)
-        side = "upper" if element.declared.success else "lower"
-        bound = described.find("tolerance", side) if described else None
-        if bound is not None and np.isfinite(bound.estimate.value):
-            panel.axvline(bound.estimate.value / unit.size, color=colour, ls=":", lw=1.2)
-            bands["dotted: tolerance bound"] = True
+        if _mark_bounds(panel, ds, element, known.get(element.name), unit, colour):
+            bands[_BOUND] = True
     success = chosen[0].declared.success
     event = typeset(literal(success)) if success else "the life has ended"
     panel.set(ylim=(0, 1.02), ylabel=f"Probability that\n{event}")
@@ -191,6 +204,23 @@ def lifetime(
     other.set_ylabel("Probability of not yet" if success else "Survival probability")
     entitle(panel, chosen, *bands)
     return finish(panel)
+
+
+def _mark_bounds(
+    axes: Axes, ds: xr.Dataset, element: Element, found: Described | None, unit: Unit, colour: str
+) -> bool:
+    """Draw the tolerance bounds of an element, and return whether there are any."""
+    if found is None or element.is_angle:
+        return False
+    wanted = analysis_of(ds).wanted.get(element.output)
+    if element.is_lifetime:
+        wanted = "below" if element.declared.success else "above"
+    sides = {"above": ["lower"], "below": ["upper"], None: ["lower", "upper"]}[wanted]
+    bounds = [one.estimate.value for side in sides if (one := found.find("tolerance", side))]
+    drawn = [one for one in bounds if np.isfinite(one)]
+    for one in drawn:
+        axes.axvline(one / unit.size, color=colour, ls=":", lw=1.2)
+    return bool(drawn)
 
 
 def _mark(axes: Axes, element: Element, replicate: Replicates, unit: Unit, colour: str) -> None:

@@ -37,7 +37,7 @@ def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Me
 
 def beside_nulls(
     measure: Measure,
-    corrected: Callable[[Floats, Floats], Floats] = lambda raw, idle: raw,
+    correction: Callable[[Floats, Floats], Floats] | None = None,
     sorts_rows: bool = False,
 ) -> Callable[[Sample], Indices]:
     """Return the estimate of indices with the null of inputs without effect.
@@ -46,8 +46,8 @@ def beside_nulls(
     ----------
     measure : callable
         See `Measure`; NaN for an input whose rows are all in one slice.
-    corrected : callable, optional
-        ``corrected(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
+    correction : callable, optional
+        ``correction(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
     sorts_rows : bool, optional
         Whether it sorts the rows by each input, and so accepts none with many equal values.
 
@@ -56,11 +56,13 @@ def beside_nulls(
     callable
         ``estimate(sample)`` of a `uq.methods.method.Method`.
     """
+    corrected = correction or (lambda raw, idle: raw)
 
     def estimate(sample: Sample) -> Indices:
         x = sample.inputs
         rng = np.random.default_rng(0)
-        columns = np.column_stack([*x.values(), rng.random((len(sample.values), DUMMIES))])
+        dummies = DUMMIES if sample.nulls or correction else 0
+        columns = np.column_stack([*x.values(), rng.random((len(sample.values), dummies))])
         raw, notes = measure(columns, sample)
         idle = {kind: one[len(x) :] for kind, one in raw.items()}
         found: dict[IndexKind, dict[str, Estimate]] = {kind: {} for kind in raw}
@@ -71,7 +73,7 @@ def beside_nulls(
         for i, (name, column) in enumerate(x.items()):
             own = idle
             sliced = not all(np.isnan(one[i]) for one in raw.values())
-            if name in tied and sliced and not sorts_rows:
+            if name in tied and sliced and not sorts_rows and dummies:
                 shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
                 own, _ = measure(shuffled, sample)
                 reached = {kind: corrected(one, one) for kind, one in own.items()}
@@ -80,7 +82,7 @@ def beside_nulls(
                 value = float(corrected(one[i], own[kind]))
                 lost = name in tied and sorts_rows
                 found[kind][name] = Estimate(np.nan if lost else value)
-        reached = {kind: corrected(one, one) for kind, one in idle.items()}
+        reached = {kind: corrected(one, one) for kind, one in idle.items() if dummies}
         return Indices(found, notes, {kind: _null(one, len(x)) for kind, one in reached.items()})
 
     return estimate

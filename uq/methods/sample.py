@@ -43,6 +43,8 @@ class Sample:
         Name -> probability of each quantile that indices of quantiles are about.
     confidence : float
         Of intervals.
+    nulls : bool
+        Whether indices of inputs without effect are wanted for comparison.
     difference : tuple of str, optional
         Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
     """
@@ -58,6 +60,7 @@ class Sample:
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
     confidence: float = CONFIDENCE
+    nulls: bool = True
     difference: tuple[str, str] | None = None
 
     @classmethod

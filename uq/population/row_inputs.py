@@ -1,6 +1,6 @@
 """The uncertain inputs of some rows: their values, and the laws that these follow."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -77,5 +77,25 @@ def inputs_of(rows: xr.Dataset, study: StudyFile | None = None, text: str = "") 
     for name in laws:
         ends = [admissible[one] for one in (name, *(a for a, b in tied.items() if b == name))]
         bounds[name] = (max(low for low, _ in ends), min(high for _, high in ends))
-    values = {name: rows[name].values for name in study.uncertain}
-    return Inputs(laws, tied, study.dependence, bounds, values)
+    return Inputs(laws, tied, study.dependence, bounds, _Columns(rows, study.uncertain))
+
+
+class _Columns(Mapping[str, Floats]):
+    """Columns of a result, each read when it is first needed."""
+
+    def __init__(self, rows: xr.Dataset, names: Iterable[str]):
+        self._rows, self._names = rows, tuple(names)
+        self._read: dict[str, Floats] = {}
+
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._read:
+            self._read[name] = self._rows[name].values
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)

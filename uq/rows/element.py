@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf
 from typing import Any, Protocol
 
@@ -101,7 +102,7 @@ class Element:
         """Where a life is known never to end."""
         return np.isposinf(self.values) & ~self.censored
 
-    @property
+    @cached_property
     def present(self) -> Mask:
         """Where there is a value."""
         return ~np.isnan(self.values)
@@ -135,7 +136,7 @@ class Element:
         with np.errstate(invalid="ignore"):
             return ((values > threshold) | (self.censored & (values == threshold))).astype(float)
 
-    @property
+    @cached_property
     def at_least(self) -> Floats:
         """The values, shape (present,), with censored ones at their lower bound."""
         return self.values[self.present]
