@@ -217,9 +217,9 @@ def _mark_bounds(
         wanted = "below" if element.declared.success else "above"
     sides = {"above": ["lower"], "below": ["upper"], None: ["lower", "upper"]}[wanted]
     bounds = [one.estimate.value for side in sides if (one := found.find("tolerance", side))]
-    drawn = [one for one in bounds if np.isfinite(one)]
-    for one in drawn:
-        axes.axvline(one / unit.size, color=colour, ls=":", lw=1.2)
+    drawn = [bound for bound in bounds if np.isfinite(bound)]
+    for bound in drawn:
+        axes.axvline(bound / unit.size, color=colour, ls=":", lw=1.2)
     return bool(drawn)
 
 
