@@ -105,3 +105,17 @@ def test_one_part_that_alone_is_rare_settles_nothing():
     common, rare = Estimate(0.5, 0.4, 0.6), Estimate(0.01, 0.0, 0.04)
     curve = EventCurve(np.array([0.0, 1.0, 2.0]), [common, rare])
     assert limit_of(curve, "power", Unit(), "fail", True).why.endswith("is not settled")
+
+
+def test_a_value_is_a_limit_where_the_event_is_rare_at_it():
+    grade = np.repeat([1.0, 2.0, 3.0], [600, 300, 100])
+    for worst, said in ((3.0, "at most 2.5"), (2.0, "at most 1.5")):
+        hits = (grade >= worst).astype(float)
+        found = limit_of(event_curve(hits, grade), "grade", Unit(), "fail", True)
+        assert found.sentence == f"Fewer than 5 % fail where grade is {said}."
+
+
+def test_without_intervals_no_limit_is_denied():
+    shares = [Estimate(one) for one in (0.3, 0.1, 0.0, 0.0)]
+    found = limit_of(EventCurve(np.arange(5.0), shares), "power", Unit(), "fail", True)
+    assert found.sentence == "Whether a value of power lets fewer than 5 % fail is not settled."

@@ -64,7 +64,7 @@ def test_where_nothing_is_promised_the_share_is_said():
     ds["locking"].attrs["success"] = "the motors have locked"
     lead = answer(asking(ds, outputs=["locking"], thresholds={"locking": 100.0})).lead
     low, high = numbers(
-        r"With another seed, # to # % would succeed within 100 s \(95 %\).*",
+        r"With another seed, # to # % would succeed before 100 s \(95 %\).*",
         lead.repeated.sentence,
     )
     share = lead.first.share

@@ -67,3 +67,22 @@ def test_the_probability_over_an_input_is_the_share_in_each_part():
     assert whole.around(whole.most)[0] == pytest.approx(0.5, abs=0.1) == whole.around(0)[1]
     assert event_curve(hits[:40], x[:40]) is None
     assert event_curve(hits, np.ones(1200)) is None
+
+
+def test_each_of_few_values_is_a_part_of_its_own():
+    x = np.repeat([1.0, 2.0, 3.0, 5.0], [600, 300, 95, 5])
+    hits = np.where(x == 3.0, 1.0, 0.0)
+    curve = event_curve(hits, x)
+    assert curve.edges.tolist() == [1, 1.5, 2.5, 5]  # few rows of a value go with the next
+    assert [one.value for one in curve.shares] == [0, 0, 0.95] and not curve.of_values
+    assert event_curve(hits[:995], x[:995]).of_values
+
+
+def test_parts_of_whole_numbers_end_between_them():
+    x = np.random.default_rng(0).integers(0, 50, 3000).astype(float)
+    curve = event_curve((x >= 20).astype(float), x)
+    inner = curve.edges[1:-1]
+    assert (inner % 1 == 0.5).all() and len(curve.shares) >= 9 and not curve.of_values
+    for low, high, one in zip(curve.edges, curve.edges[1:], curve.shares, strict=False):
+        inside = (x > low) & (x < high) | (x == low) & (low == 0)
+        assert one.value == pytest.approx((x[inside] >= 20).mean(), abs=0.1)

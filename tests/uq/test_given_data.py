@@ -124,7 +124,6 @@ def test_the_method_that_a_refusal_names_accepts_what_was_refused():
     level = rng.integers(0, 5, 700).astype(float)
     continuous = {name: rng.random(700) for name in ("x1", "x2")}
     for method, inputs, y in (
-        ("rbd-fast", {"x1": level}, level + rng.random(700)),
         ("delta", continuous, level),
         ("hdmr", continuous, level),
     ):

@@ -7,6 +7,7 @@ from computed import asking, linear, with_output
 
 from uq import open_result
 from uq.methods.indices import RefusedError
+from uq.methods.measures import first_order
 from uq.methods.slices import slice_of
 from uq.plots import index_bars
 
@@ -120,17 +121,28 @@ def test_slices_part_no_equal_values_and_hold_all_rows():
     assert sorted(np.bincount(slice_of(rare, cuts))) == [11, 480, 509]
 
 
-def test_rbd_fast_gives_no_index_of_an_input_with_equal_values():
-    binary, x1, y = rows(0.3)
-    found, indices_ = estimated("rbd-fast", y, x1=x1, x2=binary)
-    assert np.isnan(found["x2"])
-    assert found["x1"] == pytest.approx(1 / 12 / y.var(), abs=0.06)
-    assert indices_.notes == (
-        "the method sorts the rows by each input, so it accepts none with many equal values: x2;"
-        " use pawn",
-    )
-    with pytest.raises(RefusedError, match="it accepts none with many equal values: x2"):
-        of_plain_sample("rbd-fast", {"x2": binary}, y, QUANTILES)
+@pytest.mark.parametrize("values", [2, 4])
+def test_the_first_order_index_of_an_input_with_equal_values_is_the_known_one(values):
+    rng = np.random.default_rng(3)
+    for effect in (0.0, 0.3, 3.0):
+        found = []
+        for _ in range(20):
+            x1, x2 = rng.random(N), rng.integers(0, values, N) / (values - 1)
+            y = x1 + effect * (x2 - 0.5) ** 3 + 0.2 * (x2 - 0.5) * (x1 - 0.5)
+            first, indices_ = estimated("rbd-fast", y, x1=x1, x2=x2)
+            found.append([first["x1"], first["x2"]])
+        level = np.arange(values) / (values - 1) - 0.5
+        own = np.array([1 / 12, np.var(effect * level**3), 0.04 / 12 * np.mean(level**2)])
+        assert np.mean(found, axis=0) == pytest.approx(own[:2] / own.sum(), abs=0.006)
+        assert indices_.notes[0].startswith("x2 has many equal values: shuffled 19 times")
+
+
+def test_elements_share_the_first_order_index_of_an_input_with_equal_values():
+    binary, x1, y = rows(0.4)
+    x = np.column_stack([x1, binary])
+    both = first_order(x, np.column_stack([y, 2 * x1]))
+    each = [first_order(x, y)[1], first_order(x, x1)[1]]
+    assert both[1] == pytest.approx(np.average(each, weights=[y.var(), 4 * x1.var()]))
 
 
 def test_an_index_that_is_not_given_stands_as_a_dash_and_in_no_bar(uq, folder):
@@ -143,12 +155,14 @@ method = "monte-carlo"
 samples = 256
 [uncertain]
 x1 = {distribution = "uniform", lower = 0.0, upper = 1.0}
-x2 = {distribution = "discrete-choice", values = [0.0, 1.0]}
+x2 = {distribution = "discrete-choice", values = [0.0, 1.0], weights = [0.99, 0.01]}
 """
     (folder / "mixed.toml").write_text(text)
     assert uq("run", "mixed.toml", "-o", "mixed.nc", "--workers", 0).code == 0
     shown = uq("sensitivity", "mixed.nc")
-    assert shown.code == 0 and "none with many equal values: x2;" in " ".join(shown.out.split())
+    assert shown.code == 0 and "x2 has too few rows of any value but one" in " ".join(
+        shown.out.split()
+    )
     (axes,) = index_bars(open_result("mixed.nc"), "y").axes
     assert sum(bar.get_width() > 0 for bar in axes.patches) == 1
     assert uq("report", "mixed.nc", "-o", "mixed.html").code == 0

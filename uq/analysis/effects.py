@@ -15,6 +15,7 @@ from uq.intervals import (
     is_constant,
     scatter_interval,
 )
+from uq.methods.slices import has_many_equal
 
 ROWS_PER_INPUT = 10
 """With fewer rows for each input there are no effects."""
@@ -43,12 +44,15 @@ class Effect:
         Standard deviation of the input or of its logarithm, in these rows.
     turns : bool
         Whether the effect has one sign in one part of the input and another elsewhere.
+    of_values : bool
+        Whether many rows have equal values of the input, so that it has no small changes.
     """
 
     slope: Estimate
     logarithmic: bool
     sd: float
     turns: bool = False
+    of_values: bool = False
 
     @property
     def direction(self) -> int:
@@ -115,7 +119,9 @@ def effects(
         size = sizes[name]
         of_input = Estimate(slope / size, float(low) / size, float(high) / size)
         turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
-        found[name] = Effect(of_input, logarithmic[name], sizes[name], turns)
+        found[name] = Effect(
+            of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])
+        )
     return found
 
 

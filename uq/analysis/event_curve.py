@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.estimate import Estimate
@@ -19,13 +20,17 @@ class EventCurve(NamedTuple):
     Attributes
     ----------
     edges : ndarray, shape (k + 1,)
-        Ends of parts of the input that hold equally many rows.
+        Ends of parts of the input that hold equally many rows; between values, where values are
+        equal, and of each of few values.
     shares : list of Estimate
         The probability in each part.
+    of_values : bool
+        Whether each part holds one value, so that the probability does not change within it.
     """
 
     edges: Floats
     shares: list[Estimate]
+    of_values: bool = False
 
     @property
     def least(self) -> int:
@@ -79,7 +84,12 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
     parts = min(MOST_PARTS, len(values) // ROWS_PER_PART)
     if parts < 2:
         return None
-    edges = np.unique(np.quantile(values, np.linspace(0, 1, parts + 1)))
+    distinct, counts = np.unique(values, return_counts=True)
+    if len(distinct) == len(values):
+        edges = np.quantile(values, np.linspace(0, 1, parts + 1))
+    else:
+        few = len(distinct) <= MOST_PARTS
+        edges = _between(distinct, counts, ROWS_PER_PART if few else len(values) // parts)
     if len(edges) < 3:
         return None
     place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
@@ -89,4 +99,17 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
         low, high = share_interval(own[inside], replicates_of_some(part, inside))
         value = float(own[inside].mean()) if inside.any() else np.nan
         shares.append(Estimate(value, float(low), float(high)))
-    return EventCurve(edges, shares)
+    return EventCurve(edges, shares, len(shares) == len(distinct))
+
+
+def _between(values: Floats, counts: NDArray[np.intp], least: int) -> Floats:
+    """Return ends of parts between ascending values, each of at least so many rows."""
+    ends = np.cumsum(counts)
+    edges, held = [values[0]], 0
+    while ends[-1] - held >= 2 * least:
+        last = int(np.searchsorted(ends, held + least))
+        held = ends[last]
+        if ends[-1] - held < least:
+            break
+        edges.append((values[last] + values[last + 1]) / 2)
+    return np.array([*edges, values[-1]])

@@ -2,12 +2,13 @@
 
 from math import inf, isfinite, isnan, nan
 
+import numpy as np
 import xarray as xr
 
 from uq.analysis.joint_bounds import SIDES
 from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Described
-from uq.conclusions.promises import Promise
+from uq.conclusions.promises import Known, Promise
 from uq.conclusions.words import Unit
 from uq.estimate import NOTHING, Estimate
 from uq.rows.elements import Element
@@ -84,7 +85,25 @@ def promise_of(
         element.is_angle and not joint,
         end_of(element),
         tuple(analysis.joint_bounds) if joint else (),
+        known_of(element),
+        _recurs(element),
     )
+
+
+def known_of(element: Element) -> Known:
+    """Return which values numbers are about: those of sound rows that are defined."""
+    sound = ~element.failed
+    share = float(element.undefined[sound].mean()) if sound.any() else 0.0
+    return Known(bool(element.failed.any()), share)
+
+
+def _recurs(element: Element) -> bool:
+    """Return whether rows have equal values."""
+    if element.law is not None:
+        return False
+    values = element.for_thresholds[element.present & ~element.censored]
+    values = values[np.isfinite(values)]
+    return len(np.unique(values)) < len(values)
 
 
 def quantile_of(described: Described, p: float) -> Estimate:

@@ -94,7 +94,8 @@ def limit_of(
         None where it is rare everywhere. Where the probability falls steadily, it is smaller beyond
         a part than the mean over this part, and larger before it: so the limit lies between the
         first value before a part in which the mean is surely larger, and the last one behind a
-        part from which on it is surely smaller, each with the interval of its part.
+        part from which on it is surely smaller, each with the interval of its part. Where each part
+        is a value, it is that of the part itself.
     """
     shares = [one if is_unwanted else _opposite(one) for one in curve.shares]
     is_lower = shares[0].value > shares[-1].value
@@ -111,14 +112,17 @@ def limit_of(
     rare = len(shares)
     while shares[rare - 1].high < RARE:
         rare -= 1
-    if rare >= len(shares) - 1:
-        why = f"no value of {names} lets {plain.few}"
-        if best.low <= RARE:
-            why = f"whether a value of {names} lets {plain.few} is not settled"
+    first = rare if curve.of_values else rare + 1
+    if first >= len(shares):
+        why = f"whether a value of {names} lets {plain.few} is not settled"
+        if best.low > RARE:
+            why = f"no value of {names} lets {plain.few}"
         return replace(plain, why=why)
     frequent = max((i for i, one in enumerate(shares) if one.low > RARE), default=-1)
     until = edges[frequent] if frequent > 0 else nan  # before the first part there are no rows
-    return replace(plain, at=edges[rare + 1], until=until, share=shares[rare])
+    if curve.of_values:  # between two values there are no rows
+        until = nan
+    return replace(plain, at=edges[first], until=until, share=shares[rare])
 
 
 def _opposite(one: Estimate) -> Estimate:

@@ -1,15 +1,37 @@
 """What can be promised of an output, and its likely range."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, isfinite, nan
 
 from uq.conclusions.words import Unit, rounded, sentence, share_text
 from uq.estimate import NOTHING, Estimate
 from uq.intervals import CONFIDENCE
-from uq.wording import listed
+from uq.wording import listed, percent
 
 _ONE_END = (1 + CONFIDENCE) / 2
 """Confidence in one end of an interval."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """Which values a number is about.
+
+    Attributes
+    ----------
+    rows_failed : bool
+        Whether there are rows without a value because they failed.
+    undefined : float
+        Share of the rows in which there is none.
+    """
+
+    rows_failed: bool = False
+    undefined: float = 0.0
+
+    def of(self, noun: str) -> str:
+        """Return which they are: ``of the computed lives``; "" for all."""
+        if self.undefined > 0:
+            return f"of the defined {noun}"
+        return f"of the computed {noun}" if self.rows_failed else ""
 
 
 @dataclass(frozen=True)
@@ -34,6 +56,10 @@ class Promise:
         What a life does at its end.
     joint : tuple of str
         Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
+    known : Known
+        Which values it is about.
+    recurs : bool
+        Whether rows have equal values, so that many may have that of a bound.
     """
 
     coverage: float
@@ -47,22 +73,26 @@ class Promise:
     of_magnitude: bool = False
     ends: str = "end"
     joint: tuple[str, ...] = ()
+    known: Known = field(default_factory=Known)
+    recurs: bool = False
 
     @property
     def sentence(self) -> str:
         """What can be promised; "" where nothing can."""
         share = f"{100 * self.coverage:g} %"
+        covered = " ".join(filter(None, (share, self._of_bounded)))
         bounds = [
             f"{self._side(i)} {self.unit.text(bound, (-inf, inf)[i])}"
             for i, bound in enumerate((self.lower, self.upper))
             if isfinite(bound)
         ]
         if bounds and self.joint:
-            return f"{self._sure}, at least {share} {' and '.join(bounds)}{self._others}."
+            return f"{self._sure}, at least {covered} {' and '.join(bounds)}{self._others}."
         if bounds:
-            each, joined = " each" * (len(bounds) > 1), f", and at least {share} ".join(bounds)
-            return f"{self._sure}{each}, at least {share} {joined}."
-        cautious = []
+            each, joined = " each" * (len(bounds) > 1), f", and at least {covered} ".join(bounds)
+            return f"{self._sure}{each}, at least {covered} {joined}."
+        share = " ".join(filter(None, (share, self.known.of(self._noun))))
+        cautious: list[str] = []
         for i, one in enumerate(self.quantiles):
             end = (one.low, one.high)[i]
             if not isfinite(one.value):
@@ -70,6 +100,8 @@ class Promise:
             text = f"{share} {self._side(i)} {self.unit.text(one.value)}"
             if isfinite(end):
                 text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
+            else:
+                text = f"about {text}" if cautious else f"About {text}"
             cautious.append(text)
         return f"{'; '.join(cautious)}." if cautious else ""
 
@@ -86,10 +118,14 @@ class Promise:
         return replace(self, upper=nan) if isfinite(self.lower) else None
 
     def would_be(self, quantile: Estimate) -> str:
-        """Return what an end of the interval of the quantile would promise; "" without it."""
+        """Return what an end of the interval of the quantile would promise.
+
+        "" without it, or where it promises no more than is promised now: the rows may be too few.
+        """
         is_upper = isfinite(self.upper)
         bound = quantile.high if is_upper else quantile.low
-        if not isfinite(bound):
+        better = bound < self.upper if is_upper else bound > self.lower
+        if not (isfinite(bound) and better):
             return ""
         return f"{self.opening('would then')} {self.unit.text(bound, (-inf, inf)[is_upper])}."
 
@@ -97,7 +133,7 @@ class Promise:
         """Return what a single bound promises, up to the bound; `then` says when."""
         side = self._side(isfinite(self.upper))
         share = f"at least {100 * self.coverage:g} %"
-        return f"{self._sure}, {' '.join(filter(None, (share, then, side)))}"
+        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, then, side)))}"
 
     @property
     def _sure(self) -> str:
@@ -120,15 +156,28 @@ class Promise:
         return f", within the joint bounds of {listed(self.joint)}"
 
     @property
+    def _noun(self) -> str:
+        return "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
+
+    @property
+    def _of_bounded(self) -> str:
+        """Which values a tolerance bound is about: failed rows count as beyond it."""
+        return replace(self.known, rows_failed=False).of(self._noun)
+
+    @property
     def _is_cautious(self) -> bool:
         ends = (self.quantiles[0].low, self.quantiles[1].high)
         return any(isfinite(end) for end in ends)
 
     def _side(self, upper: int) -> str:
         if self.of_magnitude:
-            return "stay within" if upper else "exceed"
+            return "stay within" if upper else "are at least" if self.recurs else "exceed"
+        if self.is_life and upper:
+            return f"{self.ends} within"
         if self.is_life:
-            return f"{self.ends} within" if upper else "last longer than"
+            return "reach" if self.recurs else "last longer than"
+        if self.recurs:
+            return "do not exceed" if upper else "do not fall below"
         return "stay below" if upper else "stay above"
 
 
@@ -136,7 +185,7 @@ class Promise:
 class Range:
     """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
 
-    ``ends`` is what a life does at its end.
+    ``ends`` is what a life does at its end, ``known`` which values they are.
     """
 
     low: Estimate
@@ -146,22 +195,28 @@ class Range:
     of_magnitude: bool = False
     ends: str = "end"
     never: Estimate = NOTHING
+    known: Known = field(default_factory=Known)
+    is_life: bool = False
 
     @property
     def sentence(self) -> str:
         """Range, median, and how many never end, as far as they are known."""
         parts = []
-        what = "of the magnitudes " if self.of_magnitude else ""
+        noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
+        of = self.known.of(noun) or "of the magnitudes" * self.of_magnitude
+        what = f"{of} " if of else ""
         if isfinite(self.low.value) and isfinite(self.high.value):
             ends = self.unit.between(self.low.value, self.high.value, " and ")
             parts.append(f"90 % {what}lie between {ends}")
         elif isfinite(self.low.value) and self.high.value == inf:
-            parts.append(f"5 % {self.ends} within {self.unit.text(self.low.value)}")
+            parts.append(f"5 % {what}{self.ends} within {self.unit.text(self.low.value)}")
             if "value" in self.high.beyond:
                 parts.append("more than 5 % exceed the horizon")
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
         parts.append(self._never)
+        if self.known.undefined > 0:
+            parts.append(f"{percent(self.known.undefined)} of the rows have none")
         return sentence("; ".join(filter(None, parts))) if any(parts) else ""
 
     @property

@@ -19,6 +19,7 @@ from uq.conclusions.bounds import (
     COVERAGE,
     MIDDLE,
     end_of,
+    known_of,
     promise_of,
     quantile_of,
 )
@@ -149,6 +150,8 @@ def _quantity(
             element.is_angle,
             end_of(element),
             never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
+            known_of(element),
+            element.is_lifetime,
         ),
         tuple(_events(findings, described, element, unit)),
         _as_computed(_ranking(findings, element, unit), described),
@@ -205,7 +208,11 @@ def _events(
         if one.key[-1] != side or one.at is None:
             continue
         at = threshold(one.at, element.units)
-        said = f"{end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
+        said = f"exceed {at}"
+        if element.is_lifetime:  # what ends at the time itself is not counted
+            ended = element.values[~element.censored]
+            at_it = element.law is None and (ended == one.at).any()
+            said = f"{end_of(element)} {'before' if at_it else 'within'} {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
         undefined = one.facts.get("undefined") or 0.0

@@ -181,7 +181,7 @@ def _contribution(
 
 def _change(effect: Effect, form: str, verbs: tuple[str, str]) -> Change:
     """Return the change of a target with a usual step of an input."""
-    if effect.direction == 0 or form == "rank":
+    if effect.direction == 0 or effect.of_values or form == "rank":
         return Change(effect.direction, verbs=verbs)
     if effect.logarithmic:
         size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])

@@ -61,11 +61,14 @@ class Tightened:
         return self.wants_more in (None, self.rises)
 
     @property
+    def may_stay(self) -> bool:
+        """Whether the number may be as before, for all that its interval says."""
+        return self.after.has_interval and self.after.low <= self.before.value <= self.after.high
+
+    @property
     def harms(self) -> bool:
         """Whether the number surely moves to its worse side."""
-        is_sure = self.after.has_interval and not (
-            self.after.low <= self.before.value <= self.after.high
-        )
+        is_sure = self.after.has_interval and not self.may_stay
         return not self.helps and is_sure and self.is_seen
 
     @property

@@ -32,7 +32,7 @@ def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterato
     """
     found = [_shown(ds, quantity, one) for one in _candidates(quantity, leader)]
     known = [one for each in found for one in each if not one.reason]
-    better = [one for one in known if one.helps and one.is_seen]
+    better = [one for one in known if one.helps and one.is_seen and not one.may_stay]
     if not better:
         unknown = [one for one in found[0] if one.reason]
         yield from (

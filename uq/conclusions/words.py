@@ -54,7 +54,7 @@ class Unit(NamedTuple):
 def rounded(value: float, towards: float = 0.0) -> str:
     """Return a number to three digits; `towards` -inf or inf rounds down or up."""
     if not 1e-300 < abs(value) < 1e300:  # a digit of others may be 0 or infinite
-        return f"{value:.3g}"
+        return f"{value or 0.0:.3g}"  # no minus before a zero
     digit = 10.0 ** (floor(log10(abs(value))) - 2)
     places = value / digit
     if towards and abs(places - round(places)) > 1e-9:

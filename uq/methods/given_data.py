@@ -16,15 +16,13 @@ import numpy as np
 from uq.estimate import Estimate
 from uq.methods.indices import IndexKind, Indices, Null, RefusedError
 from uq.methods.sample import Floats, Sample
+from uq.methods.slices import has_many_equal
 
 MIN_ROWS = 64
 """Fewer rows than this leave too few in each slice of an input."""
 
 DUMMIES = 19
 """One input in twenty without effect exceeds the largest of 19."""
-
-TIED_INPUT = 0.05
-"""An input has many equal values if one of them has a larger share of the rows than this."""
 
 Measure = Callable[[Floats, Sample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
 """Columns of inputs, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
@@ -38,7 +36,6 @@ def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Me
 def beside_nulls(
     measure: Measure,
     correction: Callable[[Floats, Floats], Floats] | None = None,
-    sorts_rows: bool = False,
 ) -> Callable[[Sample], Indices]:
     """Return the estimate of indices with the null of inputs without effect.
 
@@ -48,8 +45,6 @@ def beside_nulls(
         See `Measure`; NaN for an input whose rows are all in one slice.
     correction : callable, optional
         ``correction(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
-    sorts_rows : bool, optional
-        Whether it sorts the rows by each input, and so accepts none with many equal values.
 
     Returns
     -------
@@ -67,21 +62,16 @@ def beside_nulls(
         idle = {kind: one[len(x) :] for kind, one in raw.items()}
         found: dict[IndexKind, dict[str, Estimate]] = {kind: {} for kind in raw}
         notes = (*notes, *_no_slices(list(x), raw))
-        tied = [name for name, column in x.items() if _is_tied(column)]
-        if sorts_rows and tied:
-            notes = (*notes, _no_order(tied, len(x)))
         for i, (name, column) in enumerate(x.items()):
             own = idle
             sliced = not all(np.isnan(one[i]) for one in raw.values())
-            if name in tied and sliced and not sorts_rows and dummies:
+            if sliced and dummies and has_many_equal(column):
                 shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
                 own, _ = measure(shuffled, sample)
                 reached = {kind: corrected(one, one) for kind, one in own.items()}
                 notes = (*notes, _own_null(name, reached))
             for kind, one in raw.items():
-                value = float(corrected(one[i], own[kind]))
-                lost = name in tied and sorts_rows
-                found[kind][name] = Estimate(np.nan if lost else value)
+                found[kind][name] = Estimate(float(corrected(one[i], own[kind])))
         reached = {kind: corrected(one, one) for kind, one in idle.items() if dummies}
         return Indices(found, notes, {kind: _null(one, len(x)) for kind, one in reached.items()})
 
@@ -112,22 +102,6 @@ def largest_of(inputs: int, idle: Floats) -> float:
     quantile = -np.log(-np.log(0.95 ** (1 / inputs)))
     found = idle.mean() + scale * (quantile - np.euler_gamma)
     return float(max(found, idle.max()))
-
-
-def _is_tied(column: Floats) -> bool:
-    counts = np.unique(column, return_counts=True)[1]
-    return bool(counts.max() > max(TIED_INPUT * len(column), 1))
-
-
-def _no_order(tied: list[str], inputs: int) -> str:
-    """Return which inputs a method cannot sort the rows by; refuse if that is all of them."""
-    reason = (
-        "the method sorts the rows by each input, so it accepts none with many equal values:"
-        f" {', '.join(tied)}; use pawn"
-    )
-    if len(tied) == inputs:
-        raise RefusedError(reason)
-    return reason
 
 
 def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[str]:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
 from uq.methods.indices import RefusedError
-from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts
+from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts, has_many_equal
 from uq.quantile_functions import normal
 from uq.wording import counted
 
@@ -14,39 +14,72 @@ MIN_SIDE = 10
 """With fewer rows than this with the event, or without it, distributions are not compared."""
 
 _HARMONICS = 10
+_VALUE_SLICES = 20
 _GRID = 100
 _PAWN_SLICES = 10
 _TIED_OUTPUT = 0.01  # share of the rows with one value
 
 
-def rbd_fast(x: Floats, y: Floats) -> Floats:
-    """Return the share of the first harmonics in the power of y along each input, unbiased.
+def first_order(x: Floats, y: Floats) -> Floats:
+    """Return the share of the variance of y that each input explains alone, unbiased.
 
     Parameters
     ----------
     x : ndarray, shape (n, d)
     y : ndarray, shape (n,) or (n, e)
-        The powers of several elements are summed.
+        The variances of several elements are summed.
 
     Returns
     -------
     ndarray, shape (d,)
-        Along an input and back [1]_, less the share that noise has in so many harmonics [2]_.
+        By random balance; of an input with many equal values, whose rows have no order, by the
+        means at each value. NaN where such an input varies within one slice only.
+    """
+    total = y.var(axis=0).sum()
+    return np.array(
+        [
+            (_correlation_ratio if has_many_equal(column) else _random_balance)(column, y, total)
+            for column in x.T
+        ]
+    )
+
+
+def _random_balance(column: Floats, y: Floats, total: float) -> float:
+    """Return the share of the first harmonics in the power of y along an input and back.
 
     References
     ----------
-    .. [1] E. Plischke, "An effective algorithm for computing global sensitivity indices (EASI)",
-       Reliab. Eng. Syst. Saf. 95, 354-360 (2010).
-    .. [2] J.-Y. Tissot, C. Prieur, "Bias correction for the estimation of sensitivity indices
-       based on random balance designs", Reliab. Eng. Syst. Saf. 107, 205-213 (2012).
+    E. Plischke, "An effective algorithm for computing global sensitivity indices (EASI)", Reliab.
+    Eng. Syst. Saf. 95, 354-360 (2010). Less the share that noise has in so many harmonics: J.-Y.
+    Tissot, C. Prieur, "Bias correction for the estimation of sensitivity indices based on random
+    balance designs", Reliab. Eng. Syst. Saf. 107, 205-213 (2012).
     """
     n = len(y)
-    orders = (np.argsort(column) for column in x.T)
-    spectra = (np.fft.rfft(y[np.r_[order[::2], order[1::2][::-1]]], axis=0) for order in orders)
-    first = [np.sum(np.abs(one[1 : _HARMONICS + 1]) ** 2) for one in spectra]
-    share = np.array(first) * 2 / (n**2 * y.var(axis=0).sum())
+    order = np.argsort(column)
+    spectrum = np.fft.rfft(y[np.r_[order[::2], order[1::2][::-1]]], axis=0)
+    share = np.sum(np.abs(spectrum[1 : _HARMONICS + 1]) ** 2) * 2 / (n**2 * total)
     noise = 2 * _HARMONICS / n
-    return share - noise / (1 - noise) * (1 - share)
+    return float(share - noise / (1 - noise) * (1 - share))
+
+
+def _correlation_ratio(column: Floats, y: Floats, total: float) -> float:
+    """Return one less the variance of y within slices of an input over that of all.
+
+    References
+    ----------
+    T. L. Kelley, "An unbiased correlation ratio measure", Proc. Natl. Acad. Sci. 21, 554-559
+    (1935).
+    """
+    n, elements = len(y), np.atleast_2d(y.T)
+
+    def ratio(number: NDArray[np.intp]) -> float:
+        counts = np.bincount(number)
+        means = [np.bincount(number, one) / counts for one in elements]
+        pairs = zip(elements, means, strict=True)
+        within = sum(float(((one - mean[number]) ** 2).sum()) for one, mean in pairs)
+        return 1 - within / (n - len(counts)) / (n * total / (n - 1))
+
+    return float(by_slices(column[:, None], even_cuts(n, _VALUE_SLICES), ratio)[0])
 
 
 def delta(x: Floats, y: Floats) -> Floats:

@@ -14,7 +14,7 @@ from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import EXPLAINED, hdmr_indices
 from uq.methods.hsic import HSIC, MOST_ROWS, P, conditional_indices, target_indices
 from uq.methods.indices import S1, S2, SHAPLEY, ST, IndexKind
-from uq.methods.measures import delta, ks_distances, pawn, rbd_fast
+from uq.methods.measures import delta, first_order, ks_distances, pawn
 from uq.methods.method import Method
 from uq.methods.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
 from uq.methods.quantile_oriented import quantile_indices, without_optimism
@@ -36,9 +36,9 @@ _of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
 METHODS = {
     "rbd-fast": _of_plain_rows(
         "how much of the variance, alone",
-        estimate=beside_nulls(one_kind(S1, rbd_fast), sorts_rows=True),
+        estimate=beside_nulls(one_kind(S1, first_order)),
         kinds=(S1,),
-        source="random balance, bias corrected",
+        source="random balance, bias corrected; correlation ratio of inputs with many equal values",
         most_rows=200_000,
         aggregates=True,
     ),

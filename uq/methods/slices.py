@@ -13,6 +13,15 @@ LEAST_ROWS = 10
 MOST_CATEGORIES = 10
 """An input with no more values than this is sliced by value."""
 
+MANY_EQUAL = 0.05
+"""An input has many equal values if one of them has a larger share of the rows than this."""
+
+
+def has_many_equal(column: Floats) -> bool:
+    """Return whether one value of an input has a large share of the rows."""
+    counts = np.unique(column, return_counts=True)[1]
+    return bool(counts.max() > max(MANY_EQUAL * len(column), 1))
+
 
 def slice_of(column: Floats, cuts: NDArray[np.intp], least: int = LEAST_ROWS) -> NDArray[np.intp]:
     """Divide the rows into slices of an input; rows of the same value are in the same slice.

@@ -1,0 +1,104 @@
+"""What is said of inputs with few values, and of values that recur, are missing or little known."""
+
+import re
+
+import numpy as np
+import pytest
+from computed import asking, computed, linear, study_of, with_output
+
+from uq.conclusions.answer import answer
+from uq.conclusions.promises import Promise
+from uq.conclusions.words import Unit
+from uq.estimate import Estimate
+
+
+def graded(samples=1000):
+    """Return a value that a grade doubles in some rows: it has most of the variance."""
+    x1 = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
+    x2 = {"distribution": "discrete-choice", "values": [0.1, 0.2, 0.3], "weights": [0.6, 0.3, 0.1]}
+    tables = {
+        "study": {"name": "graded", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": samples, "seed": 1},
+        "uncertain": {"x1": x1, "x2": x2 | {"source": "assumed"}},
+    }
+    ds = computed(study_of(tables))
+    level = np.where(ds["x2"].values > 0.25, 4.0, 1.0) * (1 + 0.2 * ds["x1"].values)
+    ds = with_output(ds, "level", level)
+    return asking(ds, outputs=["level"], thresholds={"level": 3.0}, wanted={"level": "below"})
+
+
+@pytest.fixture(scope="module")
+def found():
+    return answer(graded())
+
+
+def test_an_input_with_few_values_is_ranked(found):
+    (contribution,) = found.lead.ranking.contributions
+    assert contribution.inputs == ("x2",) and contribution.indices[0].value > 0.95
+    assert found.lead.ranking.with_effect.endswith("More raises it.")  # it has no small changes
+    assert [one.rule for one in found.advice][0] == "measure" and found.advice[0].inputs == ("x2",)
+
+
+def test_the_probability_of_an_event_is_that_at_each_value(found):
+    (event,) = found.lead.events
+    assert event.decided_by == (
+        "Decided most by x2: from 0 % where it is below 0.25 to 100 % where it is above 0.25."
+    )
+    assert event.limited == "Fewer than 5 % exceed 3 m where x2 is at most 0.25."
+
+
+def valued(values, kind="value", samples=400, **asked):
+    """Return a result whose first output has some values, functions of four uniform inputs."""
+    ds = linear(samples=samples)
+    ds = with_output(ds, "found", values(*(ds[f"x{i}"].values for i in (1, 2, 3, 4))), kind)
+    return asking(ds, outputs=["found"], **asked)
+
+
+def test_a_bound_that_many_rows_have_is_not_said_to_be_exceeded():
+    """A tenth ends at the third cycle itself."""
+    cycles = valued(lambda x, *_: 3.0 + np.floor(8 * x), "lifetime", thresholds={"found": 5.0})
+    lead = answer(cycles).lead
+    assert lead.promise.sentence == "With 95 % confidence, at least 95 % reach 3 s."
+    assert lead.promise.opening("would then").endswith("would then reach")
+    assert lead.events[0].said == "end before 5 s"  # those that end at 5 s are not among them
+    gaps = valued(lambda x, *_: np.maximum(x - 0.97, 0) * -1.0)
+    assert answer(gaps).lead.promise.sentence.endswith("do not exceed 0 m.")
+    assert valued_promise(lambda x, *_: 3.0 + x, "lifetime").startswith("last longer than")
+
+
+def valued_promise(values, kind):
+    return (
+        answer(valued(values, kind)).lead.promise.sentence.partition("95 % ")[2].split("95 % ")[-1]
+    )
+
+
+def test_bounds_and_ranges_say_which_values_they_are_about():
+    ds = valued(lambda x, *_: np.where(x < 0.2, np.nan, 1 + x))
+    ds["found"].attrs["may_be_undefined"] = 1
+    lead = answer(ds).lead
+    assert "at least 95 % of the defined values stay above" in lead.promise.sentence
+    assert re.match(
+        "90 % of the defined values lie between .* of the rows have none", lead.range.sentence
+    )
+
+
+def test_what_the_rows_cannot_show_is_no_advice():
+    """Half the scatter of a symmetric input leaves half of the values above the middle."""
+    asked = {"thresholds": {"found": 0.0}, "wanted": {"found": "above"}}
+    found = answer(valued(lambda x, y, *_: x - 0.5 + 0.1 * y - 0.05, samples=1000, **asked))
+    (advice,) = [one for one in found.advice if one.rule == "tighten"]
+    assert advice.tightened.what == "the 5 % quantile"
+    assert not any(one.may_stay for one in [advice.tightened, *advice.alike])
+
+
+def test_no_less_is_promised_than_now():
+    promise = Promise(0.95, 0.95, 13.9, np.nan, Unit("h"), is_life=True)
+    assert promise.would_be(Estimate(20.0, 11.2, 22.0)) == ""
+    assert promise.would_be(Estimate(20.0, 14.2, 22.0)).endswith(
+        "would then last longer than 14.2 h."
+    )
+
+
+def test_an_estimate_without_interval_is_not_promised():
+    found = answer(linear(samples=20)).lead.promise.sentence
+    assert re.fullmatch(r"About 95 % stay above .*; about 95 % stay below .*\.", found)
