@@ -6,10 +6,11 @@ from uq.units import PREFIXED
 
 _NUMBER = re.compile(r"(?<![^\s(\[])-?(?:\d[\d.]*(?:e[-+]?\d+)?|∞|inf)(?![\w-])")
 _TIMES = "minutes?|hours?|days?|years?"
-_UNIT = rf"(?:[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω)|{_TIMES}|%)(?!\w)"
+_FACTOR = rf"[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω|g)[⁻⁰¹²³⁴-⁹]*(?![\w⁻])"
+_UNIT = re.compile(rf"(?<=\d)(?: {_FACTOR})+|(?<=\d) (?=(?:{_TIMES}|%)(?!\w))")
 _POWER = r"(?<=\d) (?=× 10)|(?<=×) (?=10)"
 _GROUP = r"(?<=\d) (?=\d{3}(?!\d))"
-_BEFORE_UNIT = re.compile(rf"(?<=\d) (?={_UNIT})|(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}|{_GROUP}")
+_BEFORE_POWER = re.compile(rf"(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}|{_GROUP}")
 
 
 def minus(text: str) -> str:
@@ -24,4 +25,5 @@ def printed(text: str) -> str:
     """Return text for a page: with minus signs, a dash for no number, and numbers in one line."""
     if text == "-":
         return "\N{EN DASH}"
-    return _BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", minus(text))
+    text = _UNIT.sub(lambda found: found[0].replace(" ", "\N{NO-BREAK SPACE}"), minus(text))
+    return _BEFORE_POWER.sub("\N{NO-BREAK SPACE}", text)

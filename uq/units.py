@@ -24,6 +24,10 @@ class Unit(NamedTuple):
     size: float
 
 
+PURE = Unit("1", 1.0)
+"""The unit of a pure number."""
+
+
 def beside(number: str, unit: str) -> str:
     """Return a number with its unit, if it has one: ``250 µm``, ``12°``, ``3 × 10⁻¹⁵ m² N⁻¹``."""
     if number == "1" and unit in _TIME_WORDS:

@@ -7,7 +7,7 @@ from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
-from uq.units import Unit, beside, powers, time_unit, unit_of
+from uq.units import PURE, Unit, beside, powers, time_unit, unit_of
 from uq.written import Written
 
 HUGE = 1e9
@@ -245,10 +245,30 @@ def listed(labels: Sequence[str], most: int = 8) -> str:
 
 def law(stated: Any) -> str:
     """Return the law of an input, numbers to six digits: ``normal(mean = 1.0, sd = 0.1)``."""
-    without = {"distribution", "source", "times", "level"}
-    given = stated.model_dump(exclude=without, exclude_none=True)
-    if given.get("file") is not None:
-        given.pop("values", None)  # a result keeps the file's name alone
+    given = _arguments(stated)
     given |= {n: float(f"{one:.6g}") for n, one in given.items() if isinstance(one, float)}
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
+
+
+def law_in_unit(stated: Any, unit: Unit) -> str:
+    """Return the law of an input in a unit, to six digits: ``normal: mean 250 µm, sd 25 µm``."""
+
+    def words(name: str, value: Any) -> str:
+        if isinstance(value, str):
+            return value
+        own = PURE if name in stated.pure else unit
+        several = value if isinstance(value, tuple) else (value,)
+        numbers = [f"{one / own.size:.6g}" for one in several]
+        return beside(" to ".join(numbers) if name == "truncate" else listed(numbers), own.name)
+
+    given = (f"{name} {words(name, value)}" for name, value in _arguments(stated).items())
+    return f"{stated.distribution}: {', '.join(given)}"
+
+
+def _arguments(stated: Any) -> dict[str, Any]:
+    without = {"distribution", "source", "times", "level"}
+    given: dict[str, Any] = stated.model_dump(exclude=without, exclude_none=True)
+    if given.get("file") is not None:
+        given.pop("values", None)  # a result keeps the file's name alone
+    return given

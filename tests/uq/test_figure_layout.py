@@ -128,6 +128,19 @@ def test_colours_of_points_are_seen_in_the_legend():
     assert all(handle.get_markersize() >= 6 for handle in shown.legend_handles)
 
 
+def test_short_entries_of_a_legend_stand_side_by_side():
+    ds = kinds(samples=64)
+    found = []
+    for figure in (plots.pairs(ds), plots.lifetime(ds, "life")):
+        lay_out(figure)
+        figure.canvas.draw()
+        (legend,) = figure.legends
+        found.append([text.get_window_extent().y0 for text in legend.get_texts()])
+    side_by_side, below_each_other = found
+    assert len(set(side_by_side)) == 1 < len(side_by_side)
+    assert len(set(below_each_other)) == len(below_each_other) == 4
+
+
 def test_the_legend_of_many_indices_of_few_inputs_has_room():
     ds = kinds(samples=1000, analysis={"quantiles": [0.1, 0.5, 0.9]})
     figure = plots.index_bars(ds, "work[side=left]", method="quantile")

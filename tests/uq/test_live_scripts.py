@@ -136,6 +136,13 @@ def test_different_values_are_written_differently(asked, values, wide):
     assert len(ticks) == len(set(ticks)) < 30
 
 
+@pytest.mark.parametrize("half", [0.4986, 0.5, 0.94, 1.7, 9.99, 40.0])
+@pytest.mark.parametrize("count", [3, 4.9, 5])
+def test_an_axis_has_about_as_many_ticks_as_it_has_room_for(asked, half, count):
+    column = f"{{values: [{-half}, {half}], states: [0, 0], per: 1}}"
+    assert 2 <= len(asked(f"new Scale({column}).ticks({count})")) <= count + 2
+
+
 @pytest.mark.parametrize(
     ("unit", "words"),
     [("\u00b0", "3\u00b0"), ("", "3"), ("kN", "3 kN"), ("10\u00b3 m", "3\u00b710\u00b3 m")],

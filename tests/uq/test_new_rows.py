@@ -200,6 +200,7 @@ def test_the_command(uq, folder, result):
 def test_the_report_of_new_rows(uq, folder, found):
     write_result(found, folder / "posterior.nc")
     assert uq("report", "posterior.nc").code == 0
+    assert " -o posterior.nc --rows 8000\n" in (folder / "posterior.html").read_text()
 
 
 @pytest.mark.slow

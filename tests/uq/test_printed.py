@@ -39,6 +39,12 @@ def test_a_unit_stays_with_its_number():
         "30",
         "rows",
     ]
+    assert printed("below 0.66 kg m⁻¹") == "below 0.66\u00a0kg\u00a0m⁻¹"
+    assert printed("535 N m rad⁻¹, 3 m long").split(" ") == [
+        "535\u00a0N\u00a0m\u00a0rad⁻¹,",
+        "3\u00a0m",
+        "long",
+    ]
     assert printed("13 312 rows").split(" ") == ["13\u00a0312", "rows"]
     assert printed("-") == "–"
 

@@ -50,7 +50,7 @@ def test_a_report_says_all_there_is_to_say(asked, text):
         "kinds, version 1",
         "monte-carlo: independent rows",
         "x₁: first input",
-        "uniform(lower = 0.01, upper = 0.99) m",
+        "uniform: lower 0.01 m, upper 0.99 m",
         "made up",
         "out-of-budget",
         "slow",

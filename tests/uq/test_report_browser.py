@@ -177,6 +177,16 @@ def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(bro
     assert signs and all(len(set(one)) == 1 for one in places if one)
 
 
+def test_captions_of_wide_tables_stay_in_sight_on_a_phone(browser, report):
+    browser.open(report, width=400)
+    wide = "[...document.querySelectorAll('main > section > .wide')]"
+    browser.value(f"{wide}.forEach(one => one.scrollLeft = 1e4)")
+    ends = "(b => [b.left, b.right])(one.querySelector('caption').getBoundingClientRect())"
+    scrolled = f"{wide}.filter(one => one.scrollLeft > 50).map(one => {ends})"
+    found = browser.value(scrolled)
+    assert found and all(0 <= left and right <= 400 for left, right in found), found
+
+
 def test_a_printed_answer_fills_its_columns(browser, report):
     browser.open(report, width=690)
     browser.do("Emulation.setEmulatedMedia", media="print")

@@ -13,6 +13,7 @@ from uq.contract import Status
 from uq.literals import plain
 from uq.plots import FIGURES
 from uq.report import page
+from uq.report.layout import templates
 from uq.report.pictures import picture
 
 
@@ -61,6 +62,18 @@ def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
     text = page(linear("sobol", samples=16), "out.nc")
     assert "uq run linear.toml\n" in text
     assert "Truncated" not in text and "were recomputed" not in text
+
+
+def test_the_name_that_begins_a_remark_keeps_its_case():
+    remark = templates().get_template("parts.html").module.remark
+    assert "work_rate[site=right]: its own" in remark("work_rate[site=right]: its own error")
+    assert "The intervals" in remark("the intervals are pointwise")
+
+
+def test_a_symbol_has_its_index_below_the_line():
+    ds = linear(samples=16)
+    ds["x1"].attrs |= {"symbol": "k_tra", "long_name": "stiffness <1>"}
+    assert "k<sub>tra</sub>: stiffness &lt;1&gt;" in page(ds, "OUT.nc")
 
 
 def test_a_picture_has_the_colour_of_the_text_around_it():

@@ -5,6 +5,7 @@ import re
 import numpy as np
 from computed import (
     asking,
+    kinds,
     linear,
     with_output,
 )
@@ -12,8 +13,20 @@ from matplotlib.figure import Figure
 from read_pages import Page, read
 
 from uq.analysis.findings import Findings
+from uq.report import page
 from uq.report.paths import shortened
 from uq.report.pictures import HEAVIEST_SVG, picture, pictures
+
+BY_REGIME = 'aria-label="Rows by regime, against the inputs that best separate the regimes"'
+
+
+def test_a_study_about_the_regimes_is_headed_by_its_rows_by_regime():
+    def headed(outputs):
+        text = page(kinds(samples=64, analysis={"outputs": outputs}), "OUT.nc")
+        assert text.count(BY_REGIME) == 1
+        return BY_REGIME in text[text.index('id="answer"') : text.index('id="explore"')]
+
+    assert headed(["regime", "work"]) and not headed(["work", "regime"])
 
 
 def test_a_staircase_takes_few_characters_and_keeps_its_place():

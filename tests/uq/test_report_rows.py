@@ -139,9 +139,9 @@ def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path):
         {"unit": "A", "output": "y", "kind": "measured", "time": 2.0, "value": 0.1, "sd": 1e-3},
         {"unit": "B", "output": "y", "kind": "above", "time": 2.0, "value": 7.0},
     ]
-    ds = weighted_rows().assign_attrs(inspections=json.dumps(found), model_error=0.2)
+    ds = weighted_rows().assign_attrs(inspections=json.dumps(found), model_error=0.2, new_rows=800)
     text = unescape(page(ds, "after.nc"))
-    update = "uq update results/linear.nc inspections.csv -o after.nc --model-error 0.2"
+    update = "uq update results/linear.nc inspections.csv -o after.nc --rows 800 --model-error 0.2"
     assert update in text.partition("uq run linear.toml")[2]
     given = text.partition("<h3>The inspections</h3>\n<pre>")[2].partition("</pre>")[0]
     (tmp_path / "inspections.csv").write_text(given)

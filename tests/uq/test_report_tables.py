@@ -15,16 +15,21 @@ from computed import (
 )
 from wordings import sentence
 
+from uq import plots
 from uq.analysis.findings import Findings
 from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import summarise
+from uq.conclusions.answer import answer
+from uq.conclusions.words import unit_for
 from uq.contract import Status
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
+from uq.report.embedded import rows_inside
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import _quantiles, fixed_inputs, input_tables
 from uq.report.outcomes import category_table, outcomes, result_tables, status_table
+from uq.units import typical
 
 DAY = 86400.0
 
@@ -149,7 +154,7 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     assert (found["x1"]["known"], found["x1"]["source"]) == ("fitted", "a book: fitted")
     assert float(found["x1"]["95 %"]) == pytest.approx(0.95, abs=2e-3)
     assert found["x2"]["law"] == "equals x1" and found["x2"]["50 %"] == ""
-    assert found["x4"]["law"] == "x1 times uniform(lower = 0.4, upper = 0.6)"
+    assert found["x4"]["law"] == "x1 times uniform: lower 0.4, upper 0.6"
     assert float(found["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
 
 
@@ -164,8 +169,33 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     ],
 )
 def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):
-    cells = _quantiles("x", units, np.array(found))
+    cells = _quantiles("x", unit_for(units, typical(found)), np.array(found))
     assert [cell.text.replace("\u00a0", " ") for cell in cells][:2] == texts
+
+
+def test_an_input_has_one_prefix_in_sentences_tables_figures_and_controls():
+    rate = {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}
+    ds = computed(
+        study_of(
+            {
+                "study": {"name": "skewed", "model": "exponential-wear"},
+                "design": {"method": "monte-carlo", "samples": 400},
+                "uncertain": {"rate": rate},
+                "analysis": {"thresholds": {"life": "9 days"}},
+            }
+        )
+    )
+    assert ds["rate"].max() > 1e-9  # which would be read in nm s⁻¹
+    assert lines(next(input_tables(ds)))["rate"]["law"] == "lognormal: median 250 pm s⁻¹, sigma 0.5"
+    (event,) = answer(ds).events
+    for figure in (
+        plots.scatter(ds, "life"),
+        plots.inputs(ds),
+        plots.event_probability(ds, event.name),
+    ):
+        assert figure.axes[0].get_xlabel().endswith("[pm s⁻¹]")
+    assert rows_inside(Findings(ds), "a.nc")["columns"][0]["unit"] == "pm\u00a0s⁻¹"
+    assert event.over_unit.name == "pm s⁻¹"
 
 
 def test_fixed_inputs_have_units_and_correlations_a_source():
@@ -190,7 +220,7 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
     )
     laws, ranks = input_tables(ds)
     fixed = fixed_inputs(ds)
-    assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2) m\u00a0s⁻¹"
+    assert lines(laws)["threshold"]["law"] == "uniform: lower 0.1 m s⁻¹, upper 0.2 m s⁻¹"
     assert ranks.caption == "Rank correlations: a guess"
     assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]
     assert lines(fixed)["depth"]["value"] == "250\u00a0µm"

@@ -8,6 +8,7 @@ from uq.estimate import Estimate
 from uq.inputs.registry import law_of
 from uq.methods.indices import S1, ST
 from uq.methods.morris import MU, MU_STAR
+from uq.units import Unit
 from uq.wording import (
     brief,
     capitalized,
@@ -17,12 +18,36 @@ from uq.wording import (
     interval,
     known,
     law,
+    law_in_unit,
     percent,
     percent_interval,
     percent_with_interval,
     quantity,
 )
 from uq.written import read_quantity
+
+
+@pytest.mark.parametrize(
+    ("stated", "words"),
+    [
+        ({"distribution": "normal", "mean": 2.5e-4, "sd": 2.5e-5}, "normal: mean 250 µm, sd 25 µm"),
+        (
+            {"distribution": "lognormal", "mean": 2.5e-4, "cv": 0.15, "truncate": [1e-4, 3e-4]},
+            "lognormal: truncate 100 to 300 µm, mean 250 µm, cv 0.15",
+        ),
+        (
+            {"distribution": "discrete-choice", "values": [1e-4, 2e-4], "weights": [1, 2]},
+            "discrete-choice: values 100, 200 µm, weights 1, 2",
+        ),
+        (
+            {"distribution": "histogram", "edges": [1e-4, 2e-4, 4e-4], "counts": [3, 1]},
+            "histogram: edges 100, 200, 400 µm, counts 3, 1",
+        ),
+    ],
+    ids=lambda one: one["distribution"] if isinstance(one, dict) else "",
+)
+def test_a_law_is_in_the_unit_of_its_input(stated, words):
+    assert law_in_unit(law_of(stated), Unit("µm", 1e-6)) == words
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from math import isnan
 
 import numpy as np
-import xarray as xr
 
 from uq.analysis.earliest import (
     FEWEST,
@@ -16,7 +15,7 @@ from uq.analysis.earliest import (
     regimes_of_first,
 )
 from uq.analysis.findings import Findings
-from uq.conclusions.words import Unit, called, joined, sentence, share_text, unit_for
+from uq.conclusions.words import Unit, called, joined, sentence, share_text, unit_of_input
 from uq.errors import InputError
 from uq.intervals import Replicates
 from uq.rows.commands import file_of, model_option
@@ -143,13 +142,9 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
         size=len(places),
         of=int(element.present.sum()),
         inputs=None if inputs is None else tuple(inputs),
-        units=tuple(_unit_of(findings.ds, one) for one in inputs or ()),
+        units=tuple(unit_of_input(findings.ds, one.name) for one in inputs or ()),
         regimes=tuple(regimes_of_first(findings.rows, places, part)),
     )
-
-
-def _unit_of(ds: xr.Dataset, one: Apart) -> Unit:
-    return unit_for(str(ds[one.name].attrs["units"]), abs(one.others))
 
 
 def _in_words(one: Apart, unit: Unit, is_first: bool) -> str:

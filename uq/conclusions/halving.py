@@ -5,7 +5,7 @@ from math import sqrt
 
 import xarray as xr
 
-from uq.conclusions.words import called, unit_for
+from uq.conclusions.words import Unit, called, unit_of_input
 from uq.inputs.distributions import LogUniform
 from uq.inputs.law import Law
 from uq.rows.elements import study_file_of
@@ -66,12 +66,12 @@ def _in_words(ds: xr.Dataset, name: str, new: dict[str, float]) -> str:
     old = {key: float(getattr(law, key)) for key in new}
     if "lower" in new:
         is_factor = getattr(law, "times", None) is not None
-        unit = unit_for("1" if is_factor else ds[name].attrs["units"], max(map(abs, old.values())))
+        unit = Unit() if is_factor else unit_of_input(ds, name)
         then = unit.between(new["lower"], new["upper"])
         return f"{then} instead of {unit.bare_between(old['lower'], old['upper'])}"
     ((key, before),) = old.items()
     if key == "sd":
-        unit = unit_for(ds[name].attrs["units"], before)
+        unit = unit_of_input(ds, name)
         return f"sd {unit.text(new[key])} instead of {unit.number(before)}"
     shown = percent if key == "cv" else "{:.3g}".format
     return f"{key} {shown(new[key])} instead of {shown(before)}"

@@ -25,6 +25,7 @@ _STYLE = """
   .answer-todo { grid-area: 3 / 2 / 5 / 3; }
   .answer-first { grid-area: 4 / 1; }
 }
+.answer > figure { padding: 0; }
 .answer p, .answer ul { margin: .25rem 0; }
 .answer ul { padding-left: 1.2rem; }
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
@@ -131,6 +132,8 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     if likely := keyed.likely(lead):
         yield _line(likely)
     yield from map(_line, keyed.others(lead))
+    if answer.regimes_first:
+        return
     elements = [one for one in answer.quantities[1:] if one.output == lead.output]
     promised = [one for one in elements if one.promise is not None and one.promise.sentence]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:

@@ -29,7 +29,7 @@ from uq.conclusions.measured import method_for
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Range
 from uq.conclusions.rankings import ranking_of
-from uq.conclusions.words import Unit, element_called, unit_for
+from uq.conclusions.words import Unit, element_called, unit_for, unit_of_input
 from uq.errors import InputError
 from uq.estimate import NOTHING
 from uq.greek import readable
@@ -249,9 +249,7 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
         return found
     over, rows = ranking.leader.inputs[0], findings.ranked.rows
     curve = curve_over(rows, target, method, over)
-    attrs = findings.ds[over].attrs
-    middle = float(np.median(rows[over].values))
-    return replace(found, over=over, curve=curve, over_unit=unit_for(attrs["units"], abs(middle)))
+    return replace(found, over=over, curve=curve, over_unit=unit_of_input(findings.ds, over))
 
 
 def curve_over(rows: xr.Dataset, target: str, method: str, over: str) -> EventCurve | None:

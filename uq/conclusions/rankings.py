@@ -110,12 +110,12 @@ def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
 
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
     """Return why no index counts, how many times the rows would settle it, and if none is large."""
-    text = f"{kind.key} of {called(first.name)} is {first.index.value:.2f}"
+    text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
     which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False
     if first.half > GOAL:
-        ends = f"{first.index.low:.2f} to {first.index.high:.2f}"
+        ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
         return f"{which}: {text}{interval}", (first.half / GOAL) ** 2, False
     verb = "decides that" if of_event else "contributes"

@@ -10,6 +10,7 @@ import xarray as xr
 from uq.estimate import Estimate
 from uq.greek import readable
 from uq.rows.element import Element
+from uq.rows.variables import input_unit
 from uq.units import beside, powers, unit_of
 from uq.wording import capitalized, percent, percent_interval
 
@@ -73,8 +74,16 @@ def unit_for(units: str, typical: float) -> Unit:
     typical : float
         NaN if unknown.
     """
-    found = unit_of(units, typical)
-    return Unit() if found.name == "1" else Unit(powers(found.name), found.size)
+    return _printed(*unit_of(units, typical))
+
+
+def unit_of_input(ds: xr.Dataset, name: str) -> Unit:
+    """Return the unit for numbers of an input of a result."""
+    return _printed(*input_unit(ds, name))
+
+
+def _printed(name: str, size: float) -> Unit:
+    return Unit() if name == "1" else Unit(powers(name), size)
 
 
 def called(name: str) -> str:

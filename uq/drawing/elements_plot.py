@@ -15,6 +15,7 @@ from uq.drawing.symbols import literal
 from uq.drawing.words import labelled, rows_in_words
 from uq.printed import minus
 from uq.rows.elements import Element, Floats, Mask, analysis_of, flags
+from uq.rows.variables import input_unit
 from uq.units import Unit, typical, unit_of
 from uq.wording import threshold
 
@@ -41,10 +42,10 @@ def display_unit(units: str, values: Floats) -> Unit:
     return unit_of(units, typical(values))
 
 
-def input_axis(axes: Axes, parameter: xr.DataArray, values: Floats, width: int = 44) -> float:
+def input_axis(axes: Axes, ds: xr.Dataset, name: str, width: int = 44) -> float:
     """Label the horizontal axis as that of an input, and return the size of its unit."""
-    unit = unit_of(parameter.attrs["units"], np.abs(values).max(initial=0.0))
-    axes.set_xlabel(labelled(parameter, unit.name, width))
+    unit = input_unit(ds, name)
+    axes.set_xlabel(labelled(ds[name], unit.name, width))
     return unit.size
 
 

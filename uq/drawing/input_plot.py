@@ -59,7 +59,7 @@ def inputs(
         width = 44 if columns == 1 else 20
         per = 1.0
         if law.times is None:
-            per = input_axis(panel, ds[name], values, width)
+            per = input_axis(panel, ds, name, width)
         else:
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))

@@ -22,6 +22,7 @@ from uq.rows.elements import Floats
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
 _BELOW = 0.5  # from given axes to the legend below them, where their label is one line [inch]
+_HALF = 19  # characters of a label that fits half of a `Drawing` of one column
 _SHORT = 30  # characters of labels that fit side by side
 
 _CHARACTERS = 6
@@ -175,7 +176,8 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
     handles, labels = axes.get_legend_handles_labels()
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
-        across = 2 if figure.get_figwidth() > WIDTH else 1
+        short = max(map(len, labels), default=0) <= _HALF
+        across = 2 if short or figure.get_figwidth() > WIDTH else 1
         lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):

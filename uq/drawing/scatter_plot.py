@@ -32,9 +32,9 @@ from uq.rows.elements import (
     named_elements,
     replicates_of,
 )
+from uq.rows.variables import input_unit
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
-from uq.units import unit_of
 from uq.wording import counted
 
 _MOST_INPUTS = 3
@@ -85,7 +85,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     parts = _parts(rows, len(element.values))
     medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
     for panel, name in zip(panels, first, strict=True):
-        per = input_axis(panel, rows[name], inputs[name], width=46 if alone else 30)
+        per = input_axis(panel, ds, name, width=46 if alone else 30)
         x = inputs[name] / per
         _points(panel, x, shown)
         for words, (own, colour) in parts.items():
@@ -256,9 +256,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
         raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
     codes = rows["regime"].values
     leading = _deciding(inputs, codes)[:_MOST_INPUTS]
-    units = {
-        name: unit_of(rows[name].attrs["units"], np.abs(inputs[name]).max()) for name in leading
-    }
+    units = {name: input_unit(ds, name) for name in leading}
     size = len(leading) - 1
     alone = size == 1
     height = 2.1 if alone else 1.45 * size

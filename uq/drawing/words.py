@@ -106,8 +106,14 @@ def in_words(variable: xr.DataArray) -> str:
 
 def with_symbol(words: str, variable: xr.DataArray) -> str:
     """Return words for a variable with its symbol, unless they are its symbol."""
+    symbol = symbol_beside(words, variable)
+    return f"{words} ({symbol})" if symbol else words
+
+
+def symbol_beside(words: str, variable: xr.DataArray) -> str:
+    """Return the symbol of a variable as text (never broken), "" if the words are its symbol."""
     symbol = as_text(symbol_of(variable)).replace(" ", "\u00a0")
-    return words if symbol in ("", as_text(words)) else f"{words} ({symbol})"
+    return "" if symbol == as_text(words) else symbol
 
 
 def meaning_of(variable: xr.DataArray) -> str:

@@ -154,14 +154,15 @@ def learn(
     if not 0 <= cv < MOST_CV:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")
     rows = independent_rows(own_rows(prior_of(ds)))
-    found, kept = posterior(rows, inspections, cv), list[Path]()
+    found, kept, new_rows = posterior(rows, inspections, cv), list[Path](), 0
     if why := censoring(found):
         raise RunError(why)
     if why := distrust(found):
         if budget is None:
             raise RunError(why + ("" if why_no_new_rows(rows, found) else _HINT))
         rows, found, kept = enlarged(rows, found, inspections, cv, budget)
-    result = as_result(rows, found, inspections, cv)
+        new_rows = budget.rows
+    result = as_result(rows, found, inspections, cv, new_rows)
     if output is not None:
         write_result(result, Path(output))
     for path in kept:

@@ -96,6 +96,7 @@ class LogNormal(Law):
     )
 
     either = (("mean", "cv"), ("median", "sigma"))
+    pure = ("cv", "sigma")
 
     distribution: Literal["lognormal"]
     mean: Positive | None = None
@@ -161,6 +162,7 @@ class Beta(Law):
     """Beta law of two shapes, scaled to two ends."""
 
     _ascending = ("lower", "upper")
+    pure = ("alpha", "beta")
 
     distribution: Literal["beta"]
     alpha: Positive
@@ -177,6 +179,8 @@ class Beta(Law):
 class Weibull(Law):
     """Weibull law: P(X > x) = exp(-(x/scale)^shape)."""
 
+    pure = ("shape",)
+
     distribution: Literal["weibull"]
     shape: Positive
     scale: Positive
@@ -187,6 +191,8 @@ class Weibull(Law):
 
 class Gamma(Law):
     """Gamma law of mean shape * scale and variance shape * scale^2."""
+
+    pure = ("shape",)
 
     distribution: Literal["gamma"]
     shape: Positive

@@ -30,7 +30,7 @@ LEVEL_MEANING = ", ".join(f"{name}: {meaning}" for name, meaning in LEVELS.items
 
 
 class Law(BaseModel):
-    """A law of one variable; arguments in the parameter's unit."""
+    """A law of one variable; arguments in the parameter's unit, unless they are `pure`."""
 
     model_config = STRICT
 
@@ -38,6 +38,8 @@ class Law(BaseModel):
     discrete: ClassVar[bool] = False
     either: ClassVar[tuple[tuple[str, ...], ...]] = ()
     """Sets of arguments, one of which is given."""
+    pure: ClassVar[tuple[str, ...]] = ()
+    """Arguments without a unit."""
 
     source: str = Field("", description="where the numbers come from; shown in every result")
     truncate: Annotated[tuple[float, float] | None, LIST] = Field(

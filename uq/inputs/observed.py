@@ -89,6 +89,8 @@ class Listed(Law):
 class DiscreteChoice(Listed):
     """One of several values, each with its weight; equally likely if no weights are given."""
 
+    pure = ("weights",)
+
     distribution: Literal["discrete-choice"]
     values: Annotated[Numbers, Field(min_length=1)]
     weights: Annotated[tuple[Positive, ...], LIST] | None = Field(
@@ -136,6 +138,7 @@ class Empirical(Listed):
     """The values in a column of a CSV file, each equally likely to be drawn."""
 
     either = (("file", "column"), ("values",))
+    pure = ("file", "column")
 
     distribution: Literal["empirical"]
     file: str | None = Field(None, description="CSV file with a header, beside the study file")
@@ -165,6 +168,8 @@ def values_problem(values: tuple[float, ...]) -> str | None:
 
 class Histogram(Law):
     """Counts of values in bins, uniform within each bin."""
+
+    pure = ("counts",)
 
     distribution: Literal["histogram"]
     edges: Numbers = Field(description="ends of the bins, ascending, one more than counts")

@@ -42,7 +42,7 @@ UNIT_PULLS = "unit_law_pulls"
 _LAW = (LAW_PULLS, UNIT_PULLS, LAW_FOLLOWS, LAW_SCORES)
 _WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
-MODEL_ERROR = "model_error"
+MODEL_ERROR, NEW_ROWS = "model_error", "new_rows"
 WORLDS = "worlds"
 _NESTING = ("world", "unit", "repeat")
 _COMPRESSED = {"zlib": True, "complevel": 1}
@@ -50,7 +50,11 @@ _COMPRESSED = {"zlib": True, "complevel": 1}
 
 
 def as_result(
-    rows: xr.Dataset, found: Posterior, inspections: Sequence[Inspection], model_cv: float
+    rows: xr.Dataset,
+    found: Posterior,
+    inspections: Sequence[Inspection],
+    model_cv: float,
+    new_rows: int = 0,
 ) -> xr.Dataset:
     """Return a result with what inspections leave of its rows.
 
@@ -62,6 +66,8 @@ def as_result(
         What the inspections leave of them.
     inspections : sequence of Inspection
     model_cv : float
+    new_rows : int
+        How many new rows were allowed, 0 if none was needed.
 
     Returns
     -------
@@ -118,6 +124,7 @@ def as_result(
         INSPECTIONS: json.dumps([as_table(one) for one in inspections]),
         LEDGER: json.dumps([digest(one) for one in inspections]),
         MODEL_ERROR: float(model_cv),
+        NEW_ROWS: new_rows,
         WORLDS: len(found.evidence.log_worlds),
         "prior_title": _prior_title(rows),
     }

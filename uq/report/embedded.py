@@ -13,11 +13,10 @@ from uq.conclusions.parts import Quantity
 from uq.conclusions.words import called
 from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
-from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
-from uq.drawing.words import element_in_words, in_words, unbroken, with_symbol
+from uq.drawing.words import element_in_words, meaning_of, symbol_beside, unbroken
 from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
@@ -38,8 +37,10 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.results import failed
+from uq.rows.variables import input_unit
 from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
+from uq.units import Unit
 from uq.wording import threshold
 
 MOST_ROWS = 20_000
@@ -77,7 +78,7 @@ def rows_inside(
     inputs = independent_inputs(whole)
     rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
     elements = list(population(rows, outputs))
-    columns = [_input(rows, name) for name in inputs]
+    columns = [_input(rows, name, input_unit(findings.ds, name)) for name in inputs]
     promises = {one.name: one.promise for one in answered if one.promise is not None}
     columns += [
         _output(rows, one, analysis) | {"promised": list(promised(promises.get(one.name)))}
@@ -162,12 +163,12 @@ def _drawn(elements: Sequence[Element], analysis: AnalysisTable) -> int:
     )
 
 
-def _input(rows: xr.Dataset, name: str) -> dict[str, Any]:
-    variable, values = rows[name], rows[name].values
-    factor, unit = scale_of([variable])
-    return _column(name, with_symbol(called(name), variable), unit, 1 / factor, values) | {
+def _input(rows: xr.Dataset, name: str, unit: Unit) -> dict[str, Any]:
+    variable = rows[name]
+    return _column(name, called(name), *unit, variable.values) | {
         "role": "input",
-        "meaning": plain(readable(in_words(variable))),
+        "symbol": plain(symbol_beside(called(name), variable)),
+        "meaning": plain(readable(meaning_of(variable))),
         "thresholds": [],
     }
 

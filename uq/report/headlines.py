@@ -9,7 +9,7 @@ from uq.report.pictures import Picture
 _FIGURE = Markup("<figure{}>{}</figure>")  # the verdict says of what
 
 
-def headline(found: Answer, drawn: list[Picture]) -> Markup:
+def headline(found: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
     """Return the answer as HTML; takes the figure that it shows out of those drawn.
 
     Parameters
@@ -17,11 +17,16 @@ def headline(found: Answer, drawn: list[Picture]) -> Markup:
     found : Answer
     drawn : list of Picture
         The figures of the results.
+    by_regime : list of Picture
+        The figures of the rows by their regimes, which the answer may be about.
     """
     lead = found.lead
-    own = [one for one in drawn if lead is not None and one.of.name == lead.output]
+    own = [(drawn, one) for one in drawn if lead is not None and one.of.name == lead.output]
+    if found.regimes_first:
+        own = [*((by_regime, one) for one in by_regime), *own]
     if not own:
         return fragment(found)
-    drawn.remove(own[0])
-    kind = Markup(' class="image"') if own[0].is_image else ""
-    return fragment(found, _FIGURE.format(kind, own[0].html))
+    among, shown = own[0]
+    among.remove(shown)
+    kind = Markup(' class="image"') if shown.is_image else ""
+    return fragment(found, _FIGURE.format(kind, shown.html))

@@ -8,17 +8,19 @@ import xarray as xr
 
 from uq.analysis.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.conclusions.sources import mark
-from uq.conclusions.words import unit_for
+from uq.conclusions.words import Unit, unit_of_input
 from uq.contract import Floats
 from uq.drawing.words import meaning_of, symbol_of, unbroken
 from uq.greek import readable, symbol
 from uq.inputs.law import Law
 from uq.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
+from uq.report.symbols import indexed
 from uq.rows.elements import study_file_of
+from uq.rows.variables import input_unit
 from uq.study.file import Tied
-from uq.units import beside, typical, unit_of
-from uq.wording import law
+from uq.units import PURE, beside, unit_of
+from uq.wording import law_in_unit
 
 
 def input_tables(ds: xr.Dataset) -> Iterator[Table]:
@@ -73,16 +75,15 @@ def _uncertain(ds: xr.Dataset) -> Table:
         if name in given:
             law_of, _ = given[name]
             found = compare(*given[name], weights).sampled
-            units = "1" if law_of.times is not None else str(ds[name].attrs["units"])
-            quantiles = _quantiles(name, units, found)
+            unit = unit_of_input(ds, name) if law_of.times is None else Unit()
+            quantiles = _quantiles(name, unit, found)
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
     return without_empty_columns(Table("Uncertain inputs", header, rows))
 
 
-def _quantiles(name: str, units: str, found: Floats) -> list[Cell]:
-    """Return quantiles in the unit of a typical one, to the digits that tell them apart."""
-    unit = unit_for(units, typical(found))
+def _quantiles(name: str, unit: Unit, found: Floats) -> list[Cell]:
+    """Return quantiles to the digits that tell them apart."""
     step = np.ptp(found) / unit.per / 30
     places = max(0, -floor(log10(step))) if step > 0 else 0
     texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
@@ -100,14 +101,14 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
     if isinstance(entry, Tied):
         return f"equals {entry.equals}"
     if entry.times is not None:
-        return f"{entry.times} times {law(entry)}"
-    return beside(law(entry), unbroken(ds[name].attrs["units"]))
+        return f"{entry.times} times {law_in_unit(entry, PURE)}"
+    return law_in_unit(entry, input_unit(ds, name))
 
 
 def _name(ds: xr.Dataset, name: str) -> Cell:
     words = readable(meaning_of(ds[name]))
-    written = symbol(symbol_of(ds[name]))
-    return Cell(name, f"{written}: {words}" if written else words)
+    written = indexed(symbol(symbol_of(ds[name])))
+    return Cell(name, written + f": {words}" if written else words)
 
 
 def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:

@@ -13,6 +13,7 @@ from uq.conclusions.page import STYLE
 from uq.literals import plain
 from uq.printed import printed
 from uq.rows.elements import study_file_of
+from uq.wording import capitalized
 
 _SHOWN_TEXT = 50_000
 """Characters of the study's text that a page shows: a study may contain data files."""
@@ -65,7 +66,8 @@ def templates() -> Any:
     environment.filters |= {
         "breakable": _breakable,
         "inside": _inside,
-        "printed": printed,
+        "printed": _printed,
+        "capitalized": capitalized,
         "quoted": shlex.quote,
     }
     return environment
@@ -74,6 +76,10 @@ def templates() -> Any:
 def _breakable(text: str) -> Markup:
     """Return text as printed, with places where long names may be broken."""
     return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(printed(text))))))
+
+
+def _printed(text: str) -> str:
+    return text if isinstance(text, Markup) else printed(text)
 
 
 def _inside(content: Any) -> Markup:

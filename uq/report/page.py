@@ -86,7 +86,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
     found = outcomes(ds, summary)
     methods = sensitivity_of(findings)
     drawn = list(pictures(findings, "results", without=findings.absent))
-    headed = headline(answer, drawn)
+    by_regime = list(pictures(findings, "rows"))
+    headed = headline(answer, drawn, by_regime)
     lost = int(failed(ds).sum())
     hashes = ("study_sha256", "study_identity")
     return {
@@ -103,7 +104,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "regimes": regime_tables(findings),
         "rows_drawn": [
             *(one for one in drawn if output_of(one.of.name) == REGIME),
-            *pictures(findings, "rows"),
+            *by_regime,
         ],
         "regime_indices": of_output(methods, REGIME),
         "convergence": convergence_of(findings, found),

@@ -10,7 +10,6 @@ import xarray as xr
 from uq.conclusions.promises import Promise
 from uq.conclusions.words import called
 from uq.designs.registry import DESIGNS
-from uq.drawing.words import with_symbol
 from uq.greek import readable
 from uq.inputs.law import Law
 from uq.inputs.observed import IntegerRange
@@ -62,10 +61,7 @@ def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] 
     return {
         "laws": [_plain_law(name, inputs) for name in known],
         "sliders": [name for name in known if name not in without],
-        "without": [
-            [plain(readable(with_symbol(called(name), rows[name]))), why]
-            for name, why in without.items()
-        ],
+        "without": [[plain(readable(called(name))), why] for name, why in without.items()],
         "correlated": list(_copulas(inputs)),
         "lives": {name: _scales(one, inputs) for name, one in integrated.items()},
         "refused": refused,
@@ -127,6 +123,7 @@ def _plain_law(name: str, inputs: Inputs) -> dict[str, Any]:
         "name": name,
         "distribution": _kind(law),
         "args": law.model_dump(exclude=ignored, exclude_none=True, mode="json"),
+        "pure": law.pure,
         "truncate": law.truncate,
         "times": law.times,
         "bounds": [end if isfinite(end) else None for end in inputs.bounds[name]],

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from uq.contract import Model, Output, Status, censored_name
 from uq.rows.sampling import block_labels
 from uq.study.registry import made_here
+from uq.units import Unit, typical, unit_of
 
 if TYPE_CHECKING:
     from uq.rows.sampling import Rows
@@ -41,6 +42,19 @@ def parameter_variable(
     attrs |= {"initial": 1} if declared.initial else {}
     attrs |= {"level": level} if level else {}
     return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
+
+
+def input_unit(ds: xr.Dataset, name: str) -> Unit:
+    """Return the unit in which an input is read, in all sentences, tables and figures.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+        Of an input.
+    """
+    return unit_of(str(ds[name].attrs["units"]), typical(ds[name].values.ravel()))
 
 
 def output_variables(

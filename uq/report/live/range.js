@@ -11,7 +11,7 @@ function rangeOf(selection, column) {
   const shown = make("output", {class: "range-words"});
   const track = make("div", {class: "track"}, make("div", {class: "between"}), low, high);
   const element = make("div", {class: "range", "data-name": column.name, role: "group", "aria-label": `Range of ${column.label}`},
-    make("span", {title: column.meaning}, column.label), track, shown);
+    make("span", {title: column.meaning}, ...named(column)), track, shown);
 
   function moved(end) {
     if (Number(low.value) > Number(high.value)) (end ? high : low).value = (end ? low : high).value;

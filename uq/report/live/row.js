@@ -4,8 +4,8 @@ function cardOf(rows, row, close) {
   const name = rows.numbers[row];
   const command = `uq row ${rows.file} ${name}${rows.model}`;
   const facts = rows.categories.map(one => [one, one.entry(row).label]);
-  const list = pairs => make("dl", {}, ...pairs.flatMap(([{label, meaning}, words]) => [
-    make("dt", {title: meaning}, label), make("dd", {}, words)]));
+  const list = pairs => make("dl", {}, ...pairs.flatMap(([one, words]) => [
+    make("dt", {title: one.meaning}, ...named(one)), make("dd", {}, words)]));
   const of = role => rows.columns.filter(one => one.role === role).map(one => [one, one.wordsOfRow(row)]);
   const done = make("span", {role: "status"});
   const copy = make("button", {type: "button", "on:click": () => copied(command, done)}, "Copy");

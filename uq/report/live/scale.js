@@ -48,8 +48,8 @@ class Scale {
       return found.filter((_, i) => i % every === 0).map(value => value * this.per);
     }
     const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
-    const step = [1, 2, 5, 10].map(one => one * power).find(one => one >= rough);
-    const first = Math.ceil(low / step), inside = Math.max(Math.floor(high / step + 1e-9) - first, 0);
-    return [...new Set(Array.from({length: Math.min(inside, 20) + 1}, (_, i) => (first + i) * step * this.per))];
+    const first = step => Math.ceil(low / step), inside = step => Math.max(Math.floor(high / step + 1e-9) - first(step), 0);
+    const step = [1, 2, 5, 10].map(one => one * power).find(one => inside(one) <= count + 1);
+    return [...new Set(Array.from({length: Math.min(inside(step), 20) + 1}, (_, i) => (first(step) + i) * step * this.per))];
   }
 }

@@ -1,11 +1,9 @@
 // The two sliders of one input: the width of its law, and its place.
 
-const PLAIN = ["cv", "sigma", "shape", "alpha", "beta"]; // arguments without a unit
-
 function slidersOf(name, reweighting, moved) {
   const column = reweighting.columns.get(name), {kind, plain} = reweighting.old.get(name);
   const other = plain.times && reweighting.columns.get(plain.times).label;
-  const label = other ? `${column.label}, as a multiple of ${other}` : column.label;
+  const more = other ? `, as a multiple of ${other}` : "", label = column.label + more;
   const words = make("output", {class: "range-words"});
   const slider = (what, min, max, step, value) => make("input", {
     type: "range", min, max, step, value, "aria-label": `${label}, ${what}`, "on:input": move,
@@ -19,7 +17,7 @@ function slidersOf(name, reweighting, moved) {
   }
 
   function wordsOf(key, value) {
-    const text = one => other || PLAIN.includes(key) ? number(one) : column.words(one);
+    const text = one => other || plain.pure.includes(key) ? number(one) : column.words(one);
     return Array.isArray(value) ? `from ${text(value[0])} to ${text(value.at(-1))}` : `${key} ${text(value)}`;
   }
 
@@ -33,7 +31,7 @@ function slidersOf(name, reweighting, moved) {
 
   show();
   const element = make("div", {class: "tolerance", role: "group", "aria-label": label, "data-name": name},
-    make("span", {title: column.meaning}, label), words,
+    make("span", {title: column.meaning}, ...named(column), more), words,
     ...(kind.scaleOnly ? [] : [make("label", {}, "width", factor)]), make("label", {}, "shift", shift));
   return {element, reset() { factor.value = 1; shift.value = 0; move(); }};
 }

@@ -26,6 +26,12 @@ function capitalized(text) {
   return text.slice(0, 1).toUpperCase() + text.slice(1);
 }
 
+// The name of a column with its symbol, whose indices stand below the line.
+function named({label, symbol}) {
+  const indexed = () => symbol.split(/_([A-Za-z0-9]+)/).map((part, i) => i % 2 ? make("sub", {}, part) : part);
+  return symbol ? [`${label} (`, ...indexed(), ")"] : [label];
+}
+
 // An element with attributes and contents; a name with ":" is an event.
 function make(tag, attributes = {}, ...contents) {
   const element = document.createElement(tag);
