@@ -47,12 +47,14 @@ def test_tolerances_that_help_about_as_much_are_named_together():
     )
     assert now == pytest.approx(quantile(ALIKE), abs=0.03)
     assert low < then < high and low < quantile(ALIKE | {"x4": 0.025}) < high
-    (then,) = numbers(r"x3 \(#\) would help about as much\.", one.also)
+    (then,) = numbers(r"x3 \(5 % quantile #\) would help about as much\.", one.also)
     assert then == pytest.approx(quantile(ALIKE | {"x3": 0.031}), abs=0.03)
-    (sure,) = numbers(
-        "With 95 % confidence, at least 95 % would then stay above #.", one.sure.promised
+    sure, studied = numbers(
+        "With 95 % confidence, at least 95 % would then stay above #; as studied, by the same"
+        " estimate, #.",
+        one.sure.promised,
     )
-    assert now < sure <= low
+    assert studied < now < sure <= low
     assert one.text == f"{one.said} {one.sure.promised} {one.also}"
 
 

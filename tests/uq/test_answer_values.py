@@ -93,9 +93,10 @@ def test_what_the_rows_cannot_show_is_no_advice():
 
 def test_no_less_is_promised_than_now():
     promise = Promise(0.95, 0.95, 13.9, np.nan, Unit("h"), is_life=True)
-    assert promise.would_be(Estimate(20.0, 11.2, 22.0)) == ""
-    assert promise.would_be(Estimate(20.0, 14.2, 22.0)).endswith(
-        "would then last longer than 14.2 h."
+    before = Estimate(19.0, 14.0, 21.0)
+    assert promise.would_be(Estimate(20.0, 13.95, 22.0), before) == ""
+    assert promise.would_be(Estimate(20.0, 14.2, 22.0), before).endswith(
+        "would then last longer than 14.2 h; as studied, by the same estimate, 14 h."
     )
 
 

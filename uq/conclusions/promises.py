@@ -117,17 +117,18 @@ class Promise:
             return replace(self, lower=nan) if isfinite(self.upper) else None
         return replace(self, upper=nan) if isfinite(self.lower) else None
 
-    def would_be(self, quantile: Estimate) -> str:
-        """Return what an end of the interval of the quantile would promise.
+    def would_be(self, quantile: Estimate, before: Estimate) -> str:
+        """Return what an end of the interval of the quantile would promise, beside the same now.
 
-        "" without it, or where it promises no more than is promised now: the rows may be too few.
+        "" without it, or where it promises no more than now: the rows may be too few. It is not
+        compared with the bound, of another estimator: of rows as computed.
         """
         is_upper = isfinite(self.upper)
-        bound = quantile.high if is_upper else quantile.low
-        better = bound < self.upper if is_upper else bound > self.lower
-        if not (isfinite(bound) and better):
+        bound, now = ((one.low, one.high)[is_upper] for one in (quantile, before))
+        if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
-        return f"{self.opening('would then')} {self.unit.text(bound, (-inf, inf)[is_upper])}."
+        then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
+        return f"{self.opening('would then')} {then}; as studied, by the same estimate, {studied}."
 
     def opening(self, then: str = "") -> str:
         """Return what a single bound promises, up to the bound; `then` says when."""

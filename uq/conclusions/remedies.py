@@ -92,6 +92,12 @@ class Tightened:
         return percent(one.value) if self.is_share else self.unit.text(one.value)
 
     @property
+    def after_in_words(self) -> str:
+        """The number that it would be; a quantile says which."""
+        what = "" if self.is_share else f"{self.what.removeprefix('the ')} "
+        return f"{what}{self.text(self.after)}"
+
+    @property
     def interval(self) -> str:
         """The interval of the number that it would be; "" without one."""
         if not self.after.has_interval:
@@ -113,7 +119,7 @@ class Tightened:
     @property
     def promised(self) -> str:
         """What could then be promised: an end of the interval; "" where nothing could."""
-        return "" if self.promise is None else self.promise.would_be(self.after)
+        return "" if self.promise is None else self.promise.would_be(self.after, self.before)
 
     @property
     def besides(self) -> str:
@@ -166,7 +172,7 @@ class Advice:
     @property
     def also(self) -> str:
         """Which other tolerances would help about as much; "" for none."""
-        named = [f"{called_together(one.inputs)} ({one.text(one.after)})" for one in self.alike]
+        named = [f"{called_together(one.inputs)} ({one.after_in_words})" for one in self.alike]
         return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
 
     @property

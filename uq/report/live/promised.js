@@ -1,9 +1,15 @@
-// What could be promised under other laws: the end of the interval of a quantile, beside what is promised now.
+// What could be promised under other laws: the end of the interval of a quantile, beside the same as studied.
 
 // Return an element and what fills it, in steps.
-function promisedOf() {
+function promisedOf(rows) {
+  const studied = new Reweighting(rows), known = new Map();
   const element = make("p", {class: "promised", role: "status"});
   const said = (column, one, bound) => data(bound, column.words(outwards(column, bound, one.upper), 3));
+
+  function* boundOf(column, one, reweighting) {
+    const found = yield* new WeightedQuantile(reweighting, column).of(one.probability);
+    return one.upper ? found.high : found.low;
+  }
 
   function* fill(column, reweighting, isChanged) {
     element.replaceChildren();
@@ -14,10 +20,10 @@ function promisedOf() {
         sentences.push(`${one.opening} `, said(column, one, one.bound), ".");
         continue;
       }
-      const found = yield* new WeightedQuantile(reweighting, column).of(one.probability);
-      const bound = one.upper ? found.high : found.low;
+      if (!known.has(one)) known.set(one, yield* boundOf(column, one, studied));
+      const bound = yield* boundOf(column, one, reweighting), before = known.get(one);
       sentences.push(...(isFinite(bound)
-        ? [`${one.then} `, said(column, one, bound), "; as studied, ", said(column, one, one.bound), "."]
+        ? [`${one.then} `, said(column, one, bound), "; as studied, by the same estimate, ", said(column, one, before), "."]
         : ["What could then be promised is not known: too few rows carry it."]));
     }
     element.replaceChildren(...sentences);

@@ -9,7 +9,7 @@ function tolerancesOf(rows) {
   let shown = outputs.find(one => one === rows.columns[rows.first[1]]) ?? outputs[0];
   const before = events.map(event => reweighting.probability(event)), curves = new Map();
   const said = make("p", {class: "said", role: "status"}), table = make("table", {class: "found"});
-  const promised = promisedOf(), picture = make("figure"), done = make("span", {role: "status"}), command = make("code", {});
+  const promised = promisedOf(rows), picture = make("figure"), done = make("span", {role: "status"}), command = make("code", {});
   const copy = make("button", {type: "button", "on:click": () => copied(command.textContent, done)}, "Copy");
   const reset = make("button", {type: "button", "on:click": () => sliders.forEach(one => one.reset())}, "As studied");
   const show = eventually(update), later = laterOf();
