@@ -35,6 +35,8 @@ class Tightened:
     promise : Promise or None
         What is promised of the same quantile now; None where an end of the interval of `after`
         could not be promised instead.
+    failed : Estimate or None
+        The ends of that interval with failed rows at worst, where rows failed.
     """
 
     inputs: tuple[str, ...]
@@ -49,6 +51,7 @@ class Tightened:
     wants_more: bool | None = None
     law: str = ""
     promise: Promise | None = None
+    failed: Estimate | None = None
 
     @property
     def is_seen(self) -> bool:
@@ -112,8 +115,11 @@ class Tightened:
 
     @property
     def promised(self) -> str:
-        """What could then be promised: an end of the interval; "" where nothing could."""
-        return "" if self.promise is None else self.promise.would_be(self.after)
+        """What could then be promised: an end of the interval; "" where nothing could.
+
+        As in the bounds of now, failed rows are beyond it.
+        """
+        return "" if self.promise is None else self.promise.would_be(self.failed or self.after)
 
     @property
     def besides(self) -> str:

@@ -14,16 +14,28 @@ function promisedOf() {
         sentences.push(`${one.opening} `, said(column, one, one.bound), ".");
         continue;
       }
-      const found = yield* new WeightedQuantile(reweighting, column).of(one.probability);
-      const bound = one.upper ? found.high : found.low;
-      sentences.push(...(isFinite(bound)
+      const bound = yield* endOf(reweighting, column, one);
+      const why = column.states.includes(FAILED) ? "too many rows failed, or" : "";
+      sentences.push(...(isFinite(bound) && !(column.life && bound <= 0)
         ? [`${one.then} `, said(column, one, bound), "; as studied, ", said(column, one, one.bound), "."]
-        : ["What could then be promised is not known: too few rows carry it."]));
+        : [["What could then be promised is not known:", why, "too few rows carry it."].filter(Boolean).join(" ")]));
     }
     element.replaceChildren(...sentences);
   }
 
   return {element, fill};
+}
+
+// The end of the interval, with failed rows beyond it, as they are beyond the bound of now.
+function* endOf(reweighting, column, {probability, upper}) {
+  const end = function* (some) {
+    const found = yield* new WeightedQuantile(reweighting, some).of(probability);
+    return upper ? found.high : found.low;
+  };
+  const plain = yield* end(column);
+  if (!column.states.includes(FAILED)) return plain;
+  const worst = yield* end(column.withFailedAt(upper ? Infinity : column.life ? 0 : -Infinity));
+  return upper ? Math.max(plain, worst) : Math.min(plain, worst);
 }
 
 // A bound that its digits do not make larger than it is.
