@@ -1,6 +1,7 @@
 """What is said of inputs with few values, and of values that recur, are missing or little known."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from computed import asking, computed, linear, study_of, with_output
 
 from uq.conclusions.answer import answer
 from uq.conclusions.promises import Promise
+from uq.conclusions.remedies import Tightened
 from uq.conclusions.words import Unit
 from uq.estimate import Estimate
 
@@ -103,3 +105,13 @@ def test_no_less_is_promised_than_now():
 def test_an_estimate_without_interval_is_not_promised():
     found = answer(linear(samples=20)).lead.promise.sentence
     assert re.fullmatch(r"About 95 % stay above .*; about 95 % stay below .*\.", found)
+
+
+def test_failed_rows_lie_beyond_what_could_then_be_promised():
+    promise = Promise(0.95, 0.95, 13.9, np.nan, Unit("h"), is_life=True)
+    after = Estimate(20.0, 15.0, 22.0)
+    one = Tightened(("x1",), "the 5 % quantile", after=after, promise=promise)
+    assert one.promised.endswith("would then last longer than 15 h.")
+    worst = replace(one, failed=Estimate(low=14.2, high=22.0))
+    assert worst.promised.endswith("would then last longer than 14.2 h.")
+    assert replace(one, failed=Estimate(low=0.0, high=22.0)).promised == ""

@@ -168,7 +168,8 @@ def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     words = r"With 95 % confidence, at least 95 % stay below .*, within the joint bounds of work, "
     assert re.fullmatch(words + "angle.", one.sentence)
     assert angle.lower == bounds["angle"]["joint_bounds"]["lower"] < angle.upper
-    assert "% stay above " in angle.sentence and " and stay below " in angle.sentence
+    assert "% of the defined values stay above " in angle.sentence
+    assert " and stay below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
     assert not found["life[side=left,depth=0.5]"].joint
     said = answer_json(conclude(Findings(ds)))["quantities"]["work[side=left]"]["promise"]

@@ -5,13 +5,14 @@ import shlex
 
 import numpy as np
 import pytest
-from computed import computed, study_of
+from computed import computed, study_of, with_status
 from explored import cells
 from report_scripts import scripts
 
 import uq as api
 from uq.analysis.findings import Findings
 from uq.analysis.what_if import _changed, answer, read_changes, what_if_json
+from uq.contract import Status
 from uq.errors import RunError
 from uq.intervals import share_interval
 from uq.population.functionals import Population
@@ -180,6 +181,27 @@ def test_the_page_says_what_could_then_be_promised(shown):
     shown_then = float(text.split("last longer than ")[1].split()[0])
     assert shown_then <= then < shown_then * 1.01
     assert text.startswith("With 95 % confidence, at least 95 % would then last longer than")
+
+
+@pytest.mark.parametrize("case", ["weighted", "integrated"])
+def test_failed_rows_lie_beyond_what_could_then_be_promised(shown, case):
+    name, laws, *_ = CASES[case]
+    ds = scaled(laws)
+    far = ds[name] > ds[name].quantile(0.98)
+    ds = with_status(ds, np.flatnonzero(far), Status.RAISED)
+    ds = ds.assign({one: ds[one].where(~far) for one in ("life", "y")})
+    browser = shown(ds)
+    move(browser, name, 0.8, 0.0)
+    _, found = asked_of_python(browser, ds)
+    known = what_if_json(found)["outputs"]["life"]["quantiles"]["0.05"]
+    assert known["failed_low"] < known["low"]
+    cells = "[...document.querySelectorAll('#tolerances .promised data')]"
+    for _ in range(100):
+        browser.painted()
+        then = browser.value(f"{cells}.map(one => Number(one.value))")
+        if len(then) == 2:
+            break
+    assert then[0] == pytest.approx(known["failed_low"], rel=1e-7)
 
 
 CURVES = """(() => { const all = new Reweighting(rows); MOVES

@@ -63,10 +63,12 @@ def promise_of(
     ]
     # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
     signed = bool(joint) and element.is_angle
-    ends = [
-        quantile_of(described, p) if matters and not signed else NOTHING
+    found = [
+        described.find("quantiles", repr(p)) if matters and not signed else None
         for p, matters in zip((round(1 - coverage, 12), coverage), sides, strict=True)
     ]
+    ends = [one.best.estimate if one else NOTHING for one in found]
+    with_failed = [one.best.failed if one else None for one in found]
     reason = ""
     if not any(map(isfinite, bounds)):
         reason = _why_no_bound(ds, element, both, bounds)
@@ -80,6 +82,7 @@ def promise_of(
         bounds[1],
         unit,
         (ends[0], ends[1]),
+        (with_failed[0], with_failed[1]),
         reason,
         element.is_lifetime,
         element.is_angle and not joint,

@@ -47,6 +47,8 @@ class Promise:
     quantiles : tuple of Estimate
         Where there is no tolerance bound: quantiles of one less the coverage and of the coverage,
         those that are asked for (else without numbers).
+    failed : tuple
+        The same quantiles with failed rows at either side; None where none failed.
     reason : str
         Why there is no tolerance bound, or "".
     unit : Unit
@@ -68,6 +70,7 @@ class Promise:
     upper: float
     unit: Unit
     quantiles: tuple[Estimate, Estimate] = (NOTHING, NOTHING)
+    failed: tuple[Estimate | None, Estimate | None] = (None, None)
     reason: str = ""
     is_life: bool = False
     of_magnitude: bool = False

@@ -1,6 +1,7 @@
 """What could be done: what a tighter tolerance would change, and each piece of advice."""
 
 from dataclasses import dataclass, field
+from math import isfinite
 
 from uq.conclusions.promises import Promise
 from uq.conclusions.words import Unit, called_together, joined
@@ -35,6 +36,8 @@ class Tightened:
     promise : Promise or None
         What is promised of the same quantile now; None where an end of the interval of `after`
         could not be promised instead.
+    failed : Estimate or None
+        The ends of that interval with failed rows at worst, where rows failed.
     """
 
     inputs: tuple[str, ...]
@@ -49,6 +52,7 @@ class Tightened:
     wants_more: bool | None = None
     law: str = ""
     promise: Promise | None = None
+    failed: Estimate | None = None
 
     @property
     def is_seen(self) -> bool:
@@ -118,8 +122,14 @@ class Tightened:
 
     @property
     def promised(self) -> str:
-        """What could then be promised: an end of the interval; "" where nothing could."""
-        return "" if self.promise is None else self.promise.would_be(self.after, self.before)
+        """What could then be promised: an end of the interval; "" where nothing could.
+
+        As in the bounds of now, failed rows are beyond it.
+        """
+        if self.promise is None:
+            return ""
+        before = self.promise.failed[isfinite(self.promise.upper)] or self.before
+        return self.promise.would_be(self.failed or self.after, before)
 
     @property
     def besides(self) -> str:

@@ -72,6 +72,7 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
             key=key_of("outputs", quantity.name, *key, verb="what-if", options=given),
             wants_more=more,
             promise=_bounding(quantity, key),
+            failed=one.best.failed,
         )
 
 

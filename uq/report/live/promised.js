@@ -6,11 +6,6 @@ function promisedOf(rows) {
   const element = make("p", {class: "promised", role: "status"});
   const said = (column, one, bound) => data(bound, column.words(outwards(column, bound, one.upper), 3));
 
-  function* boundOf(column, one, reweighting) {
-    const found = yield* new WeightedQuantile(reweighting, column).of(one.probability);
-    return one.upper ? found.high : found.low;
-  }
-
   function* fill(column, reweighting, isChanged) {
     element.replaceChildren();
     const sentences = [];
@@ -20,16 +15,29 @@ function promisedOf(rows) {
         sentences.push(`${one.opening} `, said(column, one, one.bound), ".");
         continue;
       }
-      if (!known.has(one)) known.set(one, yield* boundOf(column, one, studied));
-      const bound = yield* boundOf(column, one, reweighting), before = known.get(one);
-      sentences.push(...(isFinite(bound)
+      if (!known.has(one)) known.set(one, yield* endOf(studied, column, one));
+      const bound = yield* endOf(reweighting, column, one), before = known.get(one);
+      const why = column.states.includes(FAILED) ? "too many rows failed, or" : "";
+      sentences.push(...(isFinite(bound) && !(column.life && bound <= 0)
         ? [`${one.then} `, said(column, one, bound), "; as studied, by the same estimate, ", said(column, one, before), "."]
-        : ["What could then be promised is not known: too few rows carry it."]));
+        : [["What could then be promised is not known:", why, "too few rows carry it."].filter(Boolean).join(" ")]));
     }
     element.replaceChildren(...sentences);
   }
 
   return {element, fill};
+}
+
+// The end of the interval, with failed rows beyond it, as they are beyond the bound of now.
+function* endOf(reweighting, column, {probability, upper}) {
+  const end = function* (some) {
+    const found = yield* new WeightedQuantile(reweighting, some).of(probability);
+    return upper ? found.high : found.low;
+  };
+  const plain = yield* end(column);
+  if (!column.states.includes(FAILED)) return plain;
+  const worst = yield* end(column.withFailedAt(upper ? Infinity : column.life ? 0 : -Infinity));
+  return upper ? Math.max(plain, worst) : Math.min(plain, worst);
 }
 
 // A bound that its digits do not make larger than it is.

@@ -22,6 +22,15 @@ class Column {
     });
   }
 
+  // The same with a value in the rows that failed.
+  withFailedAt(value) {
+    const state = value === Infinity ? NEVER : ENDED, at = this.states.map(one => one === FAILED);
+    return Object.assign(Object.create(this), {
+      values: this.values.map((one, row) => at[row] ? value : one),
+      states: this.states.map((one, row) => at[row] ? state : one),
+    });
+  }
+
   // Digits that the values of all rows have in common.
   get common() {
     if (this.alike === undefined) {
