@@ -22,6 +22,7 @@ from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
 from uq.population.scaling import population
+from uq.printed import printed
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
 from uq.report.tolerances import promised, tolerances
@@ -200,13 +201,13 @@ def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
     at = threshold(value, element.units)
     label = f"|{column['label']}|" if element.is_angle else column["label"]
-    return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
+    return f"P({label} {'<' if element.is_lifetime else '>'} {printed(at)})"
 
 
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
     return {
         "name": name,
-        "label": plain(readable(words)),
+        "label": plain(printed(readable(words))),
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),

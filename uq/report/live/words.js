@@ -9,7 +9,7 @@ function number(value, digits = 4) {
   if (size !== 0 && (size < 1e-4 || size >= 10 ** Math.max(6, digits))) {
     const [mantissa, power] = value.toExponential(digits - 1).split("e");
     const raised = [...String(Number(power))].map(one => RAISED["-0123456789".indexOf(one)]);
-    return `${Number(mantissa)}\u00b710${raised.join("")}`.replace("-", "\u2212");
+    return `${Number(mantissa)}\u00a0\u00d7\u00a010${raised.join("")}`.replace("-", "\u2212");
   }
   return String(Number(value.toPrecision(digits))).replace("-", "\u2212");
 }
