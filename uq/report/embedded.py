@@ -25,6 +25,7 @@ from uq.population.scaling import population
 from uq.printed import printed
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
+from uq.report.symbols import parts_of
 from uq.report.tolerances import promised, tolerances
 from uq.rows.commands import model_option
 from uq.rows.element import Element
@@ -168,7 +169,7 @@ def _input(rows: xr.Dataset, name: str, unit: Unit) -> dict[str, Any]:
     variable = rows[name]
     return _column(name, called(name), *unit, variable.values) | {
         "role": "input",
-        "symbol": plain(symbol_beside(called(name), variable)),
+        "symbol": parts_of(symbol_beside(called(name), variable)),
         "meaning": plain(readable(meaning_of(variable))),
         "thresholds": [],
     }

@@ -92,8 +92,10 @@ class Column {
       .sort((a, b) => this.values[a] - this.values[b] || this.states[a] - this.states[b]);
   }
 
+  // In plain text, where no index of a symbol can stand below the line.
   get title() {
-    return this.unit ? `${this.label} [${this.unit}]` : this.label;
+    const [symbol, ...more] = this.symbol ?? [], name = symbol && !more.length ? `${this.label} (${symbol})` : this.label;
+    return this.unit ? `${name} [${this.unit}]` : name;
   }
 }
 

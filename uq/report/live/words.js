@@ -26,10 +26,10 @@ function capitalized(text) {
   return text.slice(0, 1).toUpperCase() + text.slice(1);
 }
 
-// The name of a column with its symbol, whose indices stand below the line.
-function named({label, symbol}) {
-  const indexed = () => symbol.split(/_([A-Za-z0-9]+)/).map((part, i) => i % 2 ? make("sub", {}, part) : part);
-  return symbol ? [`${label} (`, ...indexed(), ")"] : [label];
+// The name of a column with its symbol, every other part of which is an index below the line.
+function named({label, symbol = [""]}) {
+  const indexed = symbol.map((part, i) => i % 2 ? make("sub", {}, part) : part);
+  return symbol[0] ? [`${label} (`, ...indexed, ")"] : [label];
 }
 
 // An element with attributes and contents; a name with ":" is an event.
