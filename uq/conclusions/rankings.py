@@ -87,6 +87,10 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         apart = max(first.index.value - second.index.value, GOAL / 2)
         factor = (hypot(first.half, second.half) / apart) ** 2
         reason = f"the order of {names} is not settled"
+        if factor <= 1:  # the rows tell apart what differs by more
+            does = "decide that" if split_name(name)[0] == "P" else "contribute"
+            reason = f"{names} {does} alike: {kind.key} is {first.index.value:.2f} at most"
+            factor = nan
         return Ranking(name, method, kind.key, what, reason=reason, rows_factor=factor)
     moved = _effects(findings, method, name)
     contributions = tuple(
