@@ -65,6 +65,18 @@ def test_inputs_that_many_rows_do_not_tell_apart_contribute_alike():
     assert "rows" not in rules(found) and found.enough.sentence.startswith("The rows are enough: ")
 
 
+def test_where_many_inputs_contribute_little_none_explains_much():
+    ds = linear(samples=6000)
+    noise = np.random.default_rng(1).normal(0.0, 1.2, 6000)
+    faint = noise + sum(ds[name].values for name in ("x1", "x2", "x3", "x4"))
+    found = answer(asking(with_output(ds, "faint", faint), outputs=["faint"]))
+    said = found.lead.ranking.sentence
+    assert re.fullmatch(
+        r"No single input explains much: S1 of (x\d, ){3}x\d is 0\.0\d at most\.", said
+    ), said
+    assert found.lead.ranking.denies_a_leader and "rows" not in rules(found)
+
+
 def test_where_the_rows_themselves_err_more_than_sampling_more_of_them_do_not_help():
     ds = asking(linear(samples=1000), outputs=["y"])
     found = answer(with_output(ds, "y_error", np.full(1000, 0.2)))
