@@ -23,7 +23,7 @@ _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 def symbol(text: str) -> str:
     """Return a symbol with Greek letters and digits as subscripts: ``Omega/(2 pi)`` as Ω/(2 π)."""
     text = WORD.sub(lambda found: _letter(found[0]), text)
-    return re.sub(r"(?<!_)([^\W\d_])_?(\d+)\b", _lowered, text)
+    return re.sub(r"(?<!\w)([^\W\d_])_?(\d+)\b", _lowered, text)
 
 
 def readable(text: str) -> str:

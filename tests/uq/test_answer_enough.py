@@ -1,5 +1,7 @@
 """Whether the rows are enough, for what the study is about and besides."""
 
+import re
+
 import numpy as np
 import pytest
 from answered import lifetime, numbers
@@ -52,6 +54,27 @@ def test_rows_are_advised_for_what_the_study_is_about_alone():
     assert second.startswith("Not enough rows: the order of x")
     assert "what the study asks is settled" not in repr(found)
     assert "rows" in rules(answer(asking(ds, outputs=["even"])))
+
+
+def test_inputs_that_many_rows_do_not_tell_apart_contribute_alike():
+    ds = linear(samples=6000)
+    ds = with_output(ds, "even", sum(ds[name].values for name in ("x1", "x2", "x3", "x4")))
+    found = answer(asking(ds, outputs=["even"]))
+    said = found.lead.ranking.sentence
+    assert re.fullmatch(r"(x\d, ){3}x\d contribute alike: S1 is 0\.2\d at most\.", said), said
+    assert "rows" not in rules(found) and found.enough.sentence.startswith("The rows are enough: ")
+
+
+def test_where_many_inputs_contribute_little_none_explains_much():
+    ds = linear(samples=6000)
+    noise = np.random.default_rng(1).normal(0.0, 1.2, 6000)
+    faint = noise + sum(ds[name].values for name in ("x1", "x2", "x3", "x4"))
+    found = answer(asking(with_output(ds, "faint", faint), outputs=["faint"]))
+    said = found.lead.ranking.sentence
+    assert re.fullmatch(
+        r"No single input explains much: S1 of (x\d, ){3}x\d is 0\.0\d at most\.", said
+    ), said
+    assert found.lead.ranking.denies_a_leader and "rows" not in rules(found)
 
 
 def test_where_the_rows_themselves_err_more_than_sampling_more_of_them_do_not_help():

@@ -145,7 +145,12 @@ def test_an_axis_has_about_as_many_ticks_as_it_has_room_for(asked, half, count):
 
 @pytest.mark.parametrize(
     ("unit", "words"),
-    [("\u00b0", "3\u00b0"), ("", "3"), ("kN", "3 kN"), ("10\u00b3 m", "3\u00b710\u00b3 m")],
+    [
+        ("\u00b0", "3\u00b0"),
+        ("", "3"),
+        ("kN", "3 kN"),
+        ("10\u00b3 m", "3\u00a0\u00d7\u00a010\u00b3 m"),
+    ],
 )
 def test_units_stand_beside_numbers(asked, unit, words):
     plain = json.dumps({"unit": unit, "per": 1, "values": ""})

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from computed import kinds, linear, with_output, with_status
+from explored import PAGE
 from matplotlib.image import imread
 
 from uq.contract import Status
@@ -118,6 +119,18 @@ def test_no_printed_figure_leaves_half_a_page_empty(browser, report):
     )
     browser.do("Emulation.setEmulatedMedia", media="")
     assert 100 < min(heights) and max(heights) < 480  # of 1000 pixels, with its caption
+
+
+def test_a_wide_figure_is_printed_where_it_has_room(browser, tmp_path):
+    wide, narrow = ('<svg viewBox="0 0 174 50"></svg>', '<svg viewBox="0 0 84 60"></svg>')
+    path = tmp_path / "print.html"
+    path.write_text(
+        f"{PAGE}<body><div style='height: 16cm'></div><div class=pictures>"
+        f"<figure class=full>{wide}</figure><figure>{narrow}</figure></div>"
+        "<div style='height: 17cm; break-inside: avoid'></div>"
+    )
+    browser.open(path)
+    assert len(re.findall(rb"/Type\s*/Page\b", browser.pdf())) == 2  # a hole would need a third
 
 
 def test_letters_of_printed_figures_are_not_too_small(browser, report):

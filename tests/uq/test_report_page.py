@@ -10,11 +10,13 @@ from markupsafe import escape
 from matplotlib.figure import Figure
 
 from uq.contract import Status
+from uq.greek import symbol
 from uq.literals import plain
 from uq.plots import FIGURES
 from uq.report import page
 from uq.report.layout import templates
 from uq.report.pictures import picture
+from uq.report.symbols import indexed
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +76,9 @@ def test_a_symbol_has_its_index_below_the_line():
     ds = linear(samples=16)
     ds["x1"].attrs |= {"symbol": "k_tra", "long_name": "stiffness <1>"}
     assert "k<sub>tra</sub>: stiffness &lt;1&gt;" in page(ds, "OUT.nc")
+    assert indexed("dX_c/dt(0)") == "dX<sub>c</sub>/dt(0)"
+    assert indexed(symbol("M_zn1")) == "M<sub>zn1</sub>"
+    assert indexed("gap_at_stop") == "gap_at_stop"
 
 
 def test_a_picture_has_the_colour_of_the_text_around_it():

@@ -15,17 +15,19 @@ from uq.printed import printed
 from uq.wording import capitalized
 
 _STYLE = """
-.answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
+.answer, .answer-words, .answer-side { display: grid; gap: .3rem 2rem;
+  grid-template-columns: minmax(0, 1fr); align-items: start; align-content: start; }
+.answer figure { padding: 0; }
 @media screen and (min-width: 60rem) {
-  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
-    grid-template-rows: auto auto 1fr auto; align-items: start; }
-  .answer-verdict { grid-area: 1 / 1; }
-  .answer > figure { grid-area: 1 / 2 / 3 / 3; }
-  .answer-ranking { grid-area: 2 / 1 / 4 / 2; }
-  .answer-todo { grid-area: 3 / 2 / 5 / 3; }
-  .answer-first { grid-area: 4 / 1; }
+  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr); }
 }
-.answer > figure { padding: 0; }
+@media screen and (width < 60rem) { /* one column: what to do comes before what ends first */
+  .answer-words, .answer-side { display: contents; }
+  .answer-verdict { order: -3; }
+  .answer figure { order: -2; }
+  .answer-ranking { order: -1; }
+  .answer-first { order: 1; }
+}
 .answer p, .answer ul { margin: .25rem 0; }
 .answer ul { padding-left: 1.2rem; }
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
@@ -35,12 +37,13 @@ _STYLE = """
   align-items: center; margin: .3rem 0; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
 .answer-size { font-size: .875em; }
-@media (max-width: 40rem) { .answer { font-size: .875rem; line-height: 1.4; } }
+@media (max-width: 40rem) { .answer { font-size: .875rem; line-height: 1.35; } }
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
 }
 @media print { /* columns, unlike cells of a grid, fill a page before the next begins */
-  .answer { display: block; columns: 2; column-gap: 8mm; }
+  .answer, .answer-words, .answer-side { display: block; }
+  .answer { columns: 2; column-gap: 8mm; }
   .answer :is(p, li, .answer-bar) { break-inside: avoid; }
 }
 """
@@ -65,8 +68,9 @@ def fragment(answer: Answer, picture: str = "") -> Markup:
     picture : str, optional
         HTML: of the quantity that the study is about.
     """
-    parts = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer), _first(answer)]
-    return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, parts)))
+    words = _block("words", [_verdict(answer), _ranking(answer), _first(answer)])
+    side = _block("side", [Markup(picture), _to_do(answer)])
+    return Markup('<div class="answer">{}{}</div>').format(words, side)
 
 
 def notebook(answer: Answer) -> str:

@@ -8,7 +8,7 @@ import xarray as xr
 
 from uq.analysis.effects import Effect, effects
 from uq.analysis.findings import Findings
-from uq.conclusions.contributions import Change, Contribution, Ranking
+from uq.conclusions.contributions import SMALL, Change, Contribution, Ranking
 from uq.conclusions.measured import Measured, measured_inputs
 from uq.conclusions.repeated import AGAIN
 from uq.conclusions.words import Unit, called, twin_of
@@ -86,8 +86,11 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL / 2)
         factor = (hypot(first.half, second.half) / apart) ** 2
-        reason = f"the order of {names} is not settled"
-        return Ranking(name, method, kind.key, what, reason=reason, rows_factor=factor)
+        reason, is_flat = f"the order of {names} is not settled", False
+        if factor <= 1:  # the rows tell apart what differs by more
+            is_flat = kind.unit == "variance" and first.index.value < SMALL
+            reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
+        return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
     moved = _effects(findings, method, name)
     contributions = tuple(
         _contribution(group, kind, name, moved, verbs)
@@ -120,6 +123,15 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
         return f"{which}: {text}{interval}", (first.half / GOAL) ** 2, False
     verb = "decides that" if of_event else "contributes"
     return f"no single input {verb} measurably: {text} at most", nan, True
+
+
+def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat: bool) -> str:
+    """Return that inputs contribute alike, or none of them much."""
+    most = f"is {first.index.value:.2f} at most"
+    if is_flat:
+        does = "decides that alone" if of_event else "explains much"
+        return f"no single input {does}: {kind.key} of {names} {most}"
+    return f"{names} {'decide that' if of_event else 'contribute'} alike: {kind.key} {most}"
 
 
 def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]]:

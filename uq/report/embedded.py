@@ -22,8 +22,10 @@ from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
 from uq.population.scaling import population
+from uq.printed import printed
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
+from uq.report.symbols import parts_of
 from uq.report.tolerances import promised, tolerances
 from uq.rows.commands import model_option
 from uq.rows.element import Element
@@ -167,7 +169,7 @@ def _input(rows: xr.Dataset, name: str, unit: Unit) -> dict[str, Any]:
     variable = rows[name]
     return _column(name, called(name), *unit, variable.values) | {
         "role": "input",
-        "symbol": plain(symbol_beside(called(name), variable)),
+        "symbol": parts_of(symbol_beside(called(name), variable)),
         "meaning": plain(readable(meaning_of(variable))),
         "thresholds": [],
     }
@@ -200,13 +202,13 @@ def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
     at = threshold(value, element.units)
     label = f"|{column['label']}|" if element.is_angle else column["label"]
-    return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
+    return f"P({label} {'<' if element.is_lifetime else '>'} {printed(at)})"
 
 
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
     return {
         "name": name,
-        "label": plain(readable(words)),
+        "label": plain(printed(readable(words))),
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),

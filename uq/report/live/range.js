@@ -31,8 +31,7 @@ function rangeOf(selection, column) {
     track.style.setProperty("--from", from);
     track.style.setProperty("--to", to);
     [element.dataset.low, element.dataset.high] = [a, b];
-    const [first, last] = [scale.low, scale.high].map(value => column.words(value));
-    shown.textContent = `${isFinite(a) ? column.words(a) : first} to ${isFinite(b) ? column.words(b) : last}`;
+    shown.textContent = column.between(isFinite(a) ? a : scale.low, isFinite(b) ? b : scale.high, 3);
   }
   return {element, show};
 }

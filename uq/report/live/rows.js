@@ -67,9 +67,14 @@ class Column {
     return this.digits(value, digits) + this.afterNumber;
   }
 
+  // Two values with it once, such as "1.2 to 12.3 kN".
+  between(low, high, digits) {
+    return `${this.digits(low, digits)} to ${this.words(high, digits)}`;
+  }
+
   get afterNumber() {
     if (!this.unit || this.unit === "\u00b0") return this.unit;
-    return `${this.unit.startsWith("10") ? "\u00b7" : " "}${this.unit}`; // a unit such as 10⁻¹⁵ m²
+    return `${this.unit.startsWith("10") ? "\u00a0\u00d7\u00a0" : " "}${this.unit}`; // a unit such as 10⁻¹⁵ m²
   }
 
   wordsOfRow(row) {
@@ -96,8 +101,10 @@ class Column {
       .sort((a, b) => this.values[a] - this.values[b] || this.states[a] - this.states[b]);
   }
 
+  // In plain text, where no index of a symbol can stand below the line.
   get title() {
-    return this.unit ? `${this.label} [${this.unit}]` : this.label;
+    const [symbol, ...more] = this.symbol ?? [], name = symbol && !more.length ? `${this.label} (${symbol})` : this.label;
+    return this.unit ? `${name} [${this.unit}]` : name;
   }
 }
 

@@ -9,7 +9,7 @@ function number(value, digits = 4) {
   if (size !== 0 && (size < 1e-4 || size >= 10 ** Math.max(6, digits))) {
     const [mantissa, power] = value.toExponential(digits - 1).split("e");
     const raised = [...String(Number(power))].map(one => RAISED["-0123456789".indexOf(one)]);
-    return `${Number(mantissa)}\u00b710${raised.join("")}`.replace("-", "\u2212");
+    return `${Number(mantissa)}\u00a0\u00d7\u00a010${raised.join("")}`.replace("-", "\u2212");
   }
   return String(Number(value.toPrecision(digits))).replace("-", "\u2212");
 }
@@ -26,10 +26,10 @@ function capitalized(text) {
   return text.slice(0, 1).toUpperCase() + text.slice(1);
 }
 
-// The name of a column with its symbol, whose indices stand below the line.
-function named({label, symbol}) {
-  const indexed = () => symbol.split(/_([A-Za-z0-9]+)/).map((part, i) => i % 2 ? make("sub", {}, part) : part);
-  return symbol ? [`${label} (`, ...indexed(), ")"] : [label];
+// The name of a column with its symbol, every other part of which is an index below the line.
+function named({label, symbol = [""]}) {
+  const indexed = symbol.map((part, i) => i % 2 ? make("sub", {}, part) : part);
+  return symbol[0] ? [`${label} (`, ...indexed, ")"] : [label];
 }
 
 // An element with attributes and contents; a name with ":" is an event.
