@@ -5,13 +5,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from models.vibrator.batch import batch
 from models.vibrator.equations import general, rigid_motion
 from models.vibrator.equations.system import system
 from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params, Settings
 from uq.contract import Trajectory
 
-LONGEST = 10.0  # s
+SHORTEST = 10.0  # s
+SETTLED = 1.5  # times the synchronisation time
 SAMPLES_PER_TURN = 50
 SHOWN = ("x", "y", "alpha", "disphasing_angle", "speed_1", "speed_2")
 
@@ -19,7 +21,10 @@ Series = NDArray[np.float64]
 
 
 def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
-    """Follow one machine through its start, for ten seconds or the longest start simulated.
+    """Follow one machine from standstill until it runs as its outputs describe.
+
+    That is for ten seconds, longer where it takes more to synchronise, and to the end of the
+    longest start simulated where it never does.
 
     Parameters
     ----------
@@ -36,7 +41,8 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         It ends early if the step budget runs out.
     """
     m = system(params, settings.kinematics)
-    duration = min(LONGEST, settings.run_up)
+    needed = SETTLED * _synchronisation_time(params, settings)
+    duration = min(max(SHORTEST, needed), settings.run_up)
     rigid = m.rigid
     speed = max(rigid.synchronous_speed_1, rigid.synchronous_speed_2)
     count = math.ceil(duration * speed / (2 * np.pi) * SAMPLES_PER_TURN)
@@ -88,3 +94,9 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         shown=SHOWN,
         angles=("disphasing_angle",),
     )
+
+
+def _synchronisation_time(params: Params, settings: Settings) -> float:
+    """Return the output of that name; infinite where the motors never synchronise."""
+    outputs, _ = batch(np.array([params]), np.zeros(1, np.uint64), settings)
+    return float(np.nan_to_num(outputs["synchronisation_time"][0], posinf=np.inf))

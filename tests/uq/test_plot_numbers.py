@@ -167,11 +167,17 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     (event,) = found.lead.events
     figure = plots.event_probability(ds, event.name)
     (panel,) = figure.axes
-    assert panel.get_title("left") == f"Rows that {event.said}"
+    assert panel.get_title("left") == f"Time until the depth is reached\nRows that {event.said}"
     assert event.decided_by.startswith("Decided most by rate")
     assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
     drawn = panel.patches[-1].get_data().values
     assert np.allclose(drawn, [one.value for one in event.curve.shares])
+    (legend,) = figure.legends  # which says what line and band are
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "in parts of the input",
+        "95 % intervals, pointwise",
+        "of all rows",
+    ]
 
 
 def test_labels_are_lines_of_about_one_length_and_break_no_word_that_fits():

@@ -195,9 +195,11 @@ def test_pairs_show_the_inputs_that_decide_the_regime():
     figure = plots.pairs(ds)
     (axes,) = figure.axes
     assert axes.get_xlabel() == "First input ($x_{1}$) [m]"  # decides it alone
-    slow, fast = axes.lines
-    assert slow.get_xdata().max() <= 0.5 < fast.get_xdata().min()
-    assert len(slow.get_xdata()) + len(fast.get_xdata()) == 200
+    (points,) = axes.collections
+    x, colours = points.get_offsets()[:, 0], points.get_facecolors()
+    assert np.array_equal(x, ds["x1"].values)  # in the order of the rows: none covers the others
+    slow, fast = (set(map(tuple, colours[one])) for one in (x <= 0.5, x > 0.5))
+    assert len(slow) == len(fast) == 1 and slow != fast
     with pytest.raises(InputError, match="need a model with regimes and two uncertain inputs"):
         plots.pairs(linear())
 

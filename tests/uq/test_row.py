@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from command_line import everything, strict_json
 from computed import UNIFORM, as_text, computed, kinds, linear, study_of, with_output, with_status
+from drawn import words
 from input_studies import tables
 from nested_studies import nested
 from noisy_studies import noisy
@@ -253,6 +254,14 @@ def test_the_trajectory_of_a_row_is_that_of_its_inputs_and_seed(uq, write_study,
     refused = uq("row", "out.nc", *given, "--plot", "t.xyz")
     assert refused.code == 2 and "t.xyz: Format 'xyz' is not supported" in refused.err
     assert everything(folder) == ["kept.nc", "new", "new/t.png", "out.nc", "small.toml"]
+
+
+def test_a_row_of_a_sample_of_several_units_is_drawn():
+    ds = computed(nested({"x1": "own", "x2": "chance"}, KINDS, samples=2))
+    found = api.row(ds, 3, model=KINDS)
+    assert found["unit"].item() == ds["unit"].values[3]
+    assert found["trajectory"]["units"].values[0] == "m"
+    assert "[" in words(api.plots.motion(found))
 
 
 def test_a_study_of_one_row_has_a_row():

@@ -29,7 +29,7 @@ def test_the_trajectory_is_labelled():
     assert ds["trajectory"].dims == ("time", "quantity")
     place = ds["trajectory"].sel(quantity="x")
     assert np.array_equal(place, 0.5 * ds["time"].values)
-    assert (place["unit"], place["meaning"]) == ("m", "place")
+    assert (place["units"], place["meaning"]) == ("m", "place")
     assert ds["time"].attrs["units"] == "s"
     assert "trajectory" not in uq.simulate(sample_models.KINDS, trajectory=False)
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from uq.analysis.convergence import running_estimates
-from uq.drawing.elements_plot import curve_style, display_unit
+from uq.drawing.elements_plot import curve_style, display_unit, drawn_elements
 from uq.drawing.index_plot import range_of_indices, subject
 from uq.drawing.panel import arrows, column, finish, title, whole_numbers
 from uq.drawing.style import INK, LINES, SHADES, styled
@@ -55,7 +55,7 @@ def convergence(
     kind, own = followed(ds, output, running)
     if not kind:
         raise InputError(f"{output}: neither its mean nor its median can be estimated")
-    chosen = named_elements(independent_rows(ds), output)
+    chosen, part = drawn_elements(independent_rows(ds), output)
     unit = display_unit(chosen[0].units, np.concatenate([one.values for one in chosen]))
     (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
@@ -68,7 +68,7 @@ def convergence(
     if known and not np.isfinite(own[["low", "high"]].astype(float)).all(axis=None):
         known += " where the rows allow one"
     whole_numbers(panel.yaxis)
-    title(panel, as_label(f"{what}: {chosen[0].meaning}", unit.name, 46), known)
+    title(panel, as_label(f"{what}: {chosen[0].meaning}", unit.name, 46), part, known)
     return finish(panel)
 
 
@@ -146,7 +146,8 @@ def _curve(
     value, low, high = (one / per for one in numbers)
     axes.plot(samples, value, color=colour, ls=style, marker=".", label=words)
     if np.isfinite(low).any():
-        axes.fill_between(samples, low, high, color=colour, alpha=0.3, lw=0)
+        only = 0.8 if len(samples) == 1 else 0  # a band over one place has no width
+        axes.fill_between(samples, low, high, color=colour, alpha=0.3, lw=only)
 
 
 def _numbers(lines: pd.DataFrame) -> list[Floats]:

@@ -15,6 +15,7 @@ from uq.drawing.elements_plot import (
     bins,
     curve_style,
     display_unit,
+    drawn_elements,
     entitle,
     mark_thresholds,
     occurring_regimes,
@@ -39,7 +40,7 @@ from uq.wording import brief
 
 _MOST_PANELS = 4
 _LINE = 0.16  # of the table [inch]
-_COLUMNS = (0.25, 0.55, 1.0)  # right ends
+_COLUMNS = (0.15, 0.49, 1.0)  # right ends
 _BOUND = "dotted: tolerance bound"
 _BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneous band"))
 
@@ -68,7 +69,7 @@ def histogram(
     -------
     matplotlib.figure.Figure
     """
-    chosen = named_elements(independent_rows(ds), output)
+    chosen, part = drawn_elements(independent_rows(ds), output)
     (panel,) = column(axes, 2.1)
     together = np.concatenate([element.at_least for element in chosen])
     unit = display_unit(chosen[0].units, together)
@@ -88,7 +89,7 @@ def histogram(
     logarithmic(panel) if wide else None
     mark_thresholds(panel, ds, chosen[0], unit)
     None if wide else roomy(panel)
-    entitle(panel, chosen, *[_BOUND] * marked)
+    entitle(panel, chosen, part, *[_BOUND] * marked)
     return finish(panel)
 
 
@@ -170,7 +171,7 @@ def lifetime(
     matplotlib.figure.Figure
     """
     rows = independent_rows(ds)
-    chosen = named_elements(rows, output)
+    chosen, part = drawn_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = display_unit(chosen[0].declared.unit, ends)
     (panel,) = column(axes, 2.3)
@@ -196,13 +197,19 @@ def lifetime(
     panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     if is_wide(ends):
         logarithmic(panel)
+    if len(ends) == 0:
+        panel.set_xticks([])
     mark_thresholds(panel, ds, chosen[0], unit)
     panel.set_xlim(panel.get_xlim())
+    marked: set[str] = set()
     for i, element in enumerate(chosen):
-        _mark(panel, element, replicates_of(rows), unit, curve_style(i, element, chosen)[0])
+        colour, _ = curve_style(i, element, chosen)
+        marked |= _mark(panel, element, replicates_of(rows), unit, colour)
+    if marked:
+        bands[f"marks: {', '.join(name for name in B_LIVES if name in marked)}"] = True
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
     other.set_ylabel("Probability of not yet" if success else "Survival probability")
-    entitle(panel, chosen, *bands)
+    entitle(panel, chosen, part, *bands)
     return finish(panel)
 
 
@@ -223,12 +230,13 @@ def _mark_bounds(
     return bool(drawn)
 
 
-def _mark(axes: Axes, element: Element, replicate: Replicates, unit: Unit, colour: str) -> None:
+def _mark(axes: Axes, element: Element, replicate: Replicates, unit: Unit, colour: str) -> set[str]:
+    """Mark the B-lives of an element with their intervals, and return the names of those known."""
     quantiles = life_quantiles(element, B_LIVES, replicate)
-    found = {B_LIVES[name]: one for name, one in quantiles.items() if np.isfinite(one.value)}
+    found = {name: one for name, one in quantiles.items() if np.isfinite(one.value)}
     if not found:
-        return
-    shares = np.array(list(found))
+        return set()
+    shares = np.array([B_LIVES[name] for name in found])
     value, low, high = np.array([one.numbers for one in found.values()]).T / unit.size
     edges = axes.get_xlim()
     axes.plot(value, shares, "o", ms=MARK, color=colour)
@@ -236,6 +244,7 @@ def _mark(axes: Axes, element: Element, replicate: Replicates, unit: Unit, colou
     for ends in (low, high):
         axes.plot(ends, shares, "|", ms=5, mew=1.0, color=colour)
     arrows(axes, shares, low, high, "x", color=colour)
+    return set(found)
 
 
 @styled
@@ -259,7 +268,7 @@ def quantile_table(
     -------
     matplotlib.figure.Figure
     """
-    chosen = named_elements(independent_rows(ds), output)
+    chosen, part = drawn_elements(independent_rows(ds), output)
     outputs = (summary or summarise(ds)).outputs
     found = [outputs[element.name].parts["quantiles"] for element in chosen]
     values = [one.estimate.finite.value for quantiles in found for one in quantiles]
@@ -278,7 +287,8 @@ def quantile_table(
     axes.set(xlim=(0, 1), ylim=(height + 0.3, -0.3))
     axes.text(0, 0, "\n".join(head), va="top")
     y: float = len(head) + 0.1
-    axes.text(0, y, rows_in_words(chosen), va="top", color="0.45", size=7)
+    said = ", ".join(filter(None, (rows_in_words(chosen), part)))
+    axes.text(0, y, said, va="top", color="0.45", size=7)
     columns = ("quantile", "value", "95 % interval")
     for x, text in zip(_COLUMNS, columns, strict=True):
         axes.text(x, y + 1.95, text, ha="right", size=7)
@@ -291,7 +301,9 @@ def quantile_table(
             y += 1
         for texts in quantiles:
             for x, text in zip(_COLUMNS, texts, strict=True):
-                axes.text(x, y, minus(text), ha="right")
+                # "beyond the horizon" is longer than the numbers that a column has room for
+                wordy = any(letters.isalpha() and letters != "to" for letters in text.split())
+                axes.text(x, y, minus(text), ha="right", size=6.5 if wordy else None)
             y += 1
     return figure_of(axes)
 

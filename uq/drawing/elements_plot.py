@@ -10,25 +10,47 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from uq.drawing.panel import is_wide
-from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES
+from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.drawing.symbols import literal
 from uq.drawing.words import labelled, rows_in_words
 from uq.printed import minus
-from uq.rows.elements import Element, Floats, Mask, analysis_of, flags
+from uq.rows.elements import Element, Floats, Mask, analysis_of, flags, named_elements
 from uq.rows.variables import input_unit
 from uq.units import Unit, typical, unit_of
 from uq.wording import threshold
 
 _MOST_BINS = 60
+_MOST_CURVES = 12
+
+
+def drawn_elements(rows: xr.Dataset, output: str) -> tuple[list[Element], str]:
+    """Return the elements of an output that a figure has room for, and how many of all they are.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+    output : str
+
+    Returns
+    -------
+    list of Element
+        Of many, some at even distances, with both ends.
+    str
+        "" where these are all.
+    """
+    every = named_elements(rows, output)
+    chosen = [every[i] for i in thinned(len(every), _MOST_CURVES)]
+    all_drawn = len(chosen) == len(every)
+    return chosen, "" if all_drawn else f"{len(chosen)} of {len(every)} elements"
 
 
 def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
     """Return the shade and line style of a curve: of two dimensions, the first sets the line."""
     if len(element.place) < 2:
         return SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
-    firsts = list(dict.fromkeys(next(iter(one.place.values())) for one in chosen))
-    line = firsts.index(next(iter(element.place.values())))
-    return SHADES[i % (len(chosen) // len(firsts)) % len(SHADES)], LINES[line % len(LINES)]
+    firsts = [next(iter(one.place.values())) for one in chosen]
+    line = list(dict.fromkeys(firsts)).index(firsts[i])
+    return SHADES[firsts[:i].count(firsts[i]) % len(SHADES)], LINES[line % len(LINES)]
 
 
 def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:

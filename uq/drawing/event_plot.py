@@ -5,10 +5,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.summary import REGIME
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Event
 from uq.conclusions.words import called
+from uq.drawing.index_plot import output_of
 from uq.drawing.panel import column, finish, title
 from uq.drawing.style import INK, styled
 from uq.drawing.words import as_label, symbol_of
@@ -49,14 +49,15 @@ def event_probability(
     curve, colour = event.curve, INK
     edges = curve.edges / event.over_unit.per
     value, low, high = np.array([one.numbers for one in curve.shares]).T
+    what = f"rows that {event.clause}"
     (panel,) = column(axes, 2.1)
     band = (_ended(low), _ended(high))
-    panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0)
-    panel.stairs(value, edges, baseline=None, color=colour, lw=1.4)
-    panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9)
+    panel.stairs(value, edges, baseline=None, color=colour, lw=1.4, label="in parts of the input")
+    words = "95 % intervals, pointwise"
+    panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0, label=words)
+    panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9, label="of all rows")
     panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
-    what = f"are {event.said}" if event.name.startswith(f"P({REGIME}=") else event.said
-    title(panel, as_label(f"rows that {what}", width=46))
+    title(panel, *(as_label(one, width=46) for one in (output_of(ds, event.name), what)))
     over = called(event.over)  # as the sentence beside the figure does
     panel.set_xlabel(as_label(over, event.over_unit.name, symbol=symbol_of(ds[event.over])))
     return finish(panel)

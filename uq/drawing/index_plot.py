@@ -75,8 +75,11 @@ def index_bars(
     for kind, null in found.indices.nulls.items():
         colour = BARS[list(kinds).index(kind) % len(BARS)] if len(kinds) > 1 else INK
         one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
-        limits = {one: null.one, "95 % limit for the largest of them": null.largest}
-        for line, (label, limit) in zip(("--", ":"), limits.items(), strict=True):
+        largest = "95 % limit for the largest of them"
+        limits = {one: null.one, largest: null.largest}
+        if null.largest == null.one:
+            limits = {f"{one}, or several": null.one}
+        for line, (label, limit) in zip(("--", ":"), limits.items(), strict=False):
             if np.isfinite(limit):
                 named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
                 panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)
@@ -118,15 +121,10 @@ def subject(ds: xr.Dataset, name: str) -> str:
     """Describe a target of `uq.indices.sensitivities`."""
     form, inside, at = split_name(name)
     category, _, label = inside.rpartition("=")
-    output, _, place = category.partition("[")
-    if is_category(ds, output):
-        meaning = ds[output].attrs["long_name"].removeprefix("the ")
-        where = f", {place.removesuffix(']')}," if place else ""
-        return f"whether the {meaning}{where} is {label}"
-    element, *others = named_elements(ds, inside)
-    words = element_in_words(ds, element)
-    if others:
-        words = f"{element.meaning}, all {1 + len(others)} elements together"
+    words = output_of(ds, name)
+    if is_category(ds, category.partition("[")[0]):
+        return f"whether the {words.removeprefix('the ')}{',' * ('[' in category)} is {label}"
+    element, *_ = named_elements(ds, inside)
     if at:
         asked = analysis_of(ds).thresholds.get(element.output, ())
         at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)
@@ -137,3 +135,16 @@ def subject(ds: xr.Dataset, name: str) -> str:
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return words
+
+
+def output_of(ds: xr.Dataset, name: str) -> str:
+    """Describe the output that a target of `uq.indices.sensitivities` is of, with its place."""
+    _, inside, _ = split_name(name)
+    category = inside.rpartition("=")[0]
+    output, _, place = category.partition("[")
+    if is_category(ds, output):
+        return ", ".join(filter(None, (ds[output].attrs["long_name"], place.removesuffix("]"))))
+    element, *others = named_elements(ds, inside)
+    if others:
+        return f"{element.meaning}, all {1 + len(others)} elements together"
+    return element_in_words(ds, element)

@@ -15,7 +15,7 @@ from uq.drawing.words import as_label
 from uq.errors import InputError, choices
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.law import Law
-from uq.rows.elements import Floats
+from uq.rows.elements import Floats, independent_rows
 
 _IN_ONE_COLUMN = 2  # inputs
 
@@ -65,7 +65,9 @@ def inputs(
             panel.set_xlabel(as_label(factor, width=width))
         _panel(panel, law, values, weights, per, ticks=6 // columns)
     rows = f"{len(next(iter(found.values()))[1])}{' weighted' if weights is not None else ''} rows"
-    panels[0].set_title(f"Share of {rows} per bin; line: stated law", loc="left")
+    several = independent_rows(ds).sizes["sample"] > len(next(iter(found.values()))[1])
+    of = ", one of each sample;\n" if several else "; "
+    panels[0].set_title(f"Share of {rows} per bin{of}line: stated law", loc="left")
     return figure_of(panels[0])
 
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.drawing.figure import Drawing
-from uq.drawing.panel import above, column, figure_of, finish, roomy, title
+from uq.drawing.panel import above, column, figure_of, finish, roomy, whole_numbers
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of, with_quantities
 from uq.drawing.style import COLOURS, INK, LIMIT, LINES, MARK, PAGE, are_many, point_size, styled
 from uq.drawing.words import labelled, powers
@@ -17,7 +17,8 @@ from uq.errors import InputError
 from uq.rows.elements import Floats
 
 _LAST = 4  # periods of the drive
-_ABOVE = 66  # width of a label above a panel of two columns [characters]
+_FINEST = 1e-5  # of the largest value, below which a change is one of rounding
+_ABOVE = 54  # width of a label above a panel of the left column [characters]
 _BESIDE = 32  # width of the label of the vertical axis [characters]
 
 
@@ -114,6 +115,7 @@ def motion(ds: xr.Dataset) -> Figure:
             panel.plot(time[part] * clock.factor, y, color=INK, lw=0.6)
             for stop in filter(np.isfinite, stops):
                 panel.axhline(stop * scale.factor, color=LIMIT, ls="--", lw=0.8)
+            _widen(panel, _FINEST * np.nanmax(np.abs(one.values), initial=0.0) * scale.factor)
         text = labelled(one, scale.unit, width=_ABOVE)
         if count := int(np.isfinite(stops).sum()):
             dashed = f"dashed: stop{'s' * (count > 1)}"
@@ -123,8 +125,16 @@ def motion(ds: xr.Dataset) -> Figure:
         panel.set_xlabel(labelled(ds["time"], clock.unit))
         roomy(panel)
     if columns == 2:
-        title(panels[0, 1], f"The last {_LAST} periods of the drive")
+        above(panels[0, 1], f"The last {_LAST} periods of the drive")
     return figure
+
+
+def _widen(axes: Axes, least: float) -> None:
+    """Show at least a range of the vertical axis, and its numbers in full."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        axes.set_ylim((low + high - least) / 2, (low + high + least) / 2)
+    whole_numbers(axes.yaxis)
 
 
 def _wrapped(angle: Floats) -> Floats:

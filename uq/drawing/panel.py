@@ -96,18 +96,18 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
 
 def whole_numbers(axis: Axis) -> None:
     """Write each number in full: a common factor at the end of the axis would cover its label."""
+    axis.set_major_formatter(lambda value, _: _short(value, ".6g"))
 
-    def short(value: float, _: float) -> str:
-        return minus(re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}"))
 
-    axis.set_major_formatter(short)
+def _short(value: float, form: str) -> str:
+    return minus(re.sub(r"e\+?(-?)0*", r"e\1", f"{value:{form}}"))
 
 
 class _PlainLog(LogFormatter):
     """Plain numbers instead of TeX, at the ticks that matplotlib would label."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        return minus(f"{x:g}") if super().__call__(x, pos) else ""
+        return _short(x, "g" if 1e-3 <= x < 1e5 else ".0e") if super().__call__(x, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:

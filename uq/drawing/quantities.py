@@ -47,7 +47,7 @@ def with_quantities(ds: xr.Dataset) -> xr.Dataset:
     trajectory = ds["trajectory"]
     series = trajectory.reset_coords(drop=True).to_dataset("quantity")
     for one in trajectory.transpose("quantity", "time"):
-        words = {"units": one["unit"].item(), "long_name": one["meaning"].item()}
+        words = {"units": one["units"].item(), "long_name": one["meaning"].item()}
         series[one["quantity"].item()].attrs = words
     return series
 

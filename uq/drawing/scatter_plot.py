@@ -87,13 +87,19 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     for panel, name in zip(panels, first, strict=True):
         per = input_axis(panel, ds, name, width=46 if alone else 30)
         x = inputs[name] / per
+        across = is_wide(x)
+        if across:
+            logarithmic(panel)
         _points(panel, x, shown)
         for words, (own, colour) in parts.items():
             _conditional(panel, x, shown, own, colour, words, medians, replicates_of(rows) is None)
-        roomy(panel, 6 if alone else 4)
+        if not across:
+            roomy(panel, 6 if alone else 4)
         whole_numbers(panel.yaxis)
         if wide:
             logarithmic(panel, vertical=True)
+        if not np.isfinite(shown.values).any():
+            panel.set_yticks([])
         mark_thresholds(panel, ds, element, unit, vertical=True)
     above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(ds, element)]
     what = "median" if medians else "mean"
@@ -172,7 +178,9 @@ def _conditional(
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
     # A gap between neighbouring rows interrupts the line: nothing is known in between.
     inside = np.sort(x)
-    jumps = np.flatnonzero(np.diff(inside) > _GAP * np.ptp(axes.get_xlim()))
+    edges = np.array(axes.get_xlim())
+    along, width = (np.log, np.log(edges)) if axes.get_xscale() == "log" else (np.array, edges)
+    jumps = np.flatnonzero(np.diff(along(inside)) > _GAP * np.ptp(width))
     gaps = np.searchsorted(middle, (inside[jumps] + inside[jumps + 1]) / 2)
     middle, line, low, high = (np.insert(one, gaps, np.nan) for one in (middle, line, low, high))
     what = f"{'median' if medians else 'mean'} in slices of {len(x) // count} rows"
@@ -257,34 +265,34 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     codes = rows["regime"].values
     leading = _deciding(inputs, codes)[:_MOST_INPUTS]
     units = {name: input_unit(ds, name) for name in leading}
-    size = len(leading) - 1
-    alone = size == 1
-    height = 2.1 if alone else 1.45 * size
-    panels = grid(axes, 0.5 + height, size, size, sharex="col", sharey="row")
+    side = len(leading) - 1
+    alone = side == 1
+    height = 2.1 if alone else 1.45 * side
+    panels = grid(axes, 0.5 + height, side, side, sharex="col", sharey="row")
     shown = thinned(len(codes), _MOST_POINTS)
-    points: Any = {
-        "ms": point_size("cloud", len(shown)),
-        "mew": 0,
-        "alpha": 0.7,
-        "rasterized": True,
-    }
+    size = point_size("cloud", len(shown))
+    points: Any = {"s": size**2, "lw": 0, "alpha": 0.7, "rasterized": True}
+    colour_of = dict(regimes.values())
+    # In the order of the rows: drawn one after the other, the last regime would cover the others.
+    seen = shown[np.isin(codes[shown], list(colour_of))]
+    colours = [colour_of[code] for code in codes[seen]]
     for i, down in enumerate(leading[1:]):
         for j, across in enumerate(leading[:-1]):
             panel = panels[i, j]
             if j > i:
                 panel.set_axis_off()
                 continue
-            for name, (code, colour) in regimes.items():
-                own = shown[codes[shown] == code]
-                x, y = (inputs[one][own] / units[one].size for one in (across, down))
-                panel.plot(x, y, ".", color=colour, label=name, **points)
+            x, y = (inputs[one][seen] / units[one].size for one in (across, down))
+            panel.scatter(x, y, marker=".", c=colours, **points)
             panel.locator_params(axis="y", nbins=4)
             whole_numbers(panel.yaxis)
             roomy(panel, 6 if alone else 3)
-            if i == size - 1:
+            if i == side - 1:
                 panel.set_xlabel(labelled(rows[across], units[across].name, 38 if alone else 17))
             if j == 0:
                 panel.set_ylabel(labelled(rows[down], units[down].name, 30 if alone else 20))
+    for name, (_, colour) in regimes.items():
+        panels[0, 0].plot([], [], ".", ms=size, mew=0, color=colour, label=name)
     panels[0, 0].set_title(f"{counted(len(codes), 'row')} by regime", loc="left")
     return finish(panels[0, 0])
 

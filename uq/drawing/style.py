@@ -30,6 +30,7 @@ _STYLE: Any = {
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.formatter.limits": (-4, 5),
+    "axes.formatter.useoffset": False,  # beside an axis, it is taken for a title
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.fontsize": 7,

@@ -2,10 +2,12 @@ r"""Symbols as formulas that matplotlib typesets: ``omega_s1`` is written $\omeg
 
 import re
 
-from uq.greek import IN_TEXT, WORD
+from uq.greek import IN_TEXT, LETTERS, WORD
 from uq.printed import minus
 
 _WHOLE = re.compile(r"(?:[A-Za-z]+(?:_[A-Za-z0-9]+)?(?![A-Za-z_])|[\d ()+*/'.-])+")
+
+_SHORT = re.compile(rf"(?:[A-Za-z]|{'|'.join(LETTERS)})(?:\d+|_[A-Za-z0-9]+)?")
 
 
 def literal(text: str) -> str:
@@ -31,6 +33,11 @@ def formula(symbol: str) -> str:
     text = symbol if "_" in symbol else re.sub(r"(?<=[A-Za-z])(\d+)\b", r"_\1", symbol)
     text = re.sub(r"_([A-Za-z0-9]+)", _subscript, text.replace(" ", r"\,"))
     return f"${WORD.sub(lambda found: chr(92) + found[0], text)}$"
+
+
+def is_short(symbol: str) -> bool:
+    """Whether a symbol is one letter with an index at most: ``x1``, ``omega``, ``k_c``."""
+    return _SHORT.fullmatch(symbol) is not None
 
 
 def _subscript(found: re.Match[str]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from uq.drawing.symbols import formula, literal, typeset
+from uq.drawing.symbols import formula, is_short, literal, typeset
 from uq.greek import symbol as as_text
 from uq.literals import plain
 from uq.printed import minus
@@ -18,9 +18,13 @@ from uq.wording import capitalized, counted, percent, quantity
 
 
 def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
-    """Return text for an axis or a panel: capitalised, with symbols and its unit, wrapped."""
-    text = typeset(plain(capitalized(text)))
-    if symbol:
+    """Return text for an axis or a panel: capitalised, with symbols and its unit, wrapped.
+
+    Text that is its own symbol is written once, as a formula unless it is a word: ``x1``, ``load``.
+    """
+    once = text == symbol
+    text = formula(text) if once and is_short(text) else typeset(plain(capitalized(text)))
+    if symbol and not once:
         text += f" ({formula(plain(symbol))})"
     if unit and unit != "1":
         text += f"\u00a0[{unbroken(unit)}]"  # not alone on a line
@@ -29,7 +33,8 @@ def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> st
 
 def _wrapped(text: str, width: int) -> str:
     """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
-    text = re.sub(r"(?<=\$) ([+−=]) (?=\$)", "\u00a0\\1\u00a0", text)  # a difference is one word
+    text = re.sub(r" ([+−=]) ", "\u00a0\\1\u00a0", text)  # a difference is one word
+    text = re.sub(r"(?<=[a-z]) (?=\d+\b)", "\u00a0", text)  # as is "motor 1"
     formulas = re.findall(_FORMULA, text)
     letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
     seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
@@ -72,7 +77,7 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
         elif attrs.get("units", "1") != "1":
             words.append(powers(quantity(value, attrs["units"])))
         else:
-            words.append(f"{dim} {value:g}")
+            words.append(f"{dim.replace('_', ' ')} {value:g}")
     return ", ".join(words)
 
 

@@ -99,7 +99,7 @@ def _trajectory(row: Row) -> xr.DataArray:
         coords={
             "time": ("time", history.time, {"units": "s", "long_name": "time"}),
             "quantity": names,
-            "unit": ("quantity", list(units)),
+            "units": ("quantity", list(units)),  # "unit" is that of the row in its sample
             "meaning": ("quantity", list(meanings)),
             "lower_stop": ("quantity", [history.stops.get(one, nowhere)[0] for one in names]),
             "upper_stop": ("quantity", [history.stops.get(one, nowhere)[1] for one in names]),

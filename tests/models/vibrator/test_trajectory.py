@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from models.vibrator.batch import batch
 from models.vibrator.equations.system import system
 from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params, Settings
@@ -102,3 +103,15 @@ def test_it_stops_where_the_budget_ends():
     history = simulate(p, Settings(run_up=1.0))
     assert history.time[-1] < 1
     assert np.isfinite(history.quantities["x"][2]).all()
+
+
+def test_it_is_long_enough_to_show_the_motion_that_the_outputs_describe():
+    late = Params(overload_capacity=0.3)  # synchronises after 11.6 s
+    settings = Settings(run_up=14.0, tolerance=1e-6)
+    outputs, _ = batch(np.array([late]), np.zeros(1, np.uint64), settings)
+    history = simulate(late, settings)
+    angle = history.quantities["disphasing_angle"][2][history.time > history.time[-1] - 0.5]
+    mean = np.angle(np.exp(1j * angle).mean())
+    assert mean == pytest.approx(outputs["disphasing_angle"][0], abs=0.01)
+    never = Params(rated_torque_1=40.0, synchronous_speed_1=140.0, breakdown_speed_1=110.0)
+    assert simulate(never, settings).time[-1] == 14
