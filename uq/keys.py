@@ -80,10 +80,10 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
     found = re.match(rf"({'|'.join(map(re.escape, verbs))})(?:\[(.*?)\])?(?:/|$)", key)
     verb, inside = (found[1], found[2]) if found else (SUMMARY, None)
     rest = key[found.end() :] if found else key
-    options = {}
-    for text in re.split(r",(?![^\[]*\])", inside) if inside else []:
+    options, names = {}, tuple(verbs[verb])
+    begin = "|".join(re.escape(one if one.endswith(".") else f"{one}=") for one in names)
+    for text in re.split(f",(?={begin})", inside) if inside else []:  # values may have commas
         name, equals, value = text.partition("=")
-        names = tuple(verbs[verb])
         begins = any(name.startswith(one) for one in names if one.endswith("."))
         if not (name in names or begins) or not equals:
             known = ", ".join(f"{one}{'NAME' * one.endswith('.')}=..." for one in names) or "none"

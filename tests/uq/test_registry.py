@@ -7,7 +7,7 @@ import pytest
 
 from models import analytic
 from models.analytic import LINEAR
-from uq.contract import Model, Parameter
+from uq.contract import Model, Output, Parameter
 from uq.errors import InputError
 from uq.study import registry
 from uq.study.registry import find_model, model_names
@@ -85,6 +85,10 @@ class NotADataclass:
     [
         ({"parameters": Undeclared}, "Undeclared.x1 is declared without a Parameter"),
         ({"parameters": WithoutNominal}, "parameter 'x1' has no nominal value"),
+        (
+            {"outputs": {"mode": Output("1", "which", "category", categories=("at rest",))}},
+            "output 'mode': category 'at rest' must be one word",
+        ),
         ({"settings": NotADataclass}, "must be called with a dataclass"),
     ],
 )

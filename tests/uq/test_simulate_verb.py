@@ -1,12 +1,16 @@
 """``uq simulate``: one row, as text and as JSON, and its trajectory in files."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import xarray as xr
 from command_line import everything, strict_json
+from sample_models import KINDS
 
 import uq as api
+from uq.cli.simulate import show_outputs
+from uq.rows.one_row import run_row
 
 
 def test_simulate_prints_values_with_units_and_meaning(uq):
@@ -97,3 +101,9 @@ def test_a_trajectory_overwrites_nothing_but_a_trajectory(uq, write_study, folde
         assert (ended.code, ended.err) == (0, "")
         with xr.open_dataset("t.nc") as ds:
             assert ds["x1"] == float(place)
+
+
+def test_a_label_may_end_with_a_bracket(capsys):
+    labelled = replace(KINDS, coordinates=lambda settings: {"side": ("a[1]", "b"), "depth": (1, 2)})
+    show_outputs(run_row(labelled, {}, {}))
+    assert "side=a[1]  " in capsys.readouterr().out

@@ -17,7 +17,7 @@ import uq as api
 from uq.errors import InputError
 from uq.exploring.row_again import row
 from uq.exploring.updating import update
-from uq.keys import key_of, paths_of_numbers, value_at
+from uq.keys import key_of, paths_of_numbers, taken_apart, value_at
 from uq.learning.result import as_unit
 from uq.report import page
 from uq.store.files import write_result
@@ -96,9 +96,60 @@ def test_options_are_part_of_a_key():
     check(ds, "summary", {"regime": "fast"}, every=17)
     check(ds, "sensitivity", {"method": "pawn"}, every=31)
     check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
-    check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
+    check(linear(), "what-if", {"uncertain.x1.upper": "0.9"})
     check(crossed(), "inputs", every=5)
     check(update(wear(400), measured(5e5)), "update", {"by": "600000.0"}, every=11)
+
+
+def test_weighted_rows_are_traced_to_estimators_of_weighted_rows():
+    key = "what-if[uncertain.x1.upper=0.8]/"
+    for ds, path, estimator in (
+        (every_kind(), "outputs/angle/thresholds/0.5/above", "functionals.Population"),
+        (every_kind(), "outputs/angle/quantiles/0.5", "functionals.Population"),
+        (every_kind(), "outputs/angle/effective_rows", "smoothing.effective_rows"),
+        (every_kind(), "regime/slow", "means.weighted_share"),
+        (linear(), "outputs/y/mean", "means.weighted_moments"),
+    ):
+        what_if, *others = traced(ds, key + path).estimators
+        assert what_if.code.endswith("what_if") and others[0].code.endswith(estimator)
+        plain = [one.code for one in traced(ds, path).estimators] if "effective" not in path else []
+        assert not {one.code for one in others} & {*plain}
+
+
+def test_numbers_of_a_design_without_statistics_are_traced():
+    check(linear("morris", 8), "summary")
+    found = traced(linear("morris", 8), "outputs/y/mean")
+    assert found.numbers == {"value": None} and found.rows_used == found.rows == 40
+    assert found.notes == (
+        "no statistics: the rows of a 'morris' design do not follow the laws of"
+        " the inputs; see 'uq sensitivity'",
+    )
+
+
+def test_the_error_of_the_rows_is_that_of_the_rows_used():
+    ds = crossed()
+    ds = with_output(ds, "y_error", np.where(ds["block"] == 1, 1e6, ds["x1"]))
+    found = traced(ds, "convergence/outputs/y/own_error")
+    used = ds["x1"].values[np.isin(ds["block"], [0, 5])]
+    assert found.equal and found.numbers["value"] == pytest.approx(used.mean())
+
+
+def test_values_of_options_may_have_commas():
+    law = '{distribution = "uniform", lower = 0.1, upper = 0.9}'
+    assert traced(linear(), f"what-if[uncertain.x1={law}]/outputs/y/mean").equal
+    of = {name: verb.options for name, verb in VERBS.items()}
+    for verb, options in (
+        ("what-if", {"dependence.rank_correlation": "[[1, 0.5], [0.5, 1]]", "uncertain.x.sd": "1"}),
+        ("fleet", {"size": "2", "output": "life[side=left,depth=0.5]"}),
+        ("summary", {"regime": "fast,[wild]"}),
+    ):
+        assert taken_apart(key_of("a", verb=verb, options=options), of) == (verb, options, ("a",))
+
+
+def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
+    ds = linear("fast", 65, 2)
+    found = traced(ds, "convergence/outputs/y/sampling_error")
+    assert found.equal and found.numbers["value"] == api.enough(ds).loc["y", "sampling"]
 
 
 def test_numbers_of_an_inspected_unit_are_traced_and_equal():

@@ -16,7 +16,14 @@ from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import split_name
 from uq.methods.registry import METHODS, piloted_by
-from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
+from uq.rows.elements import (
+    Element,
+    are_independent,
+    elements_of,
+    independent_rows,
+    named_elements,
+    output_names,
+)
 from uq.rows.nesting import first_samples
 from uq.rows.variables import error_name
 from uq.rows.weights import refuse_weights
@@ -94,12 +101,13 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
     """
     refuse_weights(ds, "the error of sampling")
     found, names = summarise(ds).outputs, output_names(ds)
+    rows = independent_rows(ds)
     plain = [name for name in names if name not in {error_name(one) for one in names}]
     lines = {}
-    for element in named_elements(ds, output) if output else elements_of(ds, plain):
+    for element in named_elements(rows, output) if output else elements_of(rows, plain):
         if element.name not in found:
             continue
-        lines[element.name] = compared(ds, element, found[element.name])
+        lines[element.name] = compared(rows, element, found[element.name])
     columns = ["estimate", "sampling", "own", "warning"]
     return pd.DataFrame(
         list(lines.values()), index=pd.Index(list(lines), name="output"), columns=columns
@@ -121,6 +129,7 @@ def compared(ds: xr.Dataset, element: Element, described: Described) -> Errors:
     Parameters
     ----------
     ds : xarray.Dataset
+        The independent rows of a result.
     element : Element
     described : Described
         Its statistics.

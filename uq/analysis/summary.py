@@ -270,7 +270,7 @@ def category_shares(
             failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
-            by=(share_of, share_interval),
+            by=(share_of, share_interval) if weights is None else (weighted_share,),
         )
         for label, (kept, numbers) in in_categories(rows, name).items()
         for hits in [numbers > 0]

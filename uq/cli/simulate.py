@@ -158,7 +158,7 @@ def show_outputs(row: Row) -> None:
         grid(
             [
                 (
-                    key[len(name) :].strip("[]"),
+                    key[len(name) :].removeprefix("[").removesuffix("]"),
                     _shown(value, state, unit.size),
                     f"{number(value)} s" if output.unit == "s" and duration(value) else "",
                 )

@@ -133,7 +133,7 @@ def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> Repeated:
 def _errors(findings: Findings, one: Quantity) -> Errors | None:
     """Return the errors of a quantity where that of the rows themselves is the larger."""
     (element,) = named_elements(findings.rows, one.name)
-    found = compared(findings.ds, element, findings.summary.outputs[one.name])
+    found = compared(findings.rows, element, findings.summary.outputs[one.name])
     return found if found.warning else None
 
 

@@ -63,7 +63,7 @@ def weighted_share(
     hits: list[Hits] | None = None,
     confidence: float = CONFIDENCE,
 ) -> Estimate:
-    """Estimate the mean of numbers between 0 and 1.
+    """Estimate the mean of numbers between 0 and 1, weighted where rows have weights [1]_.
 
     Parameters
     ----------
@@ -84,6 +84,10 @@ def weighted_share(
         scatter too little. Where no more than 20 effective rows carry the mean, or its
         complement, it is no narrower than the exact interval of a share of hits: the rows that
         matter may be missing. Up to 40 effective rows this fades out.
+
+    References
+    ----------
+    .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 9.2.
     """
     worth = np.ones(len(numbers)) if weights is None else weights
     if not worth.sum() > 0:
@@ -158,7 +162,7 @@ def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tup
 def moments_of_rows(
     values: Floats, weights: Floats, part: Replicates = None, within: Floats | float = 0.0
 ) -> tuple[Estimate, Estimate]:
-    """Estimate mean and standard deviation from rows whose weights can be trusted.
+    """Estimate mean and standard deviation from rows whose weights can be trusted [1]_.
 
     Parameters
     ----------
@@ -172,6 +176,10 @@ def moments_of_rows(
     mean, sd : Estimate
         With Student's intervals from the parts' influences, that of the standard deviation by its
         logarithm; of a single row a mean alone.
+
+    References
+    ----------
+    .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 9.2.
     """
     mean = float(np.average(values, weights=weights))
     if len(values) == 1:
@@ -187,7 +195,7 @@ def moments_of_rows(
 def weighted_moments(
     values: Floats, weights: Floats, part: Replicates = None
 ) -> tuple[Estimate, Estimate]:
-    """Estimate mean and standard deviation, if weights allow it; see `moments_of_rows`.
+    """Estimate mean and standard deviation if weights allow it.
 
     Returns
     -------

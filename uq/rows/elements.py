@@ -287,8 +287,8 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     found = list(elements_of(ds, [output], every=True))
     if not found:
         raise InputError(
-            f"'{output}' is a category, not a number; 'uq summary' shows the shares of regimes, and"
-            f" 'uq sensitivity --output {output}' what determines them"
+            f"'{output}' is a category, not a number; 'uq summary' shows the shares of its labels,"
+            f" and 'uq sensitivity --output {output}' what determines them"
         )
     if name == output or (name == whole_name(output) and len(found) > 1):
         return found

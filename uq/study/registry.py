@@ -187,7 +187,7 @@ def _only_model(module: ModuleType, label: str) -> str:
 
 
 def _check(model: Model, label: str) -> None:
-    """Refuse a model whose parameters or settings are not declared."""
+    """Refuse a model whose parameters or settings are not declared, or whose labels have blanks."""
     try:
         for name in model.parameter_names:
             model.parameter(name)
@@ -199,6 +199,10 @@ def _check(model: Model, label: str) -> None:
         raise InputError(f"{label}: {error}") from None
     if missing:
         raise InputError(f"{label}: parameter '{min(missing)}' has no nominal value")
+    for name, output in model.outputs.items():
+        for one in output.categories:
+            if len(one.split()) != 1:  # a result lists them with blanks between
+                raise InputError(f"{label}: output '{name}': category '{one}' must be one word")
 
 
 def made_here(reference: str) -> dict[str, str]:

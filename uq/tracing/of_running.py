@@ -21,8 +21,14 @@ from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of running estimates: of the element alone that a path names, if it does."""
+    """Return the JSON of running estimates: of the element alone that a path names, if it does.
+
+    Only the errors, if it asks for one: every design has them.
+    """
     named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
+    if path[2:] and path[2] != "estimates":
+        errors = enough(ds, named).to_dict("index")
+        return {"outputs": {name: errors_json(one) for name, one in errors.items()}}
     return convergence_json(converging(ds, named))
 
 

@@ -16,7 +16,7 @@ from uq.population.smoothing import effective_rows, tail_shape
 from uq.rows.elements import Element, analysis_of, independent_rows, named_elements, output_names
 from uq.rows.in_regime import within_regime
 from uq.tracing.citations import cited
-from uq.tracing.origin import Origin
+from uq.tracing.origin import Origin, rows_behind
 from uq.uncertainty_exponent import uncertainty_exponent
 
 COUNTED = ("failed", "undefined", "censored", "never")
@@ -60,20 +60,33 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         ds = within_regime(ds, regime)
     if path[0] in ("samples", "status"):
         return Origin((cited(status_counts),), ds)
-    rows = independent_rows(ds)
+    rows = rows_behind(ds)
     if path[0] == "rows_used":
         return Origin((cited(independent_rows),), rows)
     if path[0] == BOUNDARY:
         return Origin((cited(uncertainty_exponent),), compared_rows(ds))
     if path[0] in WEIGHTS:
         return Origin((cited(WEIGHTS[path[0]]),), rows)
-    found = _found(ds, {}, path)
+    return in_summary(_found(ds, {}, path), rows, path)
+
+
+def in_summary(found: Summary, rows: xr.Dataset, path: Path) -> Origin:
+    """Return where a share of a category or a number of an output comes from.
+
+    Parameters
+    ----------
+    found : Summary
+    rows : xarray.Dataset
+        Those that it describes.
+    path : tuple of str
+    """
     if path[0] in ("regime", "categories"):
         name, label = (REGIME, path[1]) if path[0] == REGIME else path[1:3]
         return Origin(tuple(map(cited, found.shares[name][label].by)), rows)
     states = states_of(named_elements(rows, path[1])[0])
     by = (fits_of,) if path[2] == "fits" else functions_of(found.outputs[path[1]], path[2:])
-    return Origin(tuple(map(cited, by)), rows, states)
+    notes = () if found.rows_used else tuple(found.notes)  # why no row is used
+    return Origin(tuple(map(cited, by)), rows, states, notes)
 
 
 def states_of(element: Element) -> dict[str, int]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import xarray as xr
 
+from uq.rows.elements import independent_rows
 from uq.tracing.citations import Citation
 
 
@@ -28,3 +29,9 @@ class Origin:
     rows: xr.Dataset
     states: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+
+def rows_behind(ds: xr.Dataset) -> xr.Dataset:
+    """Return the independent rows of a result; all of them where that none is says why."""
+    rows = independent_rows(ds)
+    return rows if rows.sizes["sample"] else ds

@@ -1,6 +1,6 @@
 """Mean, standard deviation, and the tail that may rule them out."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from math import isfinite, isnan, nan
 from typing import Any
@@ -11,7 +11,7 @@ from uq.analysis.statistics.statistic import FACT, Context, Kind, Reader, Statis
 from uq.estimate import NOTHING, Estimate
 from uq.intervals import mean_interval
 from uq.moments import Moments, moments, sd_interval, standard_deviation
-from uq.population.means import weighted_moments
+from uq.population.means import moments_of_rows, weighted_moments
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
 from uq.tails import heavier_tail
@@ -33,6 +33,15 @@ MOMENT = Kind(entry=_numbers, write=_write)
 SPREAD = replace(MOMENT, readers=~Reader.RUNNING)
 
 
+_Functions = tuple[Callable[..., Any], ...]
+_BY: tuple[_Functions, _Functions] = (
+    (moments, mean_interval),
+    (standard_deviation, sd_interval),
+)
+_WEIGHTED: tuple[_Functions, _Functions] = ((weighted_moments, moments_of_rows),) * 2
+"""What computes mean and standard deviation, of plain and of weighted rows."""
+
+
 def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield mean, standard deviation and tail; unknown where rows never end or are censored.
 
@@ -46,7 +55,7 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
         found = _weighted(element, context, context.weights, found)
     more = found.caution or ""
     unit = element.units
-    mean, sd = (moments, mean_interval), (standard_deviation, sd_interval)
+    mean, sd = _BY if context.weights is None else _WEIGHTED
     yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN, by=mean)
     yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD, by=sd)
     reasons = _reasons(found)
