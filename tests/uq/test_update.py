@@ -145,7 +145,7 @@ def test_what_contradicts_the_rows_is_refused(result, tmp_path):
 def test_as_many_rows_as_a_refusal_names_are_enough():
     """Any measurement with an error bounds the weights: enough rows can always be named."""
     precise = [{"unit": "A", "output": "y", "kind": "measured", "value": 5.0, "sd": 0.01}]
-    with pytest.raises(RunError, match="single rows may carry more than 1 % of all") as refused:
+    with pytest.raises(RunError, match="single rows may carry over 1 % of the weight") as refused:
         update(linear(samples=500), precise)
     more = int(re.search(r"add (\d+) rows", str(refused.value))[1])
     assert unit_quality(update(linear(samples=500 + more), precise))[0].effective > 50
