@@ -313,17 +313,17 @@ SENTENCES = {
     "too many failed": "rows failed, more than max_failed = {share} allows ({status}: row ",
     # of other rows, other code, other processes
     "another study": (
-        "{rows}: holds rows of another study ({change}); choose another output, or start over with "
+        "{rows}: has rows of another study ({change}); choose another output, or start over with "
         "--fresh\n"
     ),
-    "fewer": "{rows}: holds rows of this study with more ({change}); ",
-    "other code": "holds rows that other code of model '{model}' computed",
+    "fewer": "{rows}: has rows of this study with more ({change}); ",
+    "other code": "has rows that other code of model '{model}' computed",
     "other code refused": (
-        "{output}: holds rows that other code of model '{model}' computed, although its version is "
+        "{output}: has rows that other code of model '{model}' computed, although its version is "
         "the same; start over with uq run --fresh, or continue with --mixed\n"
     ),
     "other code shown": (
-        "{output}: holds rows that other code of model '{model}' computed; 'uq verify' compares "
+        "{output}: has rows that other code of model '{model}' computed; 'uq verify' compares "
         "them with the code here, 'uq run --fresh' computes all of them again\n"
     ),
     "another model": (

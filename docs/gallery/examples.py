@@ -145,7 +145,8 @@ EXAMPLES = (
         "scatter",
         INPUTS,
         "An output against its most influential inputs",
-        "Every row, with the mean within slices of the input and its 95 % band.",
+        "Every row, with the median in slices of the input and its 95 % band, by regime where there"
+        " are several.",
         f'scatter(ds, "{LIFE}")',
         "beam-lifetime",
     ),

@@ -54,7 +54,7 @@ def test_units_promise_a_quantile_with_the_reason(nested):
     assert known["low"] * 0.99 < cautious * DAY <= known["low"]
     assert promise.why == (
         "No tolerance bound: the rows of one sample are not independent."
-        " Cautiously: the end of the 95 % interval."
+        " Instead, conservatively: the end of the 95 % interval."
     )
 
 
@@ -115,7 +115,7 @@ def test_rows_of_samples_in_replicates_are_weighted():
     found = answer(ds)
     assert found.lead.promise.why == (
         "No tolerance bound: the rows of one sample are not independent."
-        " Cautiously: the end of the 95 % interval."
+        " Instead, conservatively: the end of the 95 % interval."
     )
     (tighten,) = [one.text for one in found.advice if one.rule == "tighten"]
     assert re.match(r"Half the scatter of rate .* would move the share of rows that end", tighten)
@@ -148,7 +148,7 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
     assert said["tolerance"]["lower"] > said["quantiles"]["0.05"]["value"]
     (days,) = numbers(
         "No tolerance bound: that of the rows, # days, lies beyond the quantile that it bounds."
-        " Cautiously: the end of the 95 % interval.",
+        " Instead, conservatively: the end of the 95 % interval.",
         promise.why,
     )
     assert days * DAY == pytest.approx(said["tolerance"]["lower"], rel=5e-3)

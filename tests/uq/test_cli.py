@@ -30,7 +30,7 @@ def test_no_argument_asks_what_to_do_next(uq, write_study, folder):
     assert (ended.code, ended.err) == (0, "")
     for step in ("uq models", "uq init beam > ", "uq check", "uq run", "uq report", "uq --help"):
         assert step in ended.out
-    assert "With what is here" not in ended.out
+    assert "In this folder" not in ended.out
     (folder / "studies").mkdir()
     for name in ("one", "two"):
         write_study(name=name).rename(folder / "studies" / f"{name}.toml")

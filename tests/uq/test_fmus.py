@@ -198,8 +198,8 @@ NEW = """<fmiModelDescription fmiVersion="3.0" modelName="Body" instantiationTok
   </ModelVariables><ModelStructure/></fmiModelDescription>"""
 ODD_STEP = EXPERIMENT.replace("0.01", "0.03")
 BAD = {
-    "no archive": (None, "is no FMU: BadZipFile"),
-    "no description": ({"description": "<x/>"}, "is no FMU"),
+    "no archive": (None, "not an FMU: BadZipFile"),
+    "no description": ({"description": "<x/>"}, "not an FMU"),
     "of FMI 1.0": (
         {"description": DESCRIPTION.replace('fmiVersion="2.0"', 'fmiVersion="1.0"')},
         "is of FMI 1.0, not 2.0; export it as such",
@@ -210,7 +210,7 @@ BAD = {
         {"description": TWICE},
         "'body.rate' and 'body_rate' would both be 'body_rate'",
     ),
-    "endless": ({"experiment": ""}, "does not say how long it is to be simulated"),
+    "endless": ({"experiment": ""}, "states no stop time"),
     "in whole steps": (
         {"description": DESCRIPTION.replace("true", "false"), "experiment": ODD_STEP},
         "does whole steps of 0.03 s only; they do not end at 4 s",

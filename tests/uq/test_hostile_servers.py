@@ -125,7 +125,7 @@ def test_an_answer_that_comes_twice_is_never_that_of_the_next_row(uq, hostile):
 def test_servers_of_different_models_are_refused(uq, hostile):
     first, other = hostile(INFO), hostile(INFO | {"OutputSizes": {"outputSizes": [2]}})
     ended = uq("models", f"{first},{other}")
-    assert ended.code == 2 and ended.err == f"{other}: describes itself otherwise than {first}\n"
+    assert ended.code == 2 and ended.err == f"{other}: is a different model than {first}\n"
 
 
 def test_a_server_that_is_restarted_loses_no_row(monkeypatch, hostile):

@@ -143,7 +143,7 @@ def test_what_hardly_runs_on_has_no_life_left(worn):
     """It was looked at, and running, after it must have worn through."""
     seen = {"unit": "A", "time": 99.0, "output": "noise", "kind": "above", "value": 1.5}
     one = lives_of(update(worn, [seen]))["A", LEFT]
-    assert one.life == {} and "hardly a row in which it still runs" in one.runs.reason
+    assert one.life == {} and "hardly any row agrees" in one.runs.reason
 
 
 def test_units_that_may_be_one_are_named():

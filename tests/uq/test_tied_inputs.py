@@ -62,7 +62,7 @@ def test_no_product_leaves_the_bounds():
     [
         (
             {"x1": UNIFORM, "x2": {"equals": "x11"}},
-            '[uncertain.x2] equals = "x11": is no uncertain parameter with its own law;'
+            '[uncertain.x2] equals = "x11": is not an uncertain parameter with its own law;'
             " did you mean 'x1'? (allowed: x1)",
         ),
         ({"x1": UNIFORM, "x2": {"equals": "x2"}}, "is the parameter itself"),

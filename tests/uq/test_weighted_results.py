@@ -145,7 +145,7 @@ def test_what_makes_no_sense_with_weights_is_refused(uq, folder, posterior, verb
 def test_a_posterior_is_not_taken_for_the_result_of_its_study(posterior, folder):
     write_result(posterior, folder / "posterior.nc")
     (folder / "wear.toml").write_text(posterior.attrs["study"])
-    with pytest.raises(InputError, match="holds rows that inspections have weighted"):
+    with pytest.raises(InputError, match="has rows that inspections have weighted"):
         api.run("wear.toml", "posterior.nc")
 
 

@@ -151,7 +151,7 @@ def test_other_designs_have_the_intervals_of_their_replicates():
 
 
 def test_a_refusal_names_the_samples_that_it_takes(result):
-    with pytest.raises(RunError, match=r"run it as a study of its own.*Pareto k [0-9.]+\)"):
+    with pytest.raises(RunError, match=r"run them as a study of their own.*Pareto k [0-9.]+\)"):
         what_if(result, {"uncertain.z.mean": 4.0})
     with pytest.raises(
         RunError, match=r"takes about \d+ samples instead of 60 \(Pareto k 0\.\d+, limit 0\.44\)"

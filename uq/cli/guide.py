@@ -6,11 +6,11 @@ from pathlib import Path
 from uq.cli.printing import console, grid, heading, paragraph
 
 _STEPS = (
-    ("uq models", "the models that can be studied"),
-    ("uq init beam > mine.toml", "a study to edit, each entry explained"),
-    ("uq check mine.toml", "is it valid, and what would it run?"),
+    ("uq models", "list the models"),
+    ("uq init beam > mine.toml", "write a commented study to edit"),
+    ("uq check mine.toml", "check it, and show what would run"),
     ("uq run mine.toml", "compute it, into results/NAME.nc"),
-    ("uq report results/NAME.nc --open", "everything it says, in the browser"),
+    ("uq report results/NAME.nc --open", "show everything on one page, in the browser"),
 )
 
 
@@ -19,7 +19,7 @@ def guide() -> None:
     heading("uq", "lifetime and sensitivity studies of vibro-impact machines")
     grid(_STEPS)
     if here := _with_what_is_here():
-        heading("\nWith what is here")
+        heading("\nIn this folder")
         for command, words in here:
             console.print(f"  {command}", soft_wrap=True)
             paragraph(words, indent=6)

@@ -139,7 +139,7 @@ def _show_lives(lives: Sequence[Remaining]) -> None:
         text = f"P(by {number(time / unit.size)}) of units not inspected: {span} (95 %)"
         paragraph(f"{text}, depending on what units share", indent=2)
     if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
-        paragraph(f"hardly a row in which it still runs: {', '.join(gone)}", indent=2)
+        paragraph(f"hardly any row in which it still runs: {', '.join(gone)}", indent=2)
 
 
 def _line(one: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]:

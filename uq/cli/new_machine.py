@@ -27,7 +27,7 @@ def $name(
     rate = 1e-12 * load * speed  # [m s-1]
     return {"life": depth / rate if rate > 0 else inf}
 ''',
-    "test_$name.py": '''"""What must hold for $name."""
+    "test_$name.py": '''"""Tests of $name."""
 
 from math import inf
 from importlib.util import find_spec
@@ -43,7 +43,7 @@ def test_a_known_life():
     assert $name(load=100.0, speed=0.5, depth=1e-3)["life"] == 1e-3 / (1e-12 * 100.0 * 0.5)
 
 
-def test_without_load_it_lasts_for_ever():
+def test_without_load_it_never_ends():
     assert $name(load=0.0)["life"] == inf
 
 
@@ -66,13 +66,13 @@ seed = 1
 distribution = "lognormal"
 mean = 100.0
 cv = 0.2
-source = "assumed: replace by what you know"
+source = "assumed: replace with your own"
 
 [uncertain.speed]
 distribution = "uniform"
 lower = 0.3
 upper = 0.7
-source = "assumed: replace by what you know"
+source = "assumed: replace with your own"
 
 [analysis]
 thresholds = { life = "150 days" }

@@ -16,7 +16,9 @@ def complete_model(incomplete: str) -> list[str]:
 ModelName = Annotated[
     str,
     typer.Argument(
-        metavar="MODEL", help="As 'uq models' lists them.", autocompletion=complete_model
+        metavar="MODEL",
+        help="A name from 'uq models', or a file such as pad.py.",
+        autocompletion=complete_model,
     ),
 ]
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
@@ -38,7 +40,7 @@ Workers = Annotated[
     typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
 ]
 Samples = Annotated[
-    int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own number.")
+    int | None, typer.Option(min=1, metavar="N", help="Overrides the study's number.")
 ]
 Scheduler = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")

@@ -68,7 +68,7 @@ def carried_out(
 
         say_when_interrupted("interrupted; nothing was written")
         ds = action(replace(options, progress=report, say=say))
-    before = f"; {found} had been computed before" if found else ""
+    before = f"; {found} computed before" if found else ""
     seconds = time.monotonic() - began
     return ds, f"{target}: {counted(computed, 'row')} computed in {seconds:.1f} s{before}"
 

@@ -58,7 +58,7 @@ def verify(path: Path, model: str | None) -> int:
     if differences and holds and not others:
         console.print(
             "File and code are the same: this model does not return the same for the same row. It"
-            " keeps something between rows, or draws random numbers that its seed does not decide."
+            " keeps something between rows, or draws random numbers that do not depend on its seed."
         )
     equal = len(rows) - len(differences)
     console.print(f"rows      {equal} of {len(rows)} recomputed are equal to the bit")

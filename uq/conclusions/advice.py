@@ -84,7 +84,7 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     if why:
         yield Advice(
             "failed",
-            f"Mend the {counted(lost, 'failed row')} first: {why[0]};"
+            f"Fix the {counted(lost, 'failed row')} first: {why[0]};"
             f" 'uq rerun {file_of(ds)} --failed{model_option(ds)}' computes failed rows again,"
             " if necessary with other settings.",
         )
@@ -164,7 +164,7 @@ def _add_rows(ds: xr.Dataset, enough: Enough) -> Iterator[Advice]:
     """Yield that intervals are missing, or how many rows would settle what the study is about."""
     rows = ds.sizes["sample"]
     if enough.unknown:
-        yield Advice("rows", f"Let the estimates have intervals: {enough.unknown}.")
+        yield Advice("rows", f"To have intervals: {enough.unknown}.")
     open_ones = [one for one in enough.question if isfinite(one.factor)]
     if not open_ones or not rows or enough.errors is not None:
         return

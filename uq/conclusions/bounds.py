@@ -157,7 +157,7 @@ def _why_no_bound(
     if any(not isnan(one) for one in bounds):
         return f"too few {end_of(element)}"
     if has_weights(ds):
-        return "inspections have weighted the rows"
+        return "the rows are weighted by inspections"
     if is_nested(ds):
         return "the rows of one sample are not independent"
     return f"the rows of a '{ds.attrs['design']}' design are not independent"

@@ -148,7 +148,7 @@ class Promise:
         """Why there is no tolerance bound; "" where there is one."""
         if not self.reason:
             return ""
-        end = " Cautiously: the end of the 95 % interval." if self._is_cautious else ""
+        end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
         bound = "joint bound" if self.joint else "tolerance bound"
         return f"No {bound}: {self.reason}.{end}"
 

@@ -121,7 +121,7 @@ def _found(path: Path, identity: str) -> xr.Dataset:
     except results.UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file; choose another output") from None
     if ds.attrs.get("basins_identity") != identity:
-        raise InputError(f"{path}: holds something else; choose another output")
+        raise InputError(f"{path}: has other contents; choose another output")
     return ds
 
 

@@ -219,9 +219,9 @@ def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
         notes.append("no interval: a single replicate does not show the scatter of its estimate")
     if lost:
         seen = (
-            "no row lay beyond the threshold"
+            "no row lies beyond the threshold"
             if lost == count
-            else f"{lost} of {count} replicates never got beyond the threshold"
+            else f"{lost} of {count} replicates did not reach the threshold"
         )
         notes.append(
             f"{seen}: the rows only support a probability below {most:.2g}{_where_it_ended(ds)};"
@@ -239,7 +239,7 @@ def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
         notes.append(
             f"{margin.failed} of {int(ds['rows'])} rows failed, or were censored before the"
             " threshold, and count as outside the event: the probability is a lower bound; with"
-            f" them within, the rows support no more than {float(ds['failed_high']):.2g}{what}"
+            f" them inside, the rows support no more than {float(ds['failed_high']):.2g}{what}"
         )
     if margin.undefined:
         notes.append(

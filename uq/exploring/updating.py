@@ -55,10 +55,11 @@ def update(
         Where to write the posterior; by default it is not written.
     rows : int, optional
         Number of rows: of a study, instead of its own; of a result, new ones that may be computed
-        if its own cannot represent what the inspections leave (`uq.exploring.new_rows.enlarged`).
+        if its own cannot represent the posterior (`uq.exploring.new_rows.enlarged`).
     model_error : float, optional
-        Coefficient of variation of a lognormal discrepancy between model and reality; default 0,
-        or that of the result if it has been updated before.
+        Coefficient of variation of reality about the model: lognormal beside ``cv`` and detection
+        curves, normal beside ``sd`` and exact limits; default 0, or that of the result if it has
+        been updated before.
     workers, scheduler
         As in `uq.run`.
     model : str, optional
@@ -174,4 +175,4 @@ def _check_that_it_is_a_posterior(path: Path) -> None:
     """Refuse to overwrite rows that a run computed: only they can be extended and verified."""
     remedy = "choose another output"
     if not has_weights(open_result(path, remedy)):
-        raise InputError(f"{path}: holds rows that no inspections have weighted; {remedy}")
+        raise InputError(f"{path}: has rows that no inspections have weighted; {remedy}")

@@ -44,7 +44,7 @@ class Learnt:
     lives : list of Remaining
     taught : list of Taught
     strangeness : float
-        Probability, before the inspections, of inspections at least as strange.
+        Probability, before the inspections, of inspections at least as improbable.
     notes : list of str
         Warnings.
     """
@@ -101,7 +101,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
 def _warnings(strange: float) -> Iterator[str]:
     if strange < STRANGE:
         yield (
-            f"Warning: inspections as strange as these had a probability of {percent(strange)}"
+            f"Warning: inspections as improbable as these had a probability of {percent(strange)}"
             " before; a law, the model (--model-error) or an inspection may be wrong."
         )
 

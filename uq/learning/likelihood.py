@@ -21,8 +21,8 @@ def log_likelihood(inspection: Inspection, truth: Floats, model_cv: float = 0.0)
     truth : ndarray
         Values of the quantity, in the unit of the inspection; NaN where there is none.
     model_cv : float
-        Coefficient of variation of a lognormal discrepancy between model and reality, whose median
-        is 1.
+        Coefficient of variation of reality about the model: lognormal, with median 1, beside a
+        lognormal error or a detection curve; normal beside a normal error or an exact limit.
 
     Returns
     -------

@@ -96,7 +96,7 @@ def posterior(
         The independent rows of a result, or samples of several rows.
     inspections : sequence of Inspection
     model_cv : float
-        Of a lognormal discrepancy between model and reality, whose median is 1.
+        Of reality about the model, as for `uq.learning.likelihood.log_likelihood`.
 
     Returns
     -------

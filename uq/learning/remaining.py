@@ -24,7 +24,7 @@ PROBABILITIES = (0.05, 0.5, 0.95)
 ANY = ""
 """A unit that was never inspected."""
 
-_GONE = "its inspections leave hardly a row in which it still runs"
+_GONE = "hardly any row agrees with its inspections and still runs"
 _LEAST = 1e-3
 
 

@@ -16,7 +16,7 @@ STRANGE = 0.01
 
 
 def strangeness(found: Posterior, seed: int, model_cv: float) -> float:
-    """Return the probability, before the inspections, of inspections at least as strange.
+    """Return the probability, before the inspections, of inspections at least as improbable.
 
     Campaigns with the same inspections are drawn from the rows and the laws of errors. How strange
     a campaign is: the product over inspections of the two-sided probabilities of each value, and

@@ -11,7 +11,7 @@ from uq.population.smoothing import DOUBTFUL, refusal, rows_to_carry_little
 from uq.wording import percent
 
 HOPELESS = (
-    "the rows hardly visit what the inspections leave, and it takes many times the rows; where"
+    "few rows agree with the inspections, and this takes many times the rows; where"
     " these do not help either, the laws, the model (--model-error) or an inspection may be wrong"
 )
 
@@ -44,7 +44,7 @@ def _censored(found: Posterior) -> Iterator[str]:
         if share > _OPEN:
             yield (
                 f"unit {label}: {percent(share)} of the rows were censored before what its"
-                f" inspections saw{_or_stopped(found, label)}"
+                f" inspections found{_or_stopped(found, label)}"
             )
 
 
@@ -76,7 +76,7 @@ def _why(one: Weighted) -> str:
         more = rows_to_carry_little(found.most) - found.rows
         if found.k < DOUBTFUL or more > _MODERATE * found.rows:
             return why
-        return f"single rows may carry more than 1 % of all: add {_rounded_up(more)} {several}"
+        return f"single rows may carry over 1 % of the weight: add {_rounded_up(more)} {several}"
     if found.effective >= FEW:
         return ""
     more = ceil(found.rows * (FEW / found.effective - 1))

@@ -54,7 +54,7 @@ def _read(path: Path, stamp: tuple[int, int]) -> Any:
     except InputError:
         raise
     except Exception as error:
-        raise InputError(f"{path}: is no FMU: {described(error)}") from None
+        raise InputError(f"{path}: not an FMU: {described(error)}") from None
     if said.coSimulation is None and said.modelExchange is None:
         raise InputError(f"{path}: is neither for co-simulation nor for model exchange")
     if fmpy.platform not in platforms:
@@ -96,7 +96,7 @@ def times_of(said: Any, stop: float | None, step: float | None) -> tuple[float, 
     start = default("startTime") or 0.0
     end = stop or default("stopTime")
     if end is None:
-        raise ValueError("does not say how long it is to be simulated; give stop in a machine file")
+        raise ValueError("states no stop time; give stop in a machine file")
     if not end > start:
         raise ValueError(f"ends at {end:g} s, but starts at {start:g} s")
     how = said.coSimulation

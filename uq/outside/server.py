@@ -57,7 +57,7 @@ def server_model(address: str) -> Model:
     known = _known(first)
     for other in others:
         if replace(_known(other), server=known.server) != known:
-            raise InputError(f"{other}: describes itself otherwise than {first}")
+            raise InputError(f"{other}: is a different model than {first}")
     described = known.information.get(DESCRIBED) or {}
     try:
         fields = {

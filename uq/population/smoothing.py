@@ -195,7 +195,7 @@ def largest_shape(rows: int) -> float:
 
 
 HOPELESS = (
-    "the rows hardly visit what the other laws would; run it as a study of its own, or with many"
+    "too few rows lie where the other laws do; run them as a study of their own, or with many"
     " times the rows"
 )
 
@@ -211,7 +211,7 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     if k < DOUBTFUL:
         needed = max(ceil(10 ** (1 / (1 - max(k, 0.0)))), rows + 1)
         return (
-            f"the rows of this study cannot tell: it takes about {needed} samples instead of {rows}"
+            f"this takes about {needed} samples instead of {rows}"
             f" (Pareto k {k:.2f}, limit {most:.2f})"
         )
     if k == inf:
@@ -232,7 +232,7 @@ def too_large(share: float, rows: int) -> str:
     if share <= _LITTLE:
         return ""
     more = ceil(rows * (share / _LITTLE - 1))
-    return f"a sample carries {share:.1%} of all weight, and may carry {_LITTLE:.0%}: add {more}"
+    return f"a single sample carries {share:.1%} of the weight, above {_LITTLE:.0%}: add {more}"
 
 
 def per_sample(numbers: Floats, part: Replicates) -> Floats:

@@ -94,7 +94,7 @@ def _why_without(name: str, inputs: Inputs) -> str:
     if law.discrete and not isinstance(law, IntegerRange):
         return LISTED
     if _kind(law) not in KNOWN:
-        return f"this page does not know its law, {_kind(law)}"
+        return f"this page cannot compute with its law, {_kind(law)}"
     if isinstance(law, IntegerRange) and law.upper - law.lower < 2:
         return "it has two values only"
     if 0 in getattr(law, "counts", ()):
@@ -104,7 +104,7 @@ def _why_without(name: str, inputs: Inputs) -> str:
             if inputs.laws[other].discrete:
                 return f"it depends on listed values of {other}"
             if _kind(inputs.laws[other]) not in KNOWN:
-                return f"it depends on {other}, whose law this page does not know"
+                return f"it depends on {other}, with whose law this page cannot compute"
     return ""
 
 
@@ -112,7 +112,7 @@ def _why_refused(exponents: Mapping[str, float], inputs: Inputs) -> str:
     """Return why the lives that these inputs scale have no answer, or ""."""
     for name in {*exponents, *inputs.correlated} if exponents else ():
         if _kind(inputs.laws[name]) not in KNOWN:
-            return f"this page does not know the law of {name}, {_kind(inputs.laws[name])}"
+            return f"this page cannot compute with the law of {name}, {_kind(inputs.laws[name])}"
     return ""
 
 

@@ -135,16 +135,16 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     remedy = "choose another output, or overwrite it with --fresh"
     ds = results.open_result(path, remedy)
     if has_weights(ds):
-        raise InputError(f"{path}: holds rows that inspections have weighted; {remedy}")
+        raise InputError(f"{path}: has rows that inspections have weighted; {remedy}")
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
-        raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")
+        raise InputError(f"{path}: has the result of another study ({change}); {remedy}")
     there, wanted = int(ds.attrs["samples"]), study.design.samples
     if there > wanted or (there < wanted and not stopping.ended(study.design, ds)):
         problem = remedy if there > wanted else refusal_to_extend(study)
         if problem:
             sizes = f"samples = {there}, not {wanted}"
-            raise InputError(f"{path}: holds this study with {sizes}; {problem}")
+            raise InputError(f"{path}: has this study with {sizes}; {problem}")
         return None
     if ds.attrs["study"] != study.text:
         store.write_result(results.relabel(ds, study.with_samples(there)), path)
@@ -158,7 +158,7 @@ def line_on_other_code(study: Study, path: Path, ds: xr.Dataset) -> str:
     if not is_other_code(ds.attrs, study.model_reference):
         return ""
     return (
-        f"{path}: holds rows that other code of model '{study.model.name}' computed; 'uq verify' "
+        f"{path}: has rows that other code of model '{study.model.name}' computed; 'uq verify' "
         "compares them with the code here, 'uq run --fresh' computes all of them again"
     )
 

@@ -114,16 +114,16 @@ def _usable(folder: Path, study: Study, again: Mapping[str, Any] | None) -> Hist
         return None
     last = found.run
     if again is not None and not last.again:
-        raise InputError(f"{folder}: holds rows of a run that is not complete; finish it first")
+        raise InputError(f"{folder}: has rows of a run that is not complete; finish it first")
     if last.identity != study.identity:
         change = what_changed(last.study, last.model_version, study)
-        raise InputError(f"{folder}: holds rows of another study ({change}); {_REMEDY}")
+        raise InputError(f"{folder}: has rows of another study ({change}); {_REMEDY}")
     if last.samples != study.design.samples:
         sizes = f"samples = {last.samples}, now {study.design.samples}"
         if last.samples > study.design.samples:
-            raise InputError(f"{folder}: holds rows of this study with more ({sizes}); {_REMEDY}")
+            raise InputError(f"{folder}: has rows of this study with more ({sizes}); {_REMEDY}")
         if problem := refusal_to_extend(study):
-            raise InputError(f"{folder}: holds rows of this study with fewer ({sizes}); {problem}")
+            raise InputError(f"{folder}: has rows of this study with fewer ({sizes}); {problem}")
     return found
 
 
@@ -160,7 +160,7 @@ def _check_code(study: Study, path: Path, found: History | None) -> None:
         made = [results.open_result(path).attrs]
     if any(is_other_code(one, study.model_reference) for one in made):
         raise InputError(
-            f"{path}: holds rows that other code of model '{study.model.name}' computed, although "
+            f"{path}: has rows that other code of model '{study.model.name}' computed, although "
             "its version is the same; start over with uq run --fresh, or continue with --mixed"
         )
 

@@ -114,7 +114,7 @@ class StudyTable(_Table):
 
     name: Name = Field(description="names the result file: letters, digits, '-' and '_'")
     model: Name = Field(description="name of an installed model, as 'uq models' lists them")
-    description: str = Field("", description="one line for whoever reads the result")
+    description: str = Field("", description="one line for readers of the result")
 
 
 class Until(_Table):

@@ -86,7 +86,7 @@ def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
         path = ("uncertain", name, "equals" if isinstance(entry, Tied) else "times")
         if other not in leaders:
             allowed = ", ".join(leaders) or "none"
-            problem = "is no uncertain parameter with its own law"
+            problem = "is not an uncertain parameter with its own law"
             if other == name:
                 problem = "is the parameter itself"
             yield Fault(path, f"{problem}{nearest(other, leaders)} (allowed: {allowed})", other)

@@ -19,7 +19,7 @@ from uq.study.file import AnalysisTable, DesignTable
 
 _DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
-_SOURCE = "example: replace by what you know"
+_SOURCE = "example: replace with your own"
 
 
 def template(model: Model, reference: str = "") -> str:

@@ -28,7 +28,7 @@ def update(
     ] = None,
     by: Annotated[
         list[str] | None,
-        typer.Option(metavar="T", help='When, in the unit of the life, or such as "30 days".'),
+        typer.Option(metavar="T", help='Time in the unit of the life, or such as "30 days".'),
     ] = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
@@ -36,7 +36,7 @@ def update(
     quiet: given.Quiet = False,
     json: given.Json = False,
 ) -> int:
-    """Learn from inspections: inputs, units, and lives to come."""
+    """Learn from inspections about inputs, units and lives."""
     from uq.cli import learning
 
     options = RunOptions(workers, scheduler)
@@ -61,7 +61,7 @@ def next_inspection(
     ],
     at: Annotated[
         list[str] | None,
-        typer.Option(metavar="T", help='When, in the unit of the life, or such as "30 days".'),
+        typer.Option(metavar="T", help='Time in the unit of the life, or such as "30 days".'),
     ] = None,
     units: Annotated[
         list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
@@ -70,7 +70,7 @@ def next_inspection(
     life: Annotated[str | None, typer.Option(metavar="NAME", help="The life to narrow.")] = None,
     json: given.Json = False,
 ) -> None:
-    """Show what inspecting more units would be worth."""
+    """Estimate the worth of inspecting more units."""
     from uq.cli import next_inspection as question
 
     question.next_inspection(result, inspect, at or [], units or [1, 5, 20], cv, life, json)

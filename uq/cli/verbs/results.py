@@ -31,7 +31,7 @@ def extend(
     mixed: given.Mixed = False,
     quiet: given.Quiet = False,
 ) -> int:
-    """Give a result more samples; nothing is computed again."""
+    """Add samples to a result; existing rows are kept."""
     from uq.cli.run import amended
     from uq.upkeep import amending
 
@@ -76,7 +76,7 @@ def row(
         int | None, typer.Argument(min=0, metavar="N", help="Number of the row, from 0.")
     ] = None,
     lowest: Annotated[
-        str | None, typer.Option(metavar="OUTPUT", help="The row in which it is lowest.")
+        str | None, typer.Option(metavar="OUTPUT", help="The row with the lowest value.")
     ] = None,
     near_quantile: Annotated[
         tuple[float, str] | None,
@@ -103,7 +103,7 @@ def summary(
     plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
-    """Show how rows ended, and statistics of each output."""
+    """Show the answer, and statistics of each output."""
     from uq.analysis.as_json import summary_json
     from uq.analysis.boundary import boundary_json
     from uq.analysis.findings import Findings
@@ -140,7 +140,7 @@ def sensitivity(
     regime: given.Regime = None,
     json: given.Json = False,
 ) -> None:
-    """Show from which inputs the scatter comes."""
+    """Show which inputs cause the scatter."""
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import show
     from uq.indices.as_json import sensitivity_json
@@ -190,7 +190,7 @@ def convergence(
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
     json: given.Json = False,
 ) -> None:
-    """Show running estimates: whether the rows are enough."""
+    """Show estimates against rows, and if these are enough."""
     from uq.cli import estimates
 
     estimates.convergence(result, output, json)
@@ -215,7 +215,7 @@ def what_if(
     ],
     json: given.Json = False,
 ) -> None:
-    """Show what the same rows say of inputs with other laws."""
+    """Reweight the rows to other laws of the inputs."""
     from uq.cli import what_if as question
 
     question.what_if(result, set_, json)
@@ -266,11 +266,11 @@ def report(
         typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html, OUT-dossier.html."),
     ] = None,
     dossier: Annotated[
-        bool, typer.Option("--dossier", help="Order it along outlines for assessments.")
+        bool, typer.Option("--dossier", help="Follow published outlines for assessments.")
     ] = False,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
-    """Write all that a result says to one page for a browser."""
+    """Write one self-contained page with everything."""
     from uq.report import page, write_report
     from uq.report.dossier import dossier as in_order
 

@@ -88,9 +88,9 @@ def check(study: given.StudyFile, model: given.ModelReference = None) -> None:
 
 def serve(
     model: given.ModelName,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="0: any that is free.")] = 4242,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0: any free one.")] = 4242,
     host: Annotated[
-        str, typer.Option(metavar="HOST", help="Who reaches it can have rows computed.")
+        str, typer.Option(metavar="HOST", help="Whoever can reach it can run rows.")
     ] = "127.0.0.1",
 ) -> None:
     """Offer a model to other programs (UM-Bridge)."""
@@ -109,7 +109,7 @@ def serve(
 
 
 def schema(
-    machine: Annotated[bool, typer.Option("--machine", help="Of machine files.")] = False,
+    machine: Annotated[bool, typer.Option("--machine", help="That of machine files.")] = False,
 ) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
@@ -180,7 +180,7 @@ def rare_event(
         str, typer.Option(metavar="M", help="subset, or importance (FORM; smooth outputs).")
     ] = "subset",
     samples: Annotated[int, typer.Option(metavar="N", help="Rows of each level.")] = 1000,
-    replicates: Annotated[int, typer.Option(metavar="R", help="Repetitions of the whole.")] = 8,
+    replicates: Annotated[int, typer.Option(metavar="R", help="Repetitions of the procedure.")] = 8,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
     model: given.ModelReference = None,

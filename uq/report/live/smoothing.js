@@ -129,9 +129,9 @@ function refusal(k, rows) {
   }
   if (k < HOPELESS) {
     const needed = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))), rows + 1);
-    return `the rows of this study cannot tell: it takes about ${needed} samples instead of ${rows}`
+    return `this takes about ${needed} samples instead of ${rows}`
       + ` (Pareto k ${k.toFixed(2)}, limit ${most.toFixed(2)})`;
   }
-  return "the rows hardly visit what the other laws would; run it as a study of its own, or with many times the rows"
+  return "too few rows lie where the other laws do; run them as a study of their own, or with many times the rows"
     + ` (Pareto k ${k.toFixed(2)})`;
 }
