@@ -12,7 +12,7 @@ from uq.conclusions.enough import Enough, needed
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, bounds_unsettled
-from uq.conclusions.sources import ASSUMED, mark
+from uq.conclusions.sources import ASSUMED, CHOSEN, mark
 from uq.conclusions.tolerances import tighten
 from uq.conclusions.whole import Answer
 from uq.conclusions.words import called, called_together, share_text
@@ -20,11 +20,12 @@ from uq.designs.levels import CHANCE
 from uq.keys import key_of
 from uq.rows.commands import file_of, model_option
 from uq.rows.elements import analysis_of
+from uq.rows.nesting import levels_of
 from uq.rows.results import failed
 from uq.rows.weights import has_weights
 from uq.wording import counted, grouped
 
-_AS_SETTLED = ("known", "tighten", "keep", "chance")
+_AS_SETTLED = ("known", "source", "tighten", "keep", "chance")
 """Rules of advice that is given also where everything is settled."""
 
 
@@ -50,15 +51,12 @@ def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
         *(_add_rows(findings.ds, enough) if found.quantities else ()),
     ]
     answered = found.quantities
-    if (
-        answered
-        and not enough.question
-        and all(one.rule in ("known", "tighten", "keep", "chance") for one in told)
-    ):
+    if answered and not enough.question and all(one.rule in _AS_SETTLED for one in told):
+        known = any(one.rule == "known" for one in told)
         told = [one for one in told if one.rule != "known"]  # it says so, too
         nothing = "Nothing else" if told else "Nothing"
-        what = "is about" if enough.besides else "asks"
-        settled = f"what the study {what} is settled, and no law that matters is an assumption"
+        settled = f"what the study {'is about' if enough.besides else 'asks'} is settled"
+        settled += ", and no law that matters is an assumption" * known
         told.append(Advice("nothing", f"{nothing}: {settled}."))
     yield from told
 
@@ -111,16 +109,35 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, event = _leading(found)
     if leader is None:
         return
-    ds = findings.ds
-    assumed = tuple(n for n in leader.inputs if mark(str(ds[n].attrs["source"])) == ASSUMED)
-    if not assumed:
-        one = len(leader.inputs) == 1
+    marks = {name: _mark(findings.ds, name) for name in leader.inputs}
+    levels = levels_of(findings.ds)
+    starts = {name for name in marks if "initial" in findings.ds[name].attrs}
+    lasting = [
+        name
+        for name, how in marks.items()
+        if how != CHOSEN and levels[name] != CHANCE and name not in starts
+    ]
+    assumed = tuple(name for name in lasting if marks[name] == ASSUMED)
+    unstated = tuple(name for name in lasting if not marks[name])
+    if not assumed and unstated:
+        one = len(unstated) == 1
+        yield Advice(
+            "source",
+            f"State how well {called_together(unstated)} {'is' if one else 'are'} known:"
+            f" {'it matters' if one else 'they matter'} most, and no source says whether"
+            f" {'its law is' if one else 'their laws are'} given, inferred, fitted or assumed.",
+            unstated,
+        )
+    elif not assumed and lasting:
+        one = len(lasting) == 1
         yield Advice(
             "known",
-            f"Measure nothing first: {'the law' if one else 'the laws'} of {leader.words},"
-            f" which {'matters' if one else 'matter'} most, {'is' if one else 'are'} not assumed.",
-            leader.inputs,
+            f"Nothing needs to be measured first: {'the law' if one else 'the laws'} of"
+            f" {called_together(lasting)}, which {'matters' if one else 'matter'} most,"
+            f" {'is' if one else 'are'} not assumed.",
+            tuple(lasting),
         )
+    if not assumed:
         return
     one = len(assumed) == 1
     words = called_together(assumed)
@@ -135,9 +152,13 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     )
 
 
+def _mark(ds: xr.Dataset, name: str) -> str:
+    return mark(str(ds[name].attrs["source"]))
+
+
 def _tighten(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, _ = _leading(found)
-    if leader is not None:
+    if leader is not None and any(_mark(findings.ds, one) != CHOSEN for one in leader.inputs):
         yield from tighten(findings.ds, found.quantities[0], leader)
 
 

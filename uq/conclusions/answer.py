@@ -97,8 +97,9 @@ def _levels(findings: Findings, found: Answer) -> Levels | None:
     """Return which level decides what the study is about; None where that is not known."""
     if found.regimes_first:
         (first, *_) = found.regimes
-        return levels_of(findings, first.name, f"whether it is {first.said}")
-    return None if found.lead is None else levels_of(findings, found.lead.name, "its scatter")
+        return levels_of(findings, first.name, f"whether it is {first.said}", first.ranking)
+    lead = found.lead
+    return None if lead is None else levels_of(findings, lead.name, "its scatter", lead.ranking)
 
 
 def regimes_of(findings: Findings) -> Iterator[Event]:

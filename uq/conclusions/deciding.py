@@ -7,6 +7,7 @@ from math import isnan
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.conclusions.contributions import Ranking
 from uq.conclusions.words import called, joined, sentence, share_text
 from uq.designs.levels import CHANCE, LEVELS, OWN, SHARED
 from uq.estimate import Estimate
@@ -95,7 +96,9 @@ class Levels:
         return f"{share_text(self.another)} of repeats end in another regime."
 
 
-def levels_of(findings: Findings, target: str, of: str) -> Levels | None:
+def levels_of(
+    findings: Findings, target: str, of: str, ranking: Ranking | None = None
+) -> Levels | None:
     """Return which level decides a target; None where that is not known.
 
     Parameters
@@ -105,6 +108,8 @@ def levels_of(findings: Findings, target: str, of: str) -> Levels | None:
         Of an element, such as ``life``, or of an event.
     of : str
         What is decided, in words.
+    ranking : Ranking, optional
+        Of the inputs: a level names first those that contribute most.
     """
     if not is_nested(findings.ds) or has_weights(findings.ds):
         return None
@@ -114,8 +119,14 @@ def levels_of(findings: Findings, target: str, of: str) -> Levels | None:
         return None
     words = _words(findings, known.inputs, known.units)
     shares = known.outputs[name].shares
+    ranked = () if ranking is None else [n for one in ranking.contributions for n in one.inputs]
+    place = {name: i for i, name in enumerate(ranked)}
+
+    def on(level: str) -> tuple[str, ...]:
+        return tuple(sorted(known.inputs_on(level), key=lambda name: place.get(name, len(place))))
+
     found = [
-        Level(level, words[level], tuple(known.inputs_on(level)), shares[level])
+        Level(level, words[level], on(level), shares[level])
         for level in LEVELS
         if known.inputs_on(level) or shares[level].value > 0
     ]

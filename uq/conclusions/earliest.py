@@ -2,7 +2,6 @@
 
 import shlex
 from dataclasses import dataclass, replace
-from math import isnan
 
 import numpy as np
 
@@ -92,8 +91,8 @@ class Earliest:
         if not self.regimes:
             return ""
         one = self.regimes[0]
-        unknown = isnan(one.share.low)
-        also = "" if one.is_more_frequent or unknown else ": chance may explain the difference"
+        by_chance = one.share.low <= one.overall <= one.share.high
+        also = ": chance may explain the difference" * by_chance
         return (
             f"{share_text(one.share)} of them are {one.label}, of all rows"
             f" {percent(one.overall)}{also}."

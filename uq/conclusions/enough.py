@@ -64,7 +64,7 @@ class Enough:
         if any(isfinite(one.factor) for one in self.question):
             said = "The rows are not enough to settle all of this. "
         elif self.errors is not None:
-            said = "More rows would not help, more accurate ones would. "
+            said = "More rows alone would not help, more accurate ones would. "
         else:
             said = "" if self.question else "The rows are enough: "
         if not again:
@@ -78,7 +78,7 @@ class Enough:
             return ""
         own, sampling = (self.unit.text(one) for one in (self.errors.own, self.errors.sampling))
         return (
-            "Compute more accurate rows, not more of them (finer settings or longer averages):"
+            "Compute more accurate rows before more of them (finer settings or longer averages):"
             f" their numerical error may move the {self.errors.estimate} by {own}, sampling by"
             f" {sampling}."
         )

@@ -130,7 +130,7 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
         yield _line(verdict) if answer.regimes_first else _large(verdict)
     if cause:
         yield _line(cause)
-    yield _small(f"{capitalized(lead.words)}.")
+    yield _small(lead.subject)
     if promise is not None and promise.why:
         yield _small(promise.why)
     if likely := keyed.likely(lead):
@@ -186,7 +186,7 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
     assert lead.ranking is not None
     largest = lead.ranking.contributions[0].value
-    most = max(1.0 if one.share_of_variance else 0.0, largest)
+    most = max(1.0 if largest <= 1 else 0.0, largest)
     first = one.indices[0]
     track = bars.bar(one.value, first.low, first.high, (0.0, most))
     words, told = one.words, bool(one.effect)

@@ -145,6 +145,8 @@ class Quantity:
         The side of its values that is wanted; "" where that is not known, and for lives.
     earliest : Earliest or None
         Of a life that does not end with a success: which rows end first, and why.
+    scaled_by : tuple of str
+        Quantities whose values are assumed and to which all its lives are proportional.
     """
 
     name: str
@@ -156,6 +158,16 @@ class Quantity:
     ranking: Ranking | None = None
     wanted: str = ""
     earliest: Earliest | None = None
+    scaled_by: tuple[str, ...] = ()
+
+    @property
+    def subject(self) -> str:
+        """What it is, and if only its shape is known."""
+        if not self.scaled_by:
+            return sentence(self.words)
+        are = "are" if len(self.scaled_by) > 1 else "is"
+        named = called_together(self.scaled_by)
+        return f"{sentence(self.words)} Its scale is that of {named}, which {are} assumed."
 
     @property
     def is_life(self) -> bool:
@@ -226,7 +238,7 @@ class Quantity:
         found = [] if self.promise is None else [self.promise.sentence]
         if self.first is not None:
             found += [self.first.sentence, self.first.decided_by, self.first.limited]
-        found.append(sentence(self.words))
+        found.append(self.subject)
         found += [] if self.promise is None else [self.promise.why]
         found += [] if self.range is None else [self.range.sentence]
         return [*filter(None, found)]

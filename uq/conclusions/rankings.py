@@ -74,7 +74,8 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     form = FORMS.get(split_name(name)[0])
     of = f" of the {form}" if form else ""
     share = f"share of the variance{of}, " if kind.unit == "variance" else ""
-    what = f"{share}{kind.words}{'' if share else of}, by {method}"
+    by = "" if method in kind.words.lower() else f", by {method}"
+    what = f"{share}{kind.words}{'' if share else of}{by}"
     if not measured[0].counts:
         reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
         return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)

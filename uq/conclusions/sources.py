@@ -3,10 +3,11 @@
 import re
 
 ASSUMED = "assumed"
+CHOSEN = "chosen"
+"""Of a quantity whose range is one of designs: nothing to measure, and no tolerance."""
 
-_MARK = re.compile(
-    r"(?:^|[:;,] )(given|inferred|fitted|assumed)\b|(?<!\bnot )\b(given|inferred|fitted|assumed)$"
-)
+_WORDS = f"(given|inferred|fitted|{ASSUMED}|{CHOSEN})"
+_MARK = re.compile(rf"(?:^|[:;,] ){_WORDS}\b|(?<!\bnot )\b{_WORDS}$")
 
 
 def mark(source: str) -> str:
@@ -20,8 +21,8 @@ def mark(source: str) -> str:
     Returns
     -------
     str
-        ``given``, ``inferred``, ``fitted`` or ``assumed``: the first that begins the sentence or
-        one of its parts, or ends it.
+        ``given``, ``inferred``, ``fitted``, ``assumed`` or ``chosen``: the first that begins the
+        sentence or one of its parts, or ends it.
     """
     found = _MARK.search(source)
     return (found[1] or found[2]) if found else ""

@@ -8,6 +8,7 @@ import xarray as xr
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Quantity
 from uq.conclusions.remedies import Advice, Tightened
+from uq.conclusions.sources import CHOSEN, mark
 from uq.conclusions.tightening import tightened
 from uq.conclusions.words import twin_of
 
@@ -30,7 +31,7 @@ def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterato
     leader : Contribution
         What contributes most: its number is the one that all are compared by.
     """
-    found = [_shown(ds, quantity, one) for one in _candidates(quantity, leader)]
+    found = [_shown(ds, quantity, one) for one in _candidates(ds, quantity, leader)]
     known = [one for each in found for one in each if not one.reason]
     better = [one for one in known if one.helps and one.is_seen and not one.may_stay]
     if not better:
@@ -59,12 +60,14 @@ def twins(leader: Contribution) -> tuple[str, ...]:
     return tuple(one for one in leader.inputs if twin_of(one) == twin_of(leader.inputs[0]))
 
 
-def _candidates(quantity: Quantity, leader: Contribution) -> list[Contribution]:
-    """Return what contributes, without inputs named twice, the leader first."""
+def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> list[Contribution]:
+    """Return what contributes and is not chosen, no input named twice, the leader first."""
     rankings = [event.ranking for event in quantity.events] + [quantity.ranking]
     every = [one for ranking in rankings if ranking is not None for one in ranking.contributions]
     found = [leader]
     for one in every:
+        if any(mark(str(ds[name].attrs["source"])) == CHOSEN for name in one.inputs):
+            continue
         if not any(set(one.inputs) & set(other.inputs) for other in found):
             found.append(one)
     return found[:MOST]

@@ -201,8 +201,11 @@ def _integrated(element: Element) -> tuple[str, ...]:
 def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
     at = threshold(value, element.units)
+    if element.is_lifetime:
+        does = "succeeds" if element.declared.success else "ends"
+        return f"P({does} within {printed(at)}), {column['label']}"
     label = f"|{column['label']}|" if element.is_angle else column["label"]
-    return f"P({label} {'<' if element.is_lifetime else '>'} {printed(at)})"
+    return f"P({label} > {printed(at)})"
 
 
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
