@@ -6,9 +6,11 @@ import re
 import numpy as np
 import pytest
 from computed import computed, kinds, linear, with_status
+from learnt_studies import measured, wear
 from nested_studies import nested
 
 from uq.contract import Status
+from uq.exploring.updating import update
 from uq.report.dossier import dossier
 from uq.report.dossier.chapters import CONTENTS, chapters
 from uq.report.dossier.outline import DOCUMENTS, OUTLINE
@@ -139,3 +141,15 @@ def test_it_is_shown_and_printed_without_complaint(browser, tmp_path, no_other_f
     pdf = browser.pdf()
     sizes = set(re.findall(rb"/MediaBox ?\[([^\]]+)\]", pdf))
     assert {tuple(round(float(n)) for n in size.split()) for size in sizes} == {(0, 0, 595, 842)}
+
+
+def test_a_design_without_statistics_is_not_advised_to_replicate(plain):
+    text = plain(linear("morris", 8))
+    assert "not known: the rows of a 'morris' design do not follow the laws of the inputs." in text
+    assert "set replicates" not in text
+
+
+def test_inputs_learnt_from_inspections_are_not_called_independent(plain):
+    said = "Given the inspections, the inputs need not be independent."
+    assert said in plain(update(wear(samples=2000), measured(5e5)))
+    assert said not in plain(linear())

@@ -8,7 +8,8 @@ import pytest
 from computed import summarised
 from in_memory import compute
 
-from uq.analysis.widths import expected_widths
+from uq.analysis.widths import Widths, expected_widths
+from uq.cli.plan import _widths
 from uq.running import planning, runner
 from uq.study.definition import load_study
 
@@ -125,3 +126,8 @@ def test_a_quantile_at_a_life_that_never_ends_has_no_width(write_study):
     quantiles = expected_widths(ds)["life[side=left,depth=0.5]"].quantiles
     assert quantiles[0.95] is None
     assert quantiles[0.05] > 0
+
+
+def test_plan_shows_widths_of_quantiles_in_the_unit_of_the_life():
+    widths = {"life": Widths("s", None, {0.05: 1.55e5, 0.5: 1.5e5}, {}, {})}
+    assert list(_widths(widths)) == [("life [hours]", "-", "43.1", "41.7")]

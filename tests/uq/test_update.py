@@ -199,6 +199,9 @@ def test_the_command(uq, folder, result):
     assert not (folder / "twice.nc").exists()
     shown = uq("update", "prior.nc", "found.csv", "-o", "posterior.nc")
     assert shown.code == 0 and max(map(len, shown.out.splitlines())) <= 80
+    assert re.search(
+        r"rate +\d{3}(\.\d)? .* pm s\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT ONE}\n", shown.out
+    )
     assert uq("summary", "posterior.nc").code == 0
 
 

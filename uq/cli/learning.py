@@ -24,7 +24,7 @@ from uq.rows.results import open_result
 from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study
 from uq.store.files import check_target
-from uq.units import beside, unit_of
+from uq.units import beside, powers, unit_of
 from uq.wording import in_brackets, known, number, percent
 
 MOST_UNITS = 12
@@ -112,13 +112,14 @@ def _what(taught: Taught) -> str:
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
     for one in shown:
         before, after = one.prior, one.posterior
-        half = (after.mean.high - after.mean.low) / 2
+        unit = unit_of(one.units, before.mean.value)
+        half = (after.mean.high - after.mean.low) / 2 / unit.size
         yield (
             one.name.partition("[")[0],
-            *(_digits(x.value) for x in (before.mean, before.sd, after.mean)),
+            *(_digits(x.value / unit.size) for x in (before.mean, before.sd, after.mean)),
             f"{half:.1g}" if isfinite(half) else "-",
-            _digits(after.sd.value),
-            "" if one.units == "1" else one.units,
+            _digits(after.sd.value / unit.size),
+            "" if one.units == "1" else powers(unit.name),
         )
 
 

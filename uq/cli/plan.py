@@ -13,7 +13,7 @@ from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import Study
 from uq.units import typical, unit_of
-from uq.wording import counted, in_brackets, threshold
+from uq.wording import counted, in_brackets, quantity, threshold
 
 _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
@@ -67,7 +67,7 @@ def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed])
     grid(
         [
             ("rows", str(cost.rows), pilot_rows),
-            ("a row", f"{cost.row_seconds:.3g} s", "of one process"),
+            ("a row", quantity(cost.row_seconds, "s"), "of one process"),
             ("time", _clock(cost.seconds), f"with {processes}{compiled}{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
             *(
@@ -112,8 +112,9 @@ def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:
     before = ""
     for name, width in widths.items():
         output, _, place = name.partition("[")
-        own = (one.mean for other, one in widths.items() if other.partition("[")[0] == output)
-        unit = unit_of(width.units, typical(one for one in own if one is not None))
+        own = [one for other, one in widths.items() if other.partition("[")[0] == output]
+        known = (w for one in own for w in (one.mean, *one.quantiles.values()) if w is not None)
+        unit = unit_of(width.units, typical(known))
         label = f"{output}{in_brackets(unit)}"
         if place and output != before:
             yield label, *[""] * (1 + len(width.quantiles))

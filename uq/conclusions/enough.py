@@ -13,7 +13,7 @@ from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.repeated import Repeated, repeated_share
 from uq.conclusions.settling import MOST, Unsettled, bounds_unsettled, unsettled, unsettled_share
 from uq.conclusions.words import Unit
-from uq.rows.elements import named_elements
+from uq.rows.elements import named_elements, why_no_statistics
 from uq.rows.nesting import is_nested
 from uq.rows.variables import is_error, outputs_of
 from uq.rows.weights import has_weights
@@ -98,7 +98,9 @@ def enough_of(
         Those that the study is about; none if it is about a quantity.
     """
     ds = findings.ds
-    unknown = why_no_intervals(ds).removeprefix("no intervals: ")
+    why = why_no_statistics(ds)
+    none = f"the rows of a '{ds.attrs['design']}' design {why}" if why else ""
+    unknown = none or why_no_intervals(ds).removeprefix("no intervals: ")
     known = outputs_of(ds)
     own = [one for one in answered if not is_error(one.output, known)] or [*answered]
     about, rest = ([], own) if regimes else (own[:1], own[1:])

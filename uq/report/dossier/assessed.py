@@ -14,6 +14,7 @@ from uq.rows.commands import model_option
 from uq.rows.elements import analysis_of, shown_outputs, study_file_of
 from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights
 from uq.study.file import Tied
 from uq.wording import quantity
 
@@ -114,6 +115,8 @@ def inputs(findings: Findings, file: str) -> Iterator[Item]:
     laws, *correlations = input_tables(ds)
     yield Item("Laws and their sources", tables=[laws])
     independent = [] if correlations else ["The laws are independent."]
+    if has_weights(ds):
+        independent.append("Given the inspections, the inputs need not be independent.")
     yield Item("Dependence", text=independent, tables=correlations)
     levels = [
         (Cell(name), Cell(origin.level or ""))
