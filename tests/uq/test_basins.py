@@ -190,7 +190,7 @@ def test_what_is_in_the_file_is_not_computed_again(folder):
     assert sum(calls) == 13 * 9
     assert uq.basins(counting, AXES, output="some/basins.nc").identical(ds)
     assert sum(calls) == 13 * 9
-    with pytest.raises(InputError, match=r"^some/basins.nc: holds something else; choose"):
+    with pytest.raises(InputError, match=r"^some/basins.nc: has other contents; choose"):
         uq.basins(counting, AXES, {"shift": 0.1}, output="some/basins.nc")
     (folder / "basins.txt").write_text("no netCDF")
     with pytest.raises(InputError, match=r"^basins.txt: not a readable netCDF file"):
