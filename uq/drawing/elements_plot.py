@@ -56,7 +56,7 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
 def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:
     """Write a wrapped title: the place of the element drawn, how many rows there are, and more."""
     texts = filter(None, (of, rows_in_words(chosen), *more))
-    axes.set_title(textwrap.fill(", ".join(texts), 46), loc="left")
+    axes.set_title(textwrap.fill(", ".join(texts), 44), loc="left")
 
 
 def display_unit(units: str, values: Floats) -> Unit:

@@ -1,5 +1,6 @@
 """The figure of the inputs: the stated law of each, and its sampled values."""
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -66,8 +67,9 @@ def inputs(
         _panel(panel, law, values, weights, per, ticks=6 // columns)
     rows = f"{len(next(iter(found.values()))[1])}{' weighted' if weights is not None else ''} rows"
     several = independent_rows(ds).sizes["sample"] > len(next(iter(found.values()))[1])
-    of = ", one of each sample;\n" if several else "; "
-    panels[0].set_title(f"Share of {rows} per bin{of}line: stated law", loc="left")
+    of = ", one of each sample" * several
+    said = f"Share of {rows} per bin{of}; line: stated law"
+    panels[0].set_title(textwrap.fill(said, 50), loc="left")
     return figure_of(panels[0])
 
 
