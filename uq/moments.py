@@ -114,20 +114,21 @@ def _why_no_mean(tail: Tail) -> str:
     """Return why there is no mean, or no interval of it; "" if there are both."""
     if tail.no_mean:
         return f"heavy tail: {_seen(tail)} values; with k above 1 there is no mean{_REMEDY}"
-    no_interval = f"{_no_variance(tail)}, hence no interval of the mean{_REMEDY}"
-    return no_interval if tail.no_variance else ""
+    return _no_variance(tail) if tail.no_variance else ""
 
 
 def _why_no_sd(tail: Tail) -> str:
     """Return why there is no standard deviation, or no interval of it; "" if there are both."""
     if tail.no_variance:
-        return f"{_no_variance(tail)}{_REMEDY}"
+        return _no_variance(tail)
     too_heavy = f"tail too heavy for an interval of sd: {_seen(tail)} values"
     return too_heavy if tail.k > LIGHT_ENOUGH else ""
 
 
 def _no_variance(tail: Tail) -> str:
-    return f"heavy tail: {_seen(tail)} values; with k above 0.5 there is no variance"
+    """Return one reason for both, which is printed once."""
+    no_variance = f"heavy tail: {_seen(tail)} values; with k above 0.5 there is no variance"
+    return f"{no_variance}, hence no interval of the mean{_REMEDY}"
 
 
 def sd_interval(
