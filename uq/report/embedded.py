@@ -93,8 +93,9 @@ def rows_inside(
     if integrated := dict.fromkeys(one for each in elements for one in _integrated(each)):
         names = " and ".join(map(called, integrated))
         design["intervals"] = (
-            f"Counted: each row is one life, as computed; the answer, the tables and other"
-            f" tolerances integrate {names} exactly instead. {design['intervals']}"
+            "Counted: each row is one life, as computed, as in tolerance bounds; other numbers of the"
+            f" answer, the tables and other tolerances integrate {names} exactly."
+            f" {design['intervals']}"
         )
     return {
         "model": model_option(rows),
