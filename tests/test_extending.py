@@ -247,5 +247,5 @@ def test_a_law_is_accepted_drawn_shown_and_documented(
     assert uq("run", study(stated), "-o", "out.nc", "--workers", "0").code == 0
     ds = open_result("out.nc")
     assert float((ds["x1"] < 0.1).mean()) == pytest.approx(1 - np.exp(-0.5), abs=0.04)
-    assert "rayleigh(mode = 0.1)" in page(ds, "out.nc")
+    assert "rayleigh: mode 0.1" in page(ds, "out.nc")
     assert plots.inputs(ds).axes

@@ -8,6 +8,7 @@ from scipy.stats import binomtest
 
 import uq
 from uq.rows.elements import are_independent, study_file_of
+from uq.rows.results import failed
 
 
 def denied_event(rows, event, hits):
@@ -145,8 +146,10 @@ def _denied_besides(ds, advice, lead):
     if (sure := advice.sure) is not None:
         known, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
         end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
-        (*_, bound) = numbers_in(sure.promised)
-        fresh = known[end] / sure.unit.per
+        *_, bound, studied = numbers_in(sure.promised)
+        fresh, before = known[end] / sure.unit.per, getattr(sure.before, end) / sure.unit.per
+        if not failed(ds).any() and not 0 <= away * (studied - before) <= 0.01 * abs(before):
+            yield f"{sure.promised} {before}"
         value = known["value"] / sure.unit.per
         if not 0 <= away * (bound - fresh) <= 0.01 * abs(fresh) or away * (bound - value) < 0:
             yield f"{sure.promised} {fresh}"

@@ -44,8 +44,35 @@ def test_an_assumed_law_that_matters_is_measured_first(lifetime):
         " assumed."
     )
     known = ds.copy()
-    known["rate"].attrs["source"] = "measured"
-    assert [one.rule for one in answer(known).advice] == ["tighten", "nothing"]
+    known["rate"].attrs["source"] = "given by the supplier"
+    found = answer(known)
+    assert [one.rule for one in found.advice] == ["tighten", "nothing"]
+    assert found.advice[1].text.endswith(", and no law that matters is an assumption.")
+
+
+def test_a_law_of_which_no_source_says_how_well_it_is_known_is_asked_for(lifetime):
+    ds, _ = lifetime
+    unstated = ds.copy()
+    unstated["rate"].attrs["source"] = "the supplier"
+    first, *_, last = answer(unstated).advice
+    assert first.rule == "source" and first.text.startswith("State how well rate is known: ")
+    assert last.text == "Nothing else: what the study asks is settled."
+
+
+def test_a_range_of_designs_is_neither_measured_nor_tightened(lifetime):
+    ds, _ = lifetime
+    chosen = ds.copy()
+    chosen["rate"].attrs["source"] = "chosen: the rates of three alloys"
+    found = answer(chosen).advice
+    assert not {"measure", "source", "known"} & {one.rule for one in found}
+    assert not any(one.inputs == ("rate",) for one in found if one.rule == "tighten")
+
+
+def test_what_starts_a_motion_is_not_measured(lifetime):
+    ds, _ = lifetime
+    start = ds.copy()
+    start["rate"].attrs["initial"] = 1
+    assert not {"measure", "source"} & {one.rule for one in answer(start).advice}
 
 
 def test_half_the_scatter_is_what_the_weighted_rows_say(lifetime):
@@ -108,7 +135,7 @@ def with_valley(samples=400):
 def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_input():
     ds = with_valley()
     found = answer(ds)
-    assert [one.rule for one in found.advice][:2] == ["known", "keep"]
+    assert [one.rule for one in found.advice][:2] == ["source", "keep"]
     event = found.lead.events[0]
     assert event.share.value > 0.5
     share, low, high = numbers(

@@ -82,14 +82,14 @@ def test_where_the_rows_themselves_err_more_than_sampling_more_of_them_do_not_he
     found = answer(with_output(ds, "y_error", np.full(1000, 0.2)))
     half = 1.96 * ds["y"].values.std() / 1000**0.5
     own, sampling = numbers(
-        r"Compute more accurate rows, not more of them \(finer settings or longer averages\):"
+        r"Compute more accurate rows before more of them \(finer settings or longer averages\):"
         r" their numerical error may move the mean by #, sampling by #\.",
         found.advice[0].text,
     )
     assert own == 0.2 and sampling == pytest.approx(half, rel=0.03)
     assert rules(found)[0] == "finer" and not {"rows", "nothing"} & {*rules(found)}
     assert found.enough.sentence.startswith(
-        "More rows would not help, more accurate ones would. With another seed, "
+        "More rows alone would not help, more accurate ones would. With another seed, "
     )
     exact = answer(with_output(ds, "y_error", np.full(1000, 0.01)))
     assert "finer" not in rules(exact)

@@ -18,7 +18,7 @@ def test_the_level_that_decides_is_named_with_its_share():
     ds = nested_result(levels=levels, samples=300, units=1)
     found = answer(ds)
     share, low, high, rest, *_ = numbers(
-        r"Chance \(x3 and x4\) decides its scatter: # % \(# to # %\) of the variance,"
+        r"Chance \(x4 and x3\) decides its scatter: # % \(# to # %\) of the variance,"
         r" the machine # % \(# to # %\)\.",
         found.levels.sentence,
     )

@@ -109,9 +109,12 @@ def test_an_estimate_without_interval_is_not_promised():
 
 def test_failed_rows_lie_beyond_what_could_then_be_promised():
     promise = Promise(0.95, 0.95, 13.9, np.nan, Unit("h"), is_life=True)
-    after = Estimate(20.0, 15.0, 22.0)
-    one = Tightened(("x1",), "the 5 % quantile", after=after, promise=promise)
-    assert one.promised.endswith("would then last longer than 15 h.")
-    worst = replace(one, failed=Estimate(low=14.2, high=22.0))
-    assert worst.promised.endswith("would then last longer than 14.2 h.")
-    assert replace(one, failed=Estimate(low=0.0, high=22.0)).promised == ""
+    before, after = Estimate(18.0, 14.5, 21.0), Estimate(20.0, 15.0, 22.0)
+    one = Tightened(("x1",), "the 5 % quantile", before, after, promise=promise)
+    assert "would then last longer than 15 h; as studied" in one.promised
+    assert one.promised.endswith(", 14.5 h.")
+    promise = replace(promise, failed=(Estimate(low=13.7, high=21.0), None))
+    worst = replace(one, promise=promise, failed=Estimate(low=14.2, high=22.0))
+    assert "would then last longer than 14.2 h; as studied" in worst.promised
+    assert worst.promised.endswith(", 13.7 h.")
+    assert replace(worst, failed=Estimate(low=0.0, high=22.0)).promised == ""

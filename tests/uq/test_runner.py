@@ -229,8 +229,8 @@ def test_the_result_of_something_else_is_kept(write_study, folder):
     path = write_study()
     ds = runner.run(path, "out.nc")
     for change, value, words in [
-        ("seed", 128, r"holds the result of another study \(\[design\] seed = 5, now 128\)"),
-        ("samples", 32, "holds this study with samples = 64, not 32"),
+        ("seed", 128, r"has the result of another study \(\[design\] seed = 5, now 128\)"),
+        ("samples", 32, "has this study with samples = 64, not 32"),
     ]:
         other = write_study(**{change: value})
         with pytest.raises(InputError, match=f"^out.nc: {words}.*--fresh"):

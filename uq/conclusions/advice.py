@@ -124,8 +124,7 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
         yield Advice(
             "source",
             f"State how well {called_together(unstated)} {'is' if one else 'are'} known:"
-            f" {'it matters' if one else 'they matter'} most, and no source says whether"
-            f" {'its law is' if one else 'their laws are'} given, inferred, fitted or assumed.",
+            f" {'it matters' if one else 'they matter'} most, and no source says it.",
             unstated,
         )
     elif not assumed and lasting:

@@ -171,7 +171,7 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
 
 
 _OF_POSTERIOR = (
-    *(INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR),
+    *(INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, NEW_ROWS),
     *(WORLDS, ONLY_INSPECTED, "prior_title"),
 )
 

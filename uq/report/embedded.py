@@ -93,8 +93,8 @@ def rows_inside(
     if integrated := dict.fromkeys(one for each in elements for one in _integrated(each)):
         names = " and ".join(map(called, integrated))
         design["intervals"] = (
-            "Counted: each row is one life, as computed, as in tolerance bounds; other numbers of the"
-            f" answer, the tables and other tolerances integrate {names} exactly."
+            "Counted: each row is one life, as computed, as in tolerance bounds; other numbers of"
+            f" the answer, the tables and other tolerances integrate {names} exactly."
             f" {design['intervals']}"
         )
     return {
