@@ -177,7 +177,7 @@ def test_a_ranking_of_lives_says_that_it_integrates_nothing():
         "analysis": {"outputs": ["life", "y"]},
     }
     life, y = answer(computed(study_of(tables, "sample_models:SCALED"))).quantities
-    assert life.ranking.what.endswith("from lives as computed: nothing is integrated")
+    assert life.ranking.what.endswith(", of lives as computed")
     assert "integrated" not in y.ranking.what
 
 

@@ -205,7 +205,7 @@ def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | Non
     facts = [one.facts.get("integrated") for one in described.parts["integrated"]]
     if ranking is None or not ranking.what or not any(facts):
         return ranking
-    return replace(ranking, what=f"{ranking.what}, from lives as computed: nothing is integrated")
+    return replace(ranking, what=f"{ranking.what}, of lives as computed")
 
 
 def _events(

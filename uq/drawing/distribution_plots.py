@@ -102,8 +102,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     ds : xarray.Dataset
         A result of a model with regimes.
     output : str
-        An output other than a category, or one element of it. At most four elements are drawn,
-        and only lives that end.
+        An output other than a category, or one element of it. Of more than four elements the
+        first and the last are drawn, and only lives that end.
     axes : matplotlib.axes.Axes, optional
         Where to draw: panels divide its area. By default a new figure.
 
@@ -113,7 +113,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     """
     rows = independent_rows(ds)
     every = named_elements(rows, output)
-    chosen = every[:_MOST_PANELS]
+    chosen = every if len(every) <= _MOST_PANELS else [every[0], every[-1]]
     codes = rows["regime"].values
     ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
     drawn = set(codes[np.any(ended, axis=0)].tolist())
@@ -131,7 +131,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             base = top
         panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
         entitle(panel, [element], of=label(ds, element))
-    below = "" if chosen == every else f"\nthe first {len(chosen)} of {len(every)} elements"
+    below = "" if chosen == every else f"\nthe first and the last of {len(every)} elements"
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name) + below)
     if wide:
         logarithmic(panels[-1])
