@@ -37,7 +37,11 @@ _STYLE = """
   align-items: center; margin: .3rem 0; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
 .answer-size { font-size: .875em; }
-@media (max-width: 40rem) { .answer { font-size: .875rem; line-height: 1.35; } }
+@media (max-width: 40rem) {
+  .answer { font-size: .875rem; line-height: 1.3; }
+  .answer h3 { margin-top: .4rem; }
+  .answer .answer-promise { font-size: 1.2rem; }
+}
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
 }
