@@ -239,7 +239,7 @@ def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) ->
     if isinstance(replicate, Clusters):
         return linearised_means(values, replicate)
     counts = np.bincount(replicate)
-    sums = np.bincount(replicate, weights=values.astype(float))
+    sums = np.bincount(replicate, weights=values.astype(float, copy=False))
     return sums[counts > 0] / counts[counts > 0]
 
 

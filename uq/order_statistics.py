@@ -68,7 +68,11 @@ def quantile(values: Floats, probability: float) -> float:
 
 
 def quantile_interval(
-    values: Floats, probability: float, replicate: Replicates = None, confidence: float = CONFIDENCE
+    values: Floats,
+    probability: float,
+    replicate: Replicates = None,
+    confidence: float = CONFIDENCE,
+    ascending: Floats | None = None,
 ) -> Ends:
     """Return the interval of a quantile.
 
@@ -79,6 +83,8 @@ def quantile_interval(
     probability : float
     replicate : ndarray of int, shape (n,), optional
     confidence : float, optional
+    ascending : ndarray, shape (n,), optional
+        The values in order, where that is known.
 
     Returns
     -------
@@ -102,7 +108,8 @@ def quantile_interval(
             order_statistic(values, binomial(tail, n, probability)),
             order_statistic(values, binomial_exceeded(tail, n, probability) + 1),
         )
-    value = quantile(values, probability)
+    ascending = np.sort(values) if ascending is None else ascending
+    value = quantile(ascending, probability)
     if np.isnan(value):
         return UNKNOWN
     below = values < value if np.isposinf(value) else values <= value
@@ -111,8 +118,8 @@ def quantile_interval(
         probability, by_replicate(below, replicate), below.mean(), confidence, **several
     )
     return (
-        quantile(values, low) if low * n >= 1 else np.nan,
-        quantile(values, high) if (1 - high) * n >= 1 else np.nan,
+        quantile(ascending, low) if low * n >= 1 else np.nan,
+        quantile(ascending, high) if (1 - high) * n >= 1 else np.nan,
     )
 
 

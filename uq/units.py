@@ -94,7 +94,7 @@ def unit_of(units: str, typical: float) -> Unit:
 
 def typical(values: Iterable[float]) -> float:
     """Return the median of the magnitudes that are neither 0 nor infinite; 0 if there is none."""
-    sizes = np.abs(np.fromiter(values, float))
+    sizes = np.abs(values if isinstance(values, np.ndarray) else np.fromiter(values, float))
     known = sizes[np.isfinite(sizes) & (sizes > 0)]
     return float(np.partition(known, len(known) // 2)[len(known) // 2]) if len(known) else 0.0
 

@@ -1,6 +1,6 @@
 """Average effects of inputs: the slopes of a multiple linear regression, with robust intervals."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +63,10 @@ class Effect:
 
 
 def effects(
-    values: Floats, inputs: Mapping[str, Floats], replicate: Replicates = None
+    values: Floats,
+    inputs: Mapping[str, Floats],
+    replicate: Replicates = None,
+    names: Collection[str] | None = None,
 ) -> dict[str, Effect]:
     """Estimate average effects of inputs on an output.
 
@@ -74,6 +77,8 @@ def effects(
     inputs : dict of str to ndarray, shape (n,)
     replicate : ndarray of int, shape (n,), optional
         Of each row; None where rows are independent.
+    names : collection of str, optional
+        The inputs whose effects are returned; by default all.
 
     Returns
     -------
@@ -114,6 +119,8 @@ def effects(
     influence = len(y) * (orthogonal * (residual / np.maximum(spare, 1e-9))[:, None]) @ inverse.T
     found = {}
     for i, name in enumerate(columns):
+        if names is not None and name not in names:
+            continue
         slope = float(slopes[i + 1])
         low, high = _interval(slope, slope + influence[:, i + 1], part)
         size = sizes[name]

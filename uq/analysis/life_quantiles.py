@@ -135,12 +135,15 @@ def quantile_estimate(
         NaN, with the reason, where there are too few rows; one end may still bound it.
     """
 
-    def estimate(values: Floats) -> tuple[float, Ends]:
-        ends = order_statistics.quantile_interval(values, probability, replicate, confidence)
-        return order_statistics.quantile(values, probability), ends
+    def estimate(values: Floats, ascending: Floats) -> tuple[float, Ends]:
+        ends = order_statistics.quantile_interval(
+            values, probability, replicate, confidence, ascending
+        )
+        return order_statistics.quantile(ascending, probability), ends
 
-    value, early = estimate(element.at_least)
-    latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
+    value, early = latest, late = estimate(element.at_least, element.ascending)
+    if element.censored.any():
+        latest, late = estimate(element.at_most, np.sort(element.at_most))
     rows, needed = len(element.at_least), rows_needed(element, probability)
     return whenever_censored_rows_end(
         (value, np.inf if value < latest else value),

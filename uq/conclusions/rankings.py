@@ -92,12 +92,9 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
             is_flat = kind.unit == "variance" and first.index.value < SMALL
             reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
         return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
-    moved = _effects(findings, method, name)
-    contributions = tuple(
-        _contribution(group, kind, name, moved, verbs)
-        for group in groups
-        if group[0].index.value >= LEAST
-    )
+    listed = [group for group in groups if group[0].index.value >= LEAST]
+    moved = _effects(findings, method, name, [one.name for group in listed for one in group])
+    contributions = tuple(_contribution(group, kind, name, moved, verbs) for group in listed)
     return Ranking(name, method, kind.key, what, contributions, rivals=_rivals(measured))
 
 
@@ -164,13 +161,16 @@ def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
     return first.index.value - other.index.value <= times * hypot(first.half, other.half)
 
 
-def _effects(findings: Findings, method: str, name: str) -> dict[str, Effect]:
+def _effects(
+    findings: Findings, method: str, name: str, inputs: Sequence[str]
+) -> dict[str, Effect]:
     """Return the effects that have an interval; without one, no direction is clear."""
     rows = findings.rows
     targets: list[Target] = list(chosen(rows, method, [name]))
     if len(targets) != 1:
         return {}
-    found = effects(targets[0].values, independent_inputs(rows), replicates_of(rows))
+    columns, part = independent_inputs(rows), replicates_of(rows)
+    found = effects(targets[0].values, columns, part, inputs)
     return {name: one for name, one in found.items() if one.slope.has_interval}
 
 

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
 from uq.methods.indices import RefusedError
-from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts, has_many_equal
+from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts, is_repeated
 from uq.quantile_functions import normal
 from uq.wording import counted
 
@@ -36,16 +36,20 @@ def first_order(x: Floats, y: Floats) -> Floats:
         means at each value. NaN where such an input varies within one slice only.
     """
     total = y.var(axis=0).sum()
-    return np.array(
-        [
-            (_correlation_ratio if has_many_equal(column) else _random_balance)(column, y, total)
-            for column in x.T
-        ]
-    )
+
+    def share(column: Floats) -> float:
+        order = np.argsort(column)
+        if is_repeated(column[order]):
+            return _correlation_ratio(column, y, total)
+        return _random_balance(order, y, total)
+
+    return np.array([share(column) for column in x.T])
 
 
-def _random_balance(column: Floats, y: Floats, total: float) -> float:
+def _random_balance(order: NDArray[np.intp], y: Floats, total: float) -> float:
     """Return the share of the first harmonics in the power of y along an input and back.
+
+    The rows have this `order` along the input.
 
     References
     ----------
@@ -55,7 +59,6 @@ def _random_balance(column: Floats, y: Floats, total: float) -> float:
     balance designs", Reliab. Eng. Syst. Saf. 107, 205-213 (2012).
     """
     n = len(y)
-    order = np.argsort(column)
     spectrum = np.fft.rfft(y[np.r_[order[::2], order[1::2][::-1]]], axis=0)
     share = np.sum(np.abs(spectrum[1 : _HARMONICS + 1]) ** 2) * 2 / (n**2 * total)
     noise = 2 * _HARMONICS / n

@@ -19,8 +19,12 @@ MANY_EQUAL = 0.05
 
 def has_many_equal(column: Floats) -> bool:
     """Return whether one value of an input has a large share of the rows."""
-    most = int(max(MANY_EQUAL * len(column), 1))
-    ascending = np.sort(column)
+    return is_repeated(np.sort(column))
+
+
+def is_repeated(ascending: Floats) -> bool:
+    """Return whether one of these ascending values has a large share of them."""
+    most = int(max(MANY_EQUAL * len(ascending), 1))
     return bool((ascending[most:] == ascending[:-most]).any())  # a value more than `most` times
 
 

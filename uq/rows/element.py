@@ -141,6 +141,11 @@ class Element:
         """The values, shape (present,), with censored ones at their lower bound."""
         return self.values[self.present]
 
+    @cached_property
+    def ascending(self) -> Floats:
+        """The values in order, shape (present,), sorted once for all quantiles."""
+        return np.sort(self.at_least)
+
     @property
     def at_most(self) -> Floats:
         """The values, shape (present,), with censored ones at infinity."""
