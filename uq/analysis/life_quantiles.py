@@ -143,7 +143,8 @@ def quantile_estimate(
 
     value, early = latest, late = estimate(element.at_least, element.ascending)
     if element.censored.any():
-        latest, late = estimate(element.at_most, np.sort(element.at_most))
+        ending_late = element.at_most
+        latest, late = estimate(ending_late, np.sort(ending_late))
     rows, needed = len(element.at_least), rows_needed(element, probability)
     return whenever_censored_rows_end(
         (value, np.inf if value < latest else value),

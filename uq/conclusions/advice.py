@@ -12,7 +12,7 @@ from uq.conclusions.enough import Enough, needed
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, bounds_unsettled
-from uq.conclusions.sources import ASSUMED, CHOSEN, mark
+from uq.conclusions.sources import ASSUMED, CHOSEN, mark_of
 from uq.conclusions.tolerances import tighten
 from uq.conclusions.whole import Answer
 from uq.conclusions.words import called, called_together, share_text
@@ -109,7 +109,7 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, event = _leading(found)
     if leader is None:
         return
-    marks = {name: _mark(findings.ds, name) for name in leader.inputs}
+    marks = {name: mark_of(findings.ds, name) for name in leader.inputs}
     levels = levels_of(findings.ds)
     starts = {name for name in marks if "initial" in findings.ds[name].attrs}
     lasting = [
@@ -151,13 +151,9 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     )
 
 
-def _mark(ds: xr.Dataset, name: str) -> str:
-    return mark(str(ds[name].attrs["source"]))
-
-
 def _tighten(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, _ = _leading(found)
-    if leader is not None and any(_mark(findings.ds, one) != CHOSEN for one in leader.inputs):
+    if leader is not None and any(mark_of(findings.ds, one) != CHOSEN for one in leader.inputs):
         yield from tighten(findings.ds, found.quantities[0], leader)
 
 

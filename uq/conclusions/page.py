@@ -190,7 +190,7 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
     assert lead.ranking is not None
     largest = lead.ranking.contributions[0].value
-    most = max(1.0 if largest <= 1 else 0.0, largest)
+    most = max(1.0, largest)
     first = one.indices[0]
     track = bars.bar(one.value, first.low, first.high, (0.0, most))
     words, told = one.words, bool(one.effect)

@@ -29,7 +29,7 @@ from uq.conclusions.measured import method_for
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Range
 from uq.conclusions.rankings import ranking_of
-from uq.conclusions.sources import ASSUMED, mark
+from uq.conclusions.sources import ASSUMED, mark_of
 from uq.conclusions.words import Unit, element_called, unit_for, unit_of_input
 from uq.errors import InputError
 from uq.estimate import NOTHING
@@ -167,7 +167,7 @@ def _quantity(
 def assumed_scales(ds: xr.Dataset, element: Element) -> tuple[str, ...]:
     """Return what all lives are proportional to, or to the reciprocal of, and is assumed."""
     scales = (name for name in element.declared.scales if name in ds)
-    return tuple(name for name in scales if mark(str(ds[name].attrs.get("source", ""))) == ASSUMED)
+    return tuple(name for name in scales if mark_of(ds, name) == ASSUMED)
 
 
 def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:

@@ -2,6 +2,8 @@
 
 import re
 
+import xarray as xr
+
 ASSUMED = "assumed"
 CHOSEN = "chosen"
 """Of a quantity whose range is one of designs: nothing to measure, and no tolerance."""
@@ -26,3 +28,8 @@ def mark(source: str) -> str:
     """
     found = _MARK.search(source)
     return (found[1] or found[2]) if found else ""
+
+
+def mark_of(ds: xr.Dataset, name: str) -> str:
+    """Return how well a parameter of a result is known; "" also where it has no source."""
+    return mark(str(ds[name].attrs.get("source", "")))

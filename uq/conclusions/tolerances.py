@@ -8,7 +8,7 @@ import xarray as xr
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Quantity
 from uq.conclusions.remedies import Advice, Tightened
-from uq.conclusions.sources import CHOSEN, mark
+from uq.conclusions.sources import CHOSEN, mark_of
 from uq.conclusions.tightening import tightened
 from uq.conclusions.words import twin_of
 
@@ -66,7 +66,7 @@ def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> lis
     every = [one for ranking in rankings if ranking is not None for one in ranking.contributions]
     found = [leader]
     for one in every:
-        if any(mark(str(ds[name].attrs["source"])) == CHOSEN for name in one.inputs):
+        if any(mark_of(ds, name) == CHOSEN for name in one.inputs):
             continue
         if not any(set(one.inputs) & set(other.inputs) for other in found):
             found.append(one)
