@@ -17,6 +17,7 @@ from uq.rows.elements import (
     named_elements,
     replicates_of,
 )
+from uq.rows.results import failed
 
 
 class Checker:
@@ -104,6 +105,10 @@ class Checker:
         else:
             places = {}
         yield from self.never(one, text)
+        missing = 100 * np.isnan(self.values(one)[~failed(self.rows)]).mean()
+        said = re.search(r"(\S+) % of the rows have none", text)
+        if abs((float(said[1]) if said else 0.0) - missing) > 0.06:
+            yield text
         for p, value in places.items():
             if not self._is_quantile(values, p, value, one):
                 yield f"{p} of {text}"

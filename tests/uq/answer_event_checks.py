@@ -143,11 +143,16 @@ def _denied_law(ds, one):
 
 def _denied_besides(ds, advice, lead):
     """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
-    if (sure := advice.sure) is not None:
+    for sure in [one for one in advice.own if one.promise is not None]:
         known, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
+        plain = uq.trace(ds, sure.key.partition("]/")[2])  # the same key, of the study's own laws
         end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
+        fresh, before = known[end] / sure.unit.per, plain[end] / sure.unit.per
+        if not failed(ds).any() and bool(sure.promised) != (away * (fresh - before) < 0):
+            yield f"{sure.sentence} {fresh} {before}"
+        if not sure.promised:
+            continue
         *_, bound, studied = numbers_in(sure.promised)
-        fresh, before = known[end] / sure.unit.per, getattr(sure.before, end) / sure.unit.per
         if not failed(ds).any() and not 0 <= away * (studied - before) <= 0.01 * abs(before):
             yield f"{sure.promised} {before}"
         value = known["value"] / sure.unit.per
