@@ -197,7 +197,7 @@ def bifurcation_diagram(
         progression_rate=(
             along,
             settled["progression_rate"],
-            {"units": "m s-1", "long_name": "mean velocity of the mole"},
+            {"units": "m s-1", "long_name": "mean velocity of the mole, positive forwards"},
         ),
         regime=(along, words, {"long_name": "type of settled response"}),
     ).assign_coords(

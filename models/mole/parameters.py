@@ -116,7 +116,7 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
 
 
 OUTPUTS: Mapping[str, Output] = {
-    "progression_rate": Output("m s-1", "mean velocity of the mole"),
+    "progression_rate": Output("m s-1", "mean velocity of the mole, positive forwards"),
     "progression_rate_error": Output(
         "m s-1", "standard error of the mean velocity, 0 where the motion repeats"
     ),

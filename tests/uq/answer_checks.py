@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from answer_contradictions import denied_by_each_other
 from answer_event_checks import denied_advice, denied_event
-from answer_whole_checks import denied_enough, denied_levels
+from answer_whole_checks import denied_enough, denied_levels, denied_mixing
 from answered import numbers_in
 from scipy.stats import binomtest
 
@@ -33,7 +33,14 @@ class Checker:
 
     def _denied_by_rows(self, found):
         for one in found.quantities:
-            checks = (self.promise, self.range, self.ranking, self.repeated, self.earliest)
+            checks = (
+                self.promise,
+                self.own_error,
+                self.range,
+                self.ranking,
+                self.repeated,
+                self.earliest,
+            )
             for check in checks:
                 yield from (f"{one.name}: {text}" for text in check(one))
             for event in one.events:
@@ -41,11 +48,14 @@ class Checker:
                 yield from (
                     f"{event.name}: {text}" for text in denied_event(self.rows, event, hits)
                 )
+        for event in found.events:
+            yield from (f"{event.name}: {text}" for text in self.alone(event))
         for regime in found.regimes:
             hits = (labels(self.rows["regime"]).values == regime.said).astype(float)
             yield from (f"{regime.said}: {text}" for text in denied_event(self.rows, regime, hits))
         for advice in found.advice:
             yield from (f"{advice.rule}: {text}" for text in denied_advice(self.ds, advice, found))
+        yield from denied_mixing(self.ds, found)
         yield from denied_levels(self.ds, found)
         yield from denied_enough(self.ds, found)
         shown = [self.ds.sizes["sample"], *([found.failed] if found.failed else [])]
@@ -83,6 +93,29 @@ class Checker:
                 spread = (one.range.high.value - one.range.low.value) / one.range.unit.per
                 if not 0 <= outwards < spread / 3:
                     yield f"cautious: {part}"
+
+    def own_error(self, one):
+        """Move each row by its error: the bound keeps its rank, and quantiles their share."""
+        if one.own_error is None or not (said := one.own_error.sentence):
+            return
+        values = self.values(one)
+        (error,) = named_elements(self.rows, f"{one.output}_error{one.name[len(one.output) :]}")
+        sizes, per = np.abs(error.values), one.promise.unit.per
+        moved = re.findall(r"would be (\S+)(?:.*? and (\S+))?", said.split(". ")[0])
+        shown = [float(each.rstrip(".")) for each in (moved[0] if moved else ()) if each]
+        lower = np.sort(values - sizes), one.promise.lower, -1
+        upper = np.sort(values + sizes), one.promise.upper, 1
+        known = [each for each in (lower, upper) if np.isfinite(each[1])]
+        for bound, (there, now, _) in zip(shown, known, strict=False):
+            rank = np.searchsorted(np.sort(values), now * (1 + 1e-12))
+            if not np.isclose(bound * per, there[max(rank - 1, 0)], rtol=0.01):
+                yield said
+        logs = one.is_life
+        share = np.mean((sizes / values if logs else sizes) ** 2)
+        share /= np.var(np.log(values) if logs else values)
+        told = re.search(r"error is (\S+) %", said)
+        if bool(told) != (0.01 <= share < 1) or told and abs(float(told[1]) - 100 * share) > 0.06:
+            yield f"{said} {share}"
 
     def _probabilities(self, text):
         return [0.95 if re.search("within|below", part) else 0.05 for part in text.split(";")]
@@ -177,6 +210,18 @@ class Checker:
                 yield f"interval of {each.words}: {each.size}"
             for name, change in zip(each.inputs, each.changes, strict=False):
                 yield from self.change(one, name, change)
+
+    def alone(self, event):
+        """Estimate again what the input that decides most explains alone, where that is little."""
+        leader = None if event.ranking is None else event.ranking.leader
+        if leader is None or not leader.share_of_variance or len(leader.inputs) > 1:
+            return
+        fresh = self.findings.indices(event.ranking.method, event.ranking.target).kinds()
+        kind = next(each for each in fresh if each.key == event.ranking.kind)
+        share = 100 * fresh[kind][leader.inputs[0]].value
+        told = re.search(r"alone explains only (\S+) %", event.decided_by)
+        if bool(told) != (share < 25) or told and abs(float(told[1]) - share) > 0.6:
+            yield f"{event.decided_by} {share}"
 
     def change(self, one, name, change):
         """Compare a change with the slope of a regression on this input alone."""

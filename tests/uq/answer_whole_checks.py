@@ -32,6 +32,20 @@ def denied_levels(ds, found):
             yield levels.switching
 
 
+def denied_mixing(ds, found):
+    """Compare what better known inputs would save with the exponent of the table of regimes."""
+    if not (said := found.mixing.sentence):
+        return
+    table = uq.regimes(ds)
+    names = ("uncertainty_exponent", "uncertainty_exponent_low", "uncertainty_exponent_high")
+    exponents = [float(table[name]) for name in names]
+    fewer = [100 * (1 - 2 ** -min(max(one, 0.0), 1.0)) for one in exponents]
+    if exponents[2] >= 1 or not np.allclose(
+        numbers_in(said), [*fewer, 50, exponents[0]], atol=0.06, rtol=0.01
+    ):
+        yield said
+
+
 def denied_enough(ds, found):
     """Compare what another seed would find and the errors with those of the rows."""
     one, lead = found.enough, found.lead

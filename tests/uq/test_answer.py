@@ -31,7 +31,9 @@ def lifetime():
 
 def test_the_promise_of_a_life_is_its_lower_tolerance_bound_rounded_down(lifetime):
     ds, found = lifetime
-    assert found.lead.promise.why == ""
+    assert found.lead.promise.basis == (
+        "Tolerance bound from order statistics, valid for any distribution."
+    )
     (days,) = numbers(
         "With 95 % confidence, at least 95 % last longer than # days.", found.lead.promise.sentence
     )
@@ -102,7 +104,7 @@ def test_rows_that_are_not_independent_give_a_cautious_quantile_and_the_reason()
     shown += [known["0.95"]["value"], known["0.95"]["high"]]
     assert [low, cautious, high, bold] == pytest.approx(shown, rel=1e-2)
     assert cautious <= shown[1] and bold >= shown[3]
-    assert found.promise.why.startswith(
+    assert found.promise.basis.startswith(
         "No tolerance bound: the rows of a 'saltelli' design are not independent."
     )
     first = found.ranking.contributions[0]
@@ -128,7 +130,7 @@ def test_few_rows_promise_nothing(rows):
     found = answer(linear(samples=rows))
     assert "confidence" not in repr(found)
     assert found.lead.promise.sentence == ""
-    assert re.fullmatch(r"No tolerance bound: it needs \d+ rows\.", found.lead.promise.why)
+    assert re.fullmatch(r"No tolerance bound: it needs \d+ rows\.", found.lead.promise.basis)
     assert found.lead.ranking.leader is None
 
 

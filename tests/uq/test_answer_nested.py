@@ -52,7 +52,7 @@ def test_units_promise_a_quantile_with_the_reason(nested):
     known = said["quantiles"]["0.05"]
     assert days * DAY == pytest.approx(known["value"], rel=5e-3)
     assert known["low"] * 0.99 < cautious * DAY <= known["low"]
-    assert promise.why == (
+    assert promise.basis == (
         "No tolerance bound: the rows of one sample are not independent."
         " Instead, conservatively: the end of the 95 % interval."
     )
@@ -113,7 +113,7 @@ def test_half_the_scatter_is_what_the_weighted_rows_say(nested):
 def test_rows_of_samples_in_replicates_are_weighted():
     ds = wear(method="sobol", samples=16, replicates=8, repeats=3)
     found = answer(ds)
-    assert found.lead.promise.why == (
+    assert found.lead.promise.basis == (
         "No tolerance bound: the rows of one sample are not independent."
         " Instead, conservatively: the end of the 95 % interval."
     )
@@ -149,7 +149,7 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
     (days,) = numbers(
         "No tolerance bound: that of the rows, # days, lies beyond the quantile that it bounds."
         " Instead, conservatively: the end of the 95 % interval.",
-        promise.why,
+        promise.basis,
     )
     assert days * DAY == pytest.approx(said["tolerance"]["lower"], rel=5e-3)
     shown = numbers("95 % last longer than # days, cautiously # days.", promise.sentence)

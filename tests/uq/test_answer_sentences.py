@@ -162,7 +162,7 @@ def test_nothing_is_advised_that_changes_no_digit():
 
 def test_samples_of_several_rows_bound_nothing_and_say_why():
     found = answer(nested_result(samples=60)).lead
-    assert found.promise.why.startswith(
+    assert found.promise.basis.startswith(
         "No tolerance bound: the rows of one sample are not independent."
     )
     assert np.isnan(found.promise.lower) and "cautiously" in found.promise.sentence
@@ -251,4 +251,4 @@ def test_an_input_that_alone_has_an_effect_decides_without_an_interval():
     ds = linear("saltelli", samples=64, replicates=8)
     ds = asking(with_output(ds, "half", (ds["x4"].values > 0.5).astype(float)), outputs=["half"])
     (line,) = answer(ds).quantities
-    assert line.ranking.sentence == "x4 contributes most: 100 %."
+    assert line.ranking.sentence == "x4 contributes most: 100 % of its variance."

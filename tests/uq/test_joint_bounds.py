@@ -130,7 +130,7 @@ def test_bounds_that_lack_rows_are_not_settled():
     assert f"T{said}. More rows would not help." in verdict(found)
     advice = {one.rule: one.text for one in conclude(found).advice}
     assert f"t{said}" in advice["failed"] and "joint" not in advice.get("rows", "")
-    why = quantities(found)[0].promise.why
+    why = quantities(found)[0].promise.basis
     assert "of the rows failed, and count as lying beyond it" in why
 
 

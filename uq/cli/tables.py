@@ -84,7 +84,7 @@ def show_answer(found: Answer) -> None:
     own = [*found.level_lines, found.enough.sentence]
     if found.regimes_first:
         causes = (one.named_cause for one in found.regime_causes)
-        lines = [found.regimes_sentence, *own, *causes, *of_lead]
+        lines = [found.regimes_sentence, found.mixing.sentence, *own, *causes, *of_lead]
     else:
         lines = [*of_lead, *own, found.regimes_sentence]
     for line in filter(None, lines):
@@ -94,6 +94,8 @@ def show_answer(found: Answer) -> None:
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
                 paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    if found.ties:
+        paragraph(found.ties, indent=0)
     if lead is not None and lead.earliest is not None:
         for line in lead.earliest.lines:
             paragraph(line, indent=0)

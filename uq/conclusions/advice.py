@@ -19,7 +19,7 @@ from uq.conclusions.words import called, called_together, share_text
 from uq.designs.levels import CHANCE
 from uq.keys import key_of
 from uq.rows.commands import file_of, model_option
-from uq.rows.elements import analysis_of
+from uq.rows.elements import analysis_of, why_no_statistics
 from uq.rows.nesting import levels_of
 from uq.rows.results import failed
 from uq.rows.weights import has_weights
@@ -180,7 +180,8 @@ def _add_rows(ds: xr.Dataset, enough: Enough) -> Iterator[Advice]:
     """Yield that intervals are missing, or how many rows would settle what the study is about."""
     rows = ds.sizes["sample"]
     if enough.unknown:
-        yield Advice("rows", f"To have intervals: {enough.unknown}.")
+        wanted = "know what can be promised" if why_no_statistics(ds) else "have intervals"
+        yield Advice("rows", f"To {wanted}: {enough.unknown}.")
     open_ones = [one for one in enough.question if isfinite(one.factor)]
     if not open_ones or not rows or enough.errors is not None:
         return

@@ -11,11 +11,15 @@ from uq.analysis.summary import REGIME
 from uq.conclusions.advice import advise
 from uq.conclusions.deciding import Levels, levels_of, starts_alike
 from uq.conclusions.enough import enough_of
+from uq.conclusions.intermingled import intermingled
 from uq.conclusions.parts import Event
-from uq.conclusions.quantities import event, quantities
+from uq.conclusions.quantities import event, only_ranked, quantities
 from uq.conclusions.whole import Answer
-from uq.rows.elements import analysis_of
+from uq.conclusions.words import called
+from uq.rows.elements import analysis_of, study_file_of
 from uq.rows.results import failed
+from uq.study.file import Tied
+from uq.wording import capitalized
 
 
 def answer(ds: xr.Dataset) -> Answer:
@@ -54,7 +58,7 @@ def conclude(findings: Findings) -> Answer:
 def without_advice(findings: Findings) -> Answer:
     """Return the answer but for what to do, for which rows are weighted."""
     ds = findings.ds
-    found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
+    found = tuple((quantities if findings.rows.sizes["sample"] else only_ranked)(findings))
     regimes = tuple(regimes_of(findings))
     plain = Answer(
         str(ds.attrs["title"]),
@@ -68,8 +72,10 @@ def without_advice(findings: Findings) -> Answer:
         starts_alike=starts_alike(ds) if regimes else "",
     )
     known = beside_levels(plain, _levels(findings, plain))
+    known = replace(known, ties=ties_of(ds, known))
     about = known.main_regimes if known.regimes_first else ()
-    return replace(known, enough=enough_of(findings, known.quantities, about))
+    mixing = intermingled(findings) if known.regimes_first else known.mixing
+    return replace(known, enough=enough_of(findings, known.quantities, about), mixing=mixing)
 
 
 def beside_levels(found: Answer, levels: Levels | None) -> Answer:
@@ -100,6 +106,26 @@ def _levels(findings: Findings, found: Answer) -> Levels | None:
         return levels_of(findings, first.name, f"whether it is {first.said}", first.ranking)
     lead = found.lead
     return None if lead is None else levels_of(findings, lead.name, "its scatter", lead.ranking)
+
+
+def ties_of(ds: xr.Dataset, found: Answer) -> str:
+    """Return which inputs have the value of one that contributes most in every row, or ""."""
+    own = [] if found.lead is None else [found.lead.ranking]
+    rankings = [*(event.ranking for event in found.asked_events), *own]
+    leading = {
+        name
+        for one in rankings
+        if one is not None and one.leader is not None
+        for name in one.leader.inputs
+    }
+    tied = {
+        name: law.equals
+        for name, law in study_file_of(ds).uncertain.items()
+        if isinstance(law, Tied) and law.equals in leading
+    }
+    same = (f"{called(name)} equals {called(other)}" for name, other in tied.items())
+    text = ", and ".join(same)
+    return f"{capitalized(text)} in every row." if text else ""
 
 
 def regimes_of(findings: Findings) -> Iterator[Event]:

@@ -10,7 +10,9 @@ from uq.conclusions.contributions import Change, Contribution, Ranking
 from uq.conclusions.deciding import Levels
 from uq.conclusions.earliest import Earliest
 from uq.conclusions.enough import Enough
+from uq.conclusions.intermingled import Intermingled
 from uq.conclusions.limits import Limit
+from uq.conclusions.own_errors import OwnError
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.remedies import Advice, Tightened
@@ -25,10 +27,13 @@ def answer_json(found: Answer) -> dict[str, Any]:
     -------
     dict
         ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
-        ``range``, ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
+        ``range``, ``own_error`` (the promise if every value were wrong by the error that it
+        states), ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
         ``ranking``; ``regimes``: label -> event; ``enough``, whether the rows are: what is not
         settled besides (``others``), what another seed would find of a share (``expected``), and
-        the errors of what the study is about where that of the rows is the larger; ``levels``: the
+        the errors of what the study is about where that of the rows is the larger;
+        ``intermingled``, where the regimes are: the ``uncertainty_exponent`` of their boundary, and
+        how many ``fewer`` outcomes are uncertain with inputs known twice as well; ``levels``: the
         ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
         ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were compared: what half the
         scatter of their ``inputs`` would make ``after`` of the number ``what``. The numbers
@@ -46,6 +51,7 @@ def answer_json(found: Answer) -> dict[str, Any]:
         "quantities": {one.name: _quantity(one) for one in found.quantities},
         "regimes": {one.said: _event(one) for one in found.regimes},
         "enough": _enough(found.enough),
+        **_mixing(found.mixing),
         "levels": None if found.levels is None else _levels(found.levels),
         "advice": {one.rule: _advice(one) for one in found.advice},
     }
@@ -58,6 +64,17 @@ def _enough(one: Enough) -> dict[str, Any]:
     if one.errors is not None:
         known |= {"own_error": one.errors.own, "sampling_error": one.errors.sampling}
     return known
+
+
+def _mixing(one: Intermingled) -> dict[str, Any]:
+    if not one.sentence:
+        return {}
+    numbers = {
+        f"{name}{end}": value
+        for name, known in (("uncertainty_exponent", one.exponent), ("fewer", one.fewer))
+        for end, value in zip(("", "_low", "_high"), known.numbers, strict=True)
+    }
+    return {"intermingled": {"sentence": one.sentence} | numbers}
 
 
 def _levels(one: Levels) -> dict[str, Any]:
@@ -73,6 +90,7 @@ def _quantity(one: Quantity) -> dict[str, Any]:
     found: dict[str, Any] = {"words": one.words}
     found |= {} if one.promise is None else {"promise": _promise(one.promise)}
     found |= {} if one.range is None else {"range": _range(one.range)}
+    found |= {} if one.own_error is None else {"own_error": _own_error(one.own_error)}
     found["events"] = {event.name: _event(event) for event in one.events}
     found |= {} if one.earliest is None else {"earliest": _earliest(one.earliest)}
     if one.repeated.sentence:
@@ -123,6 +141,13 @@ def _promise(one: Promise) -> dict[str, Any]:
     plain = {name: json_form.number(value) for name, value in numbers.items()}
     joint = {"joint": list(one.joint)} if one.joint else {}
     return {"sentence": one.sentence, "reason": one.reason} | plain | joint
+
+
+def _own_error(one: OwnError) -> dict[str, Any]:
+    worse = dict(zip(("lower", "upper"), map(json_form.number, one.worse), strict=True))
+    known = {"share_of_variance": one.share, "accuracy": one.asked, "rows_missing_it": one.missed}
+    plain = {name: json_form.number(value) for name, value in known.items()}
+    return {"sentence": one.sentence} | worse | plain | {"rows_stating_none": one.unstated}
 
 
 def _range(one: Range) -> dict[str, Any]:

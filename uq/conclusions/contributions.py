@@ -62,12 +62,15 @@ class Contribution:
         Whether an index is one.
     changes : tuple of Change
         Of each; empty where they are not known.
+    unit : Unit
+        Of an index in the unit of the output.
     """
 
     inputs: tuple[str, ...]
     indices: tuple[Estimate, ...]
     share_of_variance: bool
     changes: tuple[Change, ...] = ()
+    unit: Unit = field(default_factory=Unit)
 
     @property
     def words(self) -> str:
@@ -90,6 +93,8 @@ class Contribution:
             value, low, high = (min(max(end, 0.0), 1.0) for end in one.numbers)
             text = f"{100 * value:.0f} %"
             ends = f"{100 * low:.0f} to {100 * high:.0f} %"
+        elif self.unit.name:
+            text, ends = self.unit.text(one.value), self.unit.bare_between(one.low, one.high)
         else:
             text, ends = f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}"
         return text + (f" ({ends})" if one.has_interval else "")
@@ -127,6 +132,8 @@ class Ranking:
         Whether it is settled that no input contributes measurably.
     rivals : tuple of str
         Inputs of which one would contribute most with another seed, with 95 %; none if not known.
+    of : str
+        Whose share an index is: ``its variance``; "" of another index, and of an event.
     """
 
     target: str
@@ -138,6 +145,7 @@ class Ranking:
     rows_factor: float = float("nan")
     is_flat: bool = False
     rivals: tuple[str, ...] = ()
+    of: str = ""
 
     @property
     def leader(self) -> Contribution | None:
@@ -164,9 +172,13 @@ class Ranking:
         if leader is None:
             return ""
         if not self.leads:
-            return f"No single input explains much: {leader.words} {leader.size}."
+            return f"No single input explains much: {leader.words} {leader.size}{self._of}."
         verb = "contribute" if len(leader.inputs) > 1 else "contributes"
-        return f"{capitalized(leader.words)} {verb} most: {leader.size}."
+        return f"{capitalized(leader.words)} {verb} most: {leader.size}{self._of}."
+
+    @property
+    def _of(self) -> str:
+        return f" of {self.of}" if self.of else ""
 
     @property
     def with_effect(self) -> str:

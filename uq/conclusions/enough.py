@@ -99,7 +99,7 @@ def enough_of(
     """
     ds = findings.ds
     why = why_no_statistics(ds)
-    none = f"the rows of a '{ds.attrs['design']}' design {why}" if why else ""
+    none = f"the rows of a '{ds.attrs['design']}' design {why}; use 'monte-carlo'" if why else ""
     unknown = none or why_no_intervals(ds).removeprefix("no intervals: ")
     known = outputs_of(ds)
     own = [one for one in answered if not is_error(one.output, known)] or [*answered]

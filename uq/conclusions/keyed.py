@@ -37,6 +37,14 @@ def promise(one: Quantity) -> Markup:
     return keyed("" if one.promise is None else one.promise.sentence, _key(one, "promise"))
 
 
+def basis(one: Quantity) -> Markup:
+    """Return what kind of bound is promised, and what the rows' own error would do to it."""
+    kind = "" if one.promise is None else one.promise.basis
+    error = "" if one.own_error is None else one.own_error.sentence
+    said = [escape(plain(printed(kind))), keyed(error, _key(one, "own_error"))]
+    return Markup(" ").join(filter(None, said))
+
+
 def likely(one: Quantity) -> Markup:
     """Return the likely range; "" where it is not known."""
     return keyed("" if one.range is None else one.range.sentence, _key(one, "range"))
@@ -57,6 +65,11 @@ def enough(one: Answer) -> Markup:
 
 def _again(text: str, known: Repeated, key: str) -> Markup:
     return keyed(text, key) if known.what else escape(plain(printed(text)))
+
+
+def mixing(one: Answer) -> Markup:
+    """Return that the regimes are intermingled, where they are."""
+    return keyed(one.mixing.sentence, _answer("intermingled", "fewer"))
 
 
 def levels(one: Answer) -> Markup:

@@ -86,8 +86,7 @@ def sayings(quantities: Sequence[Quantity]) -> Markup:
     """Return what is known of some quantities, in sentences."""
     found = []
     for one in quantities:
-        why = "" if one.promise is None else plain(printed(one.promise.why))
-        lines = [keyed.promise(one), why, keyed.likely(one)]
+        lines = [keyed.promise(one), keyed.basis(one), keyed.likely(one)]
         lines += [*keyed.events(one), keyed.leader(one), keyed.repeated(one)]
         lines += keyed.earliest(one)
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
@@ -108,8 +107,15 @@ def _verdict(answer: Answer) -> Markup:
     own = [keyed.enough(answer), keyed.levels(answer), folds.unsettled(answer)]
     causes = [keyed.cause_of(one) for one in answer.regime_causes]
     shares = keyed.shares(answer.main_regimes)
+    mixing = keyed.mixing(answer)
     if answer.regimes_first:
-        parts = [_large(shares), *_under(own), *map(_line, causes), *parts]
+        parts = [
+            _large(shares),
+            _line(mixing) if mixing else mixing,
+            *_under(own),
+            *map(_line, causes),
+            *parts,
+        ]
     else:
         parts += [*_under(own), _line(shares) if shares else shares]
         decided = folds.items([*causes, answer.starts_alike])
@@ -128,15 +134,14 @@ def _under(own: Sequence[Markup]) -> Iterator[Markup]:
 
 
 def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
-    promise = lead.promise
     share, cause = keyed.first(lead)
     if verdict := keyed.promise(lead) or share:
         yield _line(verdict) if answer.regimes_first else _large(verdict)
     if cause:
         yield _line(cause)
     yield _small(lead.subject)
-    if promise is not None and promise.why:
-        yield _small(promise.why)
+    if basis := keyed.basis(lead):
+        yield _small(basis)
     if likely := keyed.likely(lead):
         yield _line(likely)
     yield from map(_line, keyed.others(lead))
@@ -157,9 +162,9 @@ def _ranking(answer: Answer) -> Markup:
     if ranking.leader is None:
         why = keyed.leader(lead)
         if answer.regimes_first:
-            why = Markup("{}: {}").format(plain(printed(capitalized(lead.words))), why)
+            why = Markup("{} {}").format(plain(printed(sentence(lead.words))), why)
         return _block("ranking", [title, _line(why)])
-    note = _small(sentence(ranking.what))
+    note = _small(" ".join(filter(None, (sentence(ranking.what), answer.ties))))
     largest = ranking.contributions[0].value
     seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
     shown = enumerate(seen[:_MOST_BARS])
@@ -190,7 +195,7 @@ def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
     assert lead.ranking is not None
     largest = lead.ranking.contributions[0].value
-    most = max(1.0, largest)
+    most = largest if one.unit.name else max(1.0, largest)
     first = one.indices[0]
     track = bars.bar(one.value, first.low, first.high, (0.0, most))
     words, told = one.words, bool(one.effect)

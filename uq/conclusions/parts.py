@@ -7,11 +7,15 @@ from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import Earliest
 from uq.conclusions.limits import Limit, limit_of
+from uq.conclusions.own_errors import OwnError
 from uq.conclusions.promises import Promise, Range
 from uq.conclusions.repeated import Repeated, repeated_quantile, repeated_share
 from uq.conclusions.words import Unit, called_together, sentence, share_text
 from uq.estimate import Estimate
 from uq.wording import capitalized, percent, percent_range
+
+MINOR = 0.25
+"""What decides most says it if it alone has a smaller share of the variance."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +113,8 @@ class Event:
         text = f"decided most by {leader.words}"
         if self.is_of_single:
             text = f"of single inputs, decided most by {leader.words}"
+        if leader.share_of_variance and len(leader.inputs) == 1 and leader.value < MINOR:
+            text += f", though it alone explains only {leader.size}"
         if self.curve is not None:
             places = [self.curve.least, self.curve.most]
             first, last = (
@@ -147,6 +153,8 @@ class Quantity:
         Of a life that does not end with a success: which rows end first, and why.
     scaled_by : tuple of str
         Quantities whose values are assumed and to which all its lives are proportional.
+    own_error : OwnError or None
+        What the error that the rows state would do to the promise.
     """
 
     name: str
@@ -159,6 +167,7 @@ class Quantity:
     wanted: str = ""
     earliest: Earliest | None = None
     scaled_by: tuple[str, ...] = ()
+    own_error: OwnError | None = None
 
     @property
     def subject(self) -> str:
@@ -239,6 +248,7 @@ class Quantity:
         if self.first is not None:
             found += [self.first.sentence, self.first.decided_by, self.first.limited]
         found.append(self.subject)
-        found += [] if self.promise is None else [self.promise.why]
+        found += [] if self.promise is None else [self.promise.basis]
+        found += [] if self.own_error is None else [self.own_error.sentence]
         found += [] if self.range is None else [self.range.sentence]
         return [*filter(None, found)]

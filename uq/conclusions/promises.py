@@ -144,12 +144,14 @@ class Promise:
         return f"With {100 * self.confidence:g} % confidence"
 
     @property
-    def why(self) -> str:
-        """Why there is no tolerance bound; "" where there is one."""
+    def basis(self) -> str:
+        """What kind of bound it is, or why there is none."""
         if not self.reason:
-            return ""
+            several = isfinite(self.lower) and isfinite(self.upper)
+            bound = f"{'joint ' * bool(self.joint)}tolerance bound{'s' * several}"
+            return f"{bound.capitalize()} from order statistics, valid for any distribution."
         end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
-        bound = "joint bound" if self.joint else "tolerance bound"
+        bound = f"{'joint ' * bool(self.joint)}tolerance bound"
         return f"No {bound}: {self.reason}.{end}"
 
     @property

@@ -26,6 +26,7 @@ from uq.conclusions.bounds import (
 from uq.conclusions.contributions import Ranking
 from uq.conclusions.earliest import earliest
 from uq.conclusions.measured import method_for
+from uq.conclusions.own_errors import own_error_of
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Range
 from uq.conclusions.rankings import ranking_of
@@ -75,19 +76,36 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     summary = summarise(ds, asked) if only else findings.summary
     parts = [part for part in ("quantiles", "tolerance") if _asks(wanted, asked, part)]
     more = summarise(ds, wanted, parts=parts).outputs if parts else {}
-    declared = outputs_of(ds)
-    # What the study is about comes first.
-    names = sorted(
-        shown_outputs(ds, asked),
-        key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
-    )
     part = replicates_of(findings.rows)
     context = Context(findings.rows, wanted, part, weights_of(findings.rows))
     return [
         _quantity(findings, _with(summary.outputs[one.name], more.get(one.name)), context, one)
-        for one in elements_of(findings.rows, names)  # one at a time in memory
+        for one in elements_of(findings.rows, _by_importance(ds, asked))  # one at a time in memory
         if one.present.any() and only in (None, one.name)
     ]
+
+
+def only_ranked(findings: Findings) -> list[Quantity]:
+    """Return what the inputs contribute, of rows that have indices but no statistics."""
+    ds = findings.ds
+    found = []
+    for element in elements_of(ds, _by_importance(ds, analysis_of(ds))):
+        values = np.abs(element.values[np.isfinite(element.values)])
+        if not len(values):
+            continue
+        ranking = _ranking(findings, element, unit_for(element.units, float(np.median(values))))
+        words, meaning = element_called(ds, element), readable(element.meaning)
+        found.append(Quantity(element.name, words, meaning, ranking=ranking))
+    return found
+
+
+def _by_importance(ds: xr.Dataset, asked: AnalysisTable) -> list[str]:
+    """Return the outputs that a study asks for, the one that it is about first."""
+    declared = outputs_of(ds)
+    return sorted(
+        shown_outputs(ds, asked),
+        key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
+    )
 
 
 def _asks(wanted: AnalysisTable, asked: AnalysisTable, part: str) -> bool:
@@ -121,6 +139,7 @@ def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
 def _quantity(
     findings: Findings, described: Described, context: Context, element: Element
 ) -> Quantity:
+    folded = element
     if element.is_angle:  # its sign is only a direction
         folded = replace(element, values=element.for_thresholds)
         described = Described(
@@ -138,11 +157,12 @@ def _quantity(
     shortest = float(least.min()) if len(least) else nan
     typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
     unit = unit_for(element.units, abs(typical))
+    promise = promise_of(findings.ds, described, element, context.analysis, wanted, unit)
     return Quantity(
         element.name,
         element_called(findings.ds, element),
         readable(element.meaning),
-        promise_of(findings.ds, described, element, context.analysis, wanted, unit),
+        promise,
         Range(
             quantile_of(described, LOW),
             middle,
@@ -161,6 +181,7 @@ def _quantity(
         if _may_end_badly(findings.ds, element)
         else None,
         assumed_scales(findings.ds, element),
+        own_error_of(promise, described, folded, context),
     ).with_limits()
 
 
@@ -192,9 +213,15 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
         found = replace(found, what=f"{found.what}, of the angle with its sign")
     if split_name(name)[0]:
         return found
-    # Changes of the output itself are in its unit.
+    # Changes of the output itself are in its unit, as are indices that are not relative.
+    kind = next((one for one in METHODS[method].kinds if one.key == found.kind), None)
+    of_index = unit if kind is not None and kind.unit == "output" else Unit()
     own = tuple(
-        replace(one, changes=tuple(replace(change, unit=unit) for change in one.changes))
+        replace(
+            one,
+            changes=tuple(replace(change, unit=unit) for change in one.changes),
+            unit=of_index,
+        )
         for one in found.contributions
     )
     return replace(found, contributions=own)

@@ -23,7 +23,7 @@ from uq.study.file import Tied
 from uq.wording import rows_in_words
 
 GOAL = 0.1
-"""Half-width of the interval of an index at which it counts as known."""
+"""Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
 
 MOST_TIED = 3
 """With more indistinguishable inputs than this, there is no ranking."""
@@ -85,17 +85,26 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     if len({twin_of(one.name) for one in groups[0]}) > MOST_TIED:
         names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
-        apart = max(first.index.value - second.index.value, GOAL / 2)
+        apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
         factor = (hypot(first.half, second.half) / apart) ** 2
         reason, is_flat = f"the order of {names} is not settled", False
         if factor <= 1:  # the rows tell apart what differs by more
             is_flat = kind.unit == "variance" and first.index.value < SMALL
             reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
         return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
-    listed = [group for group in groups if group[0].index.value >= LEAST]
+    least = LEAST * _scale(measured[0], kind)
+    listed = [group for group in groups if group[0].index.value >= least]
     moved = _effects(findings, method, name, [one.name for group in listed for one in group])
     contributions = tuple(_contribution(group, kind, name, moved, verbs) for group in listed)
-    return Ranking(name, method, kind.key, what, contributions, rivals=_rivals(measured))
+    is_share = kind.unit == "variance" and split_name(name)[0] != "P"
+    of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
+    rivals = _rivals(measured)
+    return Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+
+
+def _scale(first: Measured, kind: IndexKind) -> float:
+    """Return what an index is compared with: those in the unit of the output, with the largest."""
+    return abs(first.index.value) if kind.unit == "output" else 1.0
 
 
 def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
@@ -115,10 +124,11 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
     which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False
-    if first.half > GOAL:
+    goal = GOAL * _scale(first, kind)
+    if first.half > goal:
         ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
-        return f"{which}: {text}{interval}", (first.half / GOAL) ** 2, False
+        return f"{which}: {text}{interval}", (first.half / goal) ** 2, False
     verb = "decides that" if of_event else "contributes"
     return f"no single input {verb} measurably: {text} at most", nan, True
 

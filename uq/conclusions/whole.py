@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from uq.conclusions.deciding import Levels
 from uq.conclusions.enough import Enough
+from uq.conclusions.intermingled import Intermingled
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.remedies import Advice
 from uq.conclusions.words import share_text
@@ -36,6 +37,10 @@ class Answer:
         That the start is the same in all rows, where it might decide the regime, or "".
     enough : Enough
         Whether the rows are.
+    ties : str
+        Which inputs have the value of one that contributes most to what the study is about, or "".
+    mixing : Intermingled
+        How intermingled the regimes are, of a study about them.
     """
 
     title: str
@@ -49,6 +54,8 @@ class Answer:
     levels: Levels | None = None
     starts_alike: str = ""
     enough: Enough = field(default_factory=Enough)
+    ties: str = ""
+    mixing: Intermingled = field(default_factory=Intermingled)
 
     @property
     def rows_sentence(self) -> str:
@@ -102,10 +109,10 @@ class Answer:
             of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
         own = [*self.level_lines, self.enough.sentence]
         if self.regimes_first:
-            found += [*regimes, *own, *of_lead]
+            found += [*regimes, self.mixing.sentence, *own, *of_lead]
         else:
             found += [*of_lead, *own, *regimes]
-        found += [self.starts_alike, *([] if lead is None else [lead.ranking_sentence])]
+        found += [self.starts_alike, *([] if lead is None else [lead.ranking_sentence]), self.ties]
         if lead is not None and lead.earliest is not None:
             found += lead.earliest.lines
         return [*filter(None, found), *(one.text for one in self.advice)]

@@ -1,17 +1,19 @@
 """The numbers of the answer, and where they come from."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import xarray as xr
 
+from uq.analysis.boundary import compared_rows
 from uq.analysis.convergence import compared
 from uq.analysis.earliest import inputs_apart
 from uq.analysis.effects import effects
 from uq.analysis.event_curve import event_curve
 from uq.analysis.findings import Findings
 from uq.analysis.joint_bounds import SIDES
-from uq.analysis.statistics.counts import never_ending
+from uq.analysis.own_error import error_share, off_by_error, stating_none
+from uq.analysis.statistics.counts import accuracy, never_ending
 from uq.analysis.summary import status_counts, summarise
 from uq.analysis.switching import switching
 from uq.analysis.what_if import what_if
@@ -34,6 +36,16 @@ from uq.tracing.citations import Citation, cited
 from uq.tracing.of_indices import estimator_of
 from uq.tracing.of_summary import functions_of, states_of
 from uq.tracing.origin import Origin
+from uq.uncertainty_exponent import uncertainty_exponent
+
+_OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
+    "lower": (off_by_error,),
+    "upper": (off_by_error,),
+    "share_of_variance": (error_share,),
+    "accuracy": (accuracy,),
+    "rows_missing_it": (accuracy,),
+    "rows_stating_none": (stating_none,),
+}
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
@@ -56,6 +68,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     part, *names = path
     if part in ("rows", "failed"):
         return Origin((cited(status_counts),), ds)
+    if part == "intermingled":
+        return Origin((cited(uncertainty_exponent),), compared_rows(ds))
     if part == "levels":
         return Origin((cited(switching if "another_regime" in names else nested_shares),), ds)
     if part == "enough":
@@ -93,7 +107,12 @@ def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) ->
         yield cited(found_again)
         promised = said["promise"]["sentence"] if "promise" in said else ""
         part, rest = ("range", ()) if promised else ("events", tuple(said["events"]))
-    if part == "range" and "".join(rest).startswith("never"):
+    if part == "own_error":
+        yield from map(cited, _OF_ERROR.get("".join(rest), (off_by_error, error_share, accuracy)))
+        keys *= any(end in rest for end in ("lower", "upper"))
+        if keys and not said["promise"]["reason"]:
+            keys = [("tolerance", "lower")]
+    elif part == "range" and "".join(rest).startswith("never"):
         yield from map(cited, (never_ending, Population if has_weights(ds) else share_interval))
         keys = []
     elif part == "promise":

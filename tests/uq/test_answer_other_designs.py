@@ -1,0 +1,57 @@
+"""The answer where regimes intermingle, inputs are tied, or the rows follow no law."""
+
+import re
+
+import pytest
+from computed import UNIFORM, asking, computed, linear, study_of, with_output
+
+from uq.conclusions.answer import answer
+from uq.conclusions.intermingled import Intermingled
+from uq.conclusions.page import fragment
+from uq.estimate import Estimate
+
+
+def test_intermingled_regimes_say_how_little_better_known_inputs_tell():
+    assert Intermingled(Estimate(0.5, 0.4, 0.6)).sentence == (
+        "The regimes are intermingled: were all inputs known twice as well, only 29.3 % (24.2 to"
+        " 34.0 %) fewer outcomes would be uncertain, instead of 50 % (uncertainty exponent 0.5)."
+    )
+
+
+@pytest.mark.parametrize("exponent", [Estimate(0.9, 0.8, 1.0), Estimate(0.5), Estimate(reason="")])
+def test_a_boundary_that_may_be_smooth_is_not_called_intermingled(exponent):
+    assert Intermingled(exponent).sentence == ""
+
+
+def tied():
+    tables = {
+        "study": {"name": "tied", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 200, "seed": 1},
+        "uncertain": {"x1": UNIFORM, "x3": UNIFORM, "x4": {"equals": "x3"}},
+        "analysis": {"outputs": ["y"]},
+    }
+    return computed(study_of(tables))
+
+
+def test_an_input_that_leads_names_those_that_equal_it():
+    found = answer(tied())
+    assert found.lead.ranking.leader.inputs == ("x3",)
+    assert found.ties == "x4 equals x3 in every row."
+    assert found.ties in repr(found) and found.ties in fragment(found)
+    assert answer(linear(samples=200)).ties == ""
+
+
+def test_screening_ranks_in_the_unit_of_the_output_and_says_what_it_cannot_promise():
+    ds = linear("morris", samples=10, replicates=4)
+    ds = with_output(ds, "depth", 0.003 * ds["x4"].values ** 2 * (1 + ds["x1"].values))
+    ds = asking(ds, outputs=["depth"])
+    found = answer(ds)
+    assert found.lead.promise is None and found.lead.range is None
+    assert re.fullmatch(
+        r"x4 contributes most: [\d.]+ mm \([\d.]+ to [\d.]+\)\.", found.lead.ranking.sentence
+    )
+    (rows,) = [one.text for one in found.advice if one.rule == "rows"]
+    assert rows == (
+        "To know what can be promised: the rows of a 'morris' design do not follow the laws of the"
+        " inputs; use 'monte-carlo'."
+    )

@@ -1,0 +1,97 @@
+"""What the error that rows state for themselves would do to a promise."""
+
+import numpy as np
+import pytest
+from answered import lifetime
+from computed import asking, linear, with_output
+
+import uq
+from uq.conclusions.answer import answer
+from uq.conclusions.as_json import answer_json
+
+
+def values_that_err(size, design="monte-carlo", samples=1000, replicates=1, **asked):
+    ds = asking(linear(design, samples=samples, replicates=replicates), outputs=["y"], **asked)
+    return with_output(ds, "y_error", np.full(ds.sizes["sample"], size))
+
+
+def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error():
+    above = answer(values_that_err(0.2, wanted={"y": "above"})).lead
+    assert np.isclose(above.own_error.worse[0], above.promise.lower - 0.2, rtol=1e-12)
+    assert np.isnan(above.own_error.worse[1])
+    assert above.own_error.sentence.startswith(
+        "The bound leaves out the rows' own numerical error: were every value too large by its"
+        f" error, it would be {above.promise.unit.text(above.own_error.worse[0], -np.inf)}."
+    )
+    below = answer(values_that_err(-0.2, wanted={"y": "below"})).lead
+    assert np.isclose(below.own_error.worse[1], below.promise.upper + 0.2, rtol=1e-12)
+    assert "too small" in below.own_error.sentence
+    both = answer(values_that_err(0.2)).lead.own_error.sentence
+    assert both.startswith("The bounds leave out") and "too large or too small" in both
+
+
+def test_the_error_is_held_against_the_scatter():
+    ds = values_that_err(0.5)
+    found = answer(ds).lead.own_error
+    assert np.isclose(found.share, 0.25 / np.var(ds["y"].values))
+    assert f"is {100 * found.share:.1f} % of the variance" in found.sentence
+    assert "all scatter may be numerical" in answer(values_that_err(2.0)).lead.own_error.sentence
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-9])
+def test_an_error_that_moves_no_digit_is_not_worth_a_word(size):
+    assert answer(values_that_err(size)).lead.own_error.sentence == ""
+
+
+def test_without_stated_errors_there_is_nothing_to_say():
+    assert answer(asking(linear(samples=100), outputs=["y"])).lead.own_error is None
+
+
+def test_rows_that_are_not_independent_move_their_quantile():
+    ds = values_that_err(0.2, "saltelli", 64, 8, wanted={"y": "above"})
+    lead = answer(ds).lead
+    assert np.isclose(lead.own_error.worse[0], lead.promise.quantiles[0].value - 0.2, rtol=1e-9)
+    assert lead.own_error.sentence.startswith("The quantile leaves out")
+
+
+def a_life_that_errs(relative):
+    ds, _ = lifetime()
+    life = ds["life"]
+    error = life.copy(data=relative * life.values).assign_attrs(kind="value")
+    return ds.assign(life=life.assign_attrs(accuracy=0.05), life_error=error)
+
+
+def test_errors_of_lives_are_relative_and_a_missed_accuracy_is_said():
+    ds = a_life_that_errs(0.1)
+    found = answer(ds).lead
+    assert np.isclose(found.own_error.worse[0], 0.9 * found.promise.lower)
+    assert np.isclose(found.own_error.share, 0.01 / np.var(np.log(ds["life"].values)))
+    assert "were every life too long by its error" in found.own_error.sentence
+    assert found.own_error.sentence.endswith("100 % of the rows miss the accuracy asked for, 5 %.")
+    assert "miss" not in answer(a_life_that_errs(0.04)).lead.own_error.sentence
+
+
+def test_lives_without_an_end_and_rows_that_state_no_error_stay_as_they_are():
+    ds = a_life_that_errs(0.1)
+    life, error = ds["life"].values.copy(), ds["life_error"].values.copy()
+    first = np.argsort(life)[:100]
+    error[first[:50]], life[first[50:]] = np.nan, np.inf
+    error[first[50:]] = np.nan
+    ds = ds.assign(life=ds["life"].copy(data=life), life_error=ds["life_error"].copy(data=error))
+    found = answer(ds).lead.own_error
+    assert found.unstated == 50 and "50 rows state none" in found.sentence
+    assert found.worse[0] == found.bounds[0]
+
+
+def test_its_numbers_are_in_the_json_and_are_traced():
+    ds = a_life_that_errs(0.1)
+    found = answer_json(answer(ds))["quantities"]["life"]["own_error"]
+    assert found["rows_missing_it"] == 1.0 and found["accuracy"] == 0.05
+    for name in ("lower", "share_of_variance", "rows_missing_it", "rows_stating_none"):
+        traced = uq.trace(ds, f"answer/quantities/life/own_error/{name}")
+        assert traced["value"] == found[name]
+    bound = uq.trace(ds, "answer/quantities/life/own_error/lower")
+    assert [one["code"].rpartition(".")[2] for one in bound["estimators"]] == [
+        "off_by_error",
+        "tolerance_bounds",
+    ]

@@ -1,0 +1,45 @@
+"""Whether the regimes are intermingled: better known inputs then tell little of the outcome."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from uq.analysis.findings import Findings
+from uq.conclusions.words import rounded, share_text
+from uq.estimate import NOTHING, Estimate
+
+
+@dataclass(frozen=True)
+class Intermingled:
+    """How intermingled the regimes are.
+
+    Attributes
+    ----------
+    exponent : Estimate
+        The uncertainty exponent of the boundary between them; without a number if unknown.
+    """
+
+    exponent: Estimate = field(default=NOTHING)
+
+    @property
+    def fewer(self) -> Estimate:
+        """Share of uncertain outcomes that are saved if all inputs are known twice as well."""
+        value, low, high = (1 - 2.0 ** -np.clip(self.exponent.numbers, 0.0, 1.0)).tolist()
+        return Estimate(value, low, high)
+
+    @property
+    def sentence(self) -> str:
+        """That they are; "" where they may have a smooth boundary."""
+        if not (self.exponent.has_interval and self.exponent.high < 1):
+            return ""
+        return (
+            "The regimes are intermingled: were all inputs known twice as well, only"
+            f" {share_text(self.fewer)} fewer outcomes would be uncertain, instead of 50 %"
+            f" (uncertainty exponent {rounded(self.exponent.value)})."
+        )
+
+
+def intermingled(findings: Findings) -> Intermingled:
+    """Return how intermingled the regimes of a result are."""
+    known = findings.boundary
+    return Intermingled() if known is None else Intermingled(known.estimate)
