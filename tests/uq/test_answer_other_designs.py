@@ -48,7 +48,7 @@ def test_screening_ranks_in_the_unit_of_the_output_and_says_what_it_cannot_promi
     found = answer(ds)
     assert found.lead.promise is None and found.lead.range is None
     assert re.fullmatch(
-        r"x4 contributes most: [\d.]+ mm \([\d.]+ to [\d.]+\)\.", found.lead.ranking.sentence
+        r"x4 contributes most: [\d.]+ µm \([\d.]+ to [\d.]+\)\.", found.lead.ranking.sentence
     )
     (rows,) = [one.text for one in found.advice if one.rule == "rows"]
     assert rows == (
