@@ -43,6 +43,18 @@ def test_an_error_that_moves_no_digit_is_not_worth_a_word(size):
     assert answer(values_that_err(size)).lead.own_error.sentence == ""
 
 
+def test_without_a_bound_it_is_named_whose_error_it_is():
+    few = answer(values_that_err(0.5, samples=10)).lead
+    assert few.promise.sentence == ""
+    assert few.own_error.sentence.startswith("The mean square of the rows' own numerical error is")
+
+
+def test_rows_that_all_state_nothing_are_counted():
+    assert answer(values_that_err(np.nan, samples=100)).lead.own_error.sentence == (
+        "100 rows state no error."
+    )
+
+
 def test_without_stated_errors_there_is_nothing_to_say():
     assert answer(asking(linear(samples=100), outputs=["y"])).lead.own_error is None
 
@@ -79,7 +91,7 @@ def test_lives_without_an_end_and_rows_that_state_no_error_stay_as_they_are():
     error[first[50:]] = np.nan
     ds = ds.assign(life=ds["life"].copy(data=life), life_error=ds["life_error"].copy(data=error))
     found = answer(ds).lead.own_error
-    assert found.unstated == 50 and "50 rows state none" in found.sentence
+    assert found.unstated == 50 and "50 rows state no error" in found.sentence
     assert found.worse[0] == found.bounds[0]
 
 

@@ -59,7 +59,7 @@ class OwnError:
     @property
     def sentence(self) -> str:
         """What the error would do; "" where it is not worth a word."""
-        if not (self._moved or self.share >= NOTABLE):
+        if not (self._moved or self.share >= NOTABLE or self.unstated):
             return ""
         about = (self._moved, self._of_variance, self._missing)
         return " ".join(f"{capitalized(one)}." for one in about if one)
@@ -88,13 +88,13 @@ class OwnError:
 
     @property
     def _of_variance(self) -> str:
+        if not self.share >= NOTABLE:
+            return ""
         of = "variance of the logarithm" if self.is_life else "variance"
+        which = "this error" if self._moved else "the rows' own numerical error"
         if self.share >= 1:
-            return f"the mean square of this error exceeds the {of}: all scatter may be numerical"
-        known = self.share >= NOTABLE
-        return (
-            f"the mean square of this error is {percent(self.share)} of the {of}" if known else ""
-        )
+            return f"the mean square of {which} exceeds the {of}: all scatter may be numerical"
+        return f"the mean square of {which} is {percent(self.share)} of the {of}"
 
     @property
     def _missing(self) -> str:
@@ -103,7 +103,8 @@ class OwnError:
             asked = f"{100 * self.asked:g} %"
             parts.append(f"{percent(self.missed)} of the rows miss the accuracy asked for, {asked}")
         if self.unstated:
-            parts.append(f"{counted(self.unstated, 'row')} state none")
+            verb = "states" if self.unstated == 1 else "state"
+            parts.append(f"{counted(self.unstated, 'row')} {verb} no error")
         return "; ".join(parts)
 
 
