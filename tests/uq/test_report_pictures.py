@@ -61,6 +61,15 @@ def test_a_crowded_figure_becomes_an_image():
     assert dict(Page(drawn.html).attributes)["alt"] == 'a "cloud"'
 
 
+def test_points_that_are_drawn_as_an_image_leave_the_text_of_their_figure_sharp():
+    figure = Figure(figsize=(3.4, 4.0))
+    rng = np.random.default_rng(1)
+    for axes in figure.subplots(3):
+        axes.plot(*rng.uniform(size=(2, 20_000)), ".", ms=1, rasterized=True)
+    drawn = picture(figure, "three clouds")
+    assert not drawn.is_image and len(drawn.html) > HEAVIEST_SVG and "<text" in drawn.html
+
+
 def test_of_an_output_without_any_value_nothing_is_drawn():
     ds = linear(samples=32, settings={"fail_above": -1.0})
     found = read(ds)

@@ -23,7 +23,10 @@ from uq.plots import FIGURES
 from uq.report.paths import shortened
 
 HEAVIEST_SVG = 300_000
-"""Longer drawings, of thousands of points, are embedded as images [characters]."""
+"""Longer drawings, without the images in them, are embedded as images [characters]."""
+
+_IMAGE = re.compile(r"data:image[^\"]*")
+_DOTS_PER_INCH = 144  # of an image
 
 _INK = {"#000000": "currentColor", "fill: #ffffff": "fill: none"}
 
@@ -89,8 +92,10 @@ def picture(figure: Figure, caption: str) -> Picture:
     # Identifiers must be unique within a page.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
-    if len(svg := _embedded(drawn.getvalue(), caption)) <= HEAVIEST_SVG:
+    svg = _embedded(drawn.getvalue(), caption)
+    if len(_IMAGE.sub("", svg)) <= HEAVIEST_SVG:
         return Picture(svg, caption, False, wide)
+    figure.set_dpi(_DOTS_PER_INCH)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     data = base64.b64encode(png.getvalue()).decode()
     image = Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)
