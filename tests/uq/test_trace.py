@@ -132,6 +132,9 @@ def test_the_error_of_the_rows_is_that_of_the_rows_used():
     found = traced(ds, "convergence/outputs/y/own_error")
     used = ds["x1"].values[np.isin(ds["block"], [0, 5])]
     assert found.equal and found.numbers["value"] == pytest.approx(used.mean())
+    for key in ("answer/enough/own_error", "answer/enough/sampling_error"):
+        answered = traced(with_output(ds, "y_error", 10 * ds["x1"].values), key)
+        assert answered.equal and answered.rows_used == len(used)
 
 
 def test_values_of_options_may_have_commas():

@@ -74,7 +74,7 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(switching if "another_regime" in names else nested_shares),), ds)
     if part == "enough":
         if "error" in names[-1]:
-            return Origin((cited(compared),), ds)
+            return Origin((cited(compared),), independent_rows(ds))
         return Origin((cited(found_again), cited(share_interval)), ds)
     if part == "advice":
         return Origin((cited(what_if if "tolerances" in names else unsettled),), ds)
