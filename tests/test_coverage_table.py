@@ -1,10 +1,15 @@
 """The table of coverage: its truths, its counting, and what it says of an interval that is off."""
 
+import html
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from benchmarks.coverage import fewer_rows, known_indices, nested, noise, problems
+from benchmarks.coverage.chapters import CHAPTERS, chapter_of
 from benchmarks.coverage.page import page
 from benchmarks.coverage.parts import PARTS
 from benchmarks.coverage.tally import Tally
@@ -95,6 +100,18 @@ def test_what_is_off_needs_a_reason():
     assert "**mean** | uq | 50.0% (46.9% to 53.1%) | 1000 | 1.25 | a good reason |" in shown
     assert "| mean | somebody else | 0.0%" in shown
     assert "none given" in shown
+    assert "\n| [Others](#others) | 1 | 0 | 1 |\n" in shown and "\n## Others\n" in shown
+
+
+def test_each_table_of_the_page_stands_folded_in_a_chapter():
+    page = Path("docs/coverage.md").read_text()
+    contents = re.findall(r"^\| \[(.*?)\]\(", page, re.MULTILINE)
+    chapters = re.split(r"^## ", page, flags=re.MULTILINE)[1:]
+    assert list(CHAPTERS) == contents == [one.partition("\n")[0] for one in chapters]
+    for title, one in zip(contents, chapters, strict=True):
+        problems = re.findall(r"<summary>(.*?)(?: \([^()]* than stated\))?</summary>\n\n\|", one)
+        assert {chapter_of(html.unescape(problem)) for problem in problems} == {title}
+        assert len(problems) == one.count("\n| --- ") >= 1
 
 
 @pytest.mark.parametrize(

@@ -258,10 +258,13 @@ def test_the_picture_of_a_machine_is_what_its_script_draws_and_shown_where_it_is
     assert f"](../{file})" in SOURCES[f"docs/machines/{machine}.md"]
 
 
-def test_the_answer_that_the_readme_quotes_has_the_numbers_that_are_printed():
-    quoted, printed = map(numbers, (first_answer.quoted(), first_answer.printed()))
+def test_the_answer_that_the_readme_quotes_is_the_one_that_is_printed():
+    texts = first_answer.quoted(), first_answer.printed()
+    quoted, printed = map(numbers, texts)
     assert len(quoted) > 10
     assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
+    quoted_words, printed_words = (re.sub(r"\d+(\.\d+)?", "#", one).split() for one in texts)
+    assert quoted_words == printed_words, "run: python docs/first_answer.py"
 
 
 def test_the_study_that_the_readme_shows_is_the_one_that_it_runs():

@@ -31,12 +31,14 @@ def node(path: Path) -> str:
     return "" if kind == stat.S_IFREG else _KINDS[kind]
 
 
-def file_behind(path: Path) -> Path:
+def file_behind(path: Path, option: str = "-o") -> Path:
     """Return the file to write for a path: the target of a link.
 
     Parameters
     ----------
     path : Path
+    option : str
+        Of the command, to choose another.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def file_behind(path: Path) -> Path:
         case "a folder":
             raise InputError(f"{path}: is a folder; give the name of a file in it")
         case what:
-            raise InputError(f"{path}: is {what}, not a file; choose another place with -o")
+            raise InputError(f"{path}: is {what}, not a file; choose another place with {option}")
 
 
 def refuse_standard_output(path: Path) -> None:

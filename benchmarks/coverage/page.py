@@ -1,7 +1,10 @@
 """The page that shows the table."""
 
+import html
 import math
+import re
 
+from benchmarks.coverage.chapters import CHAPTERS, OTHERS, chapter_of
 from benchmarks.coverage.tally import OURS, Line
 
 HEAD = """# Coverage of the intervals
@@ -46,34 +49,74 @@ of cases. Bootstrap intervals of other libraries for such indices are counted, t
 
 def page(lines, seconds, missing=()):
     """Return the page, from the lines of all parts but those missing."""
-    problems = {}
-    for line in lines:
-        problems.setdefault(line.problem, []).append(line)
-    tables = [_table(problem, own) for problem, own in problems.items()]
-    ours = [line for line in lines if line.by == OURS and line.given]
-    off = [line.coverage[0] for line in ours if _is_off(line)]
-    more = sum(covered > 0.95 for covered in off)
+    stated, more, less = _counts(lines)
     summary = (
-        f"Of our {len(ours)} intervals, {len(ours) - len(off)} cover as stated, {more} more often"
-        f" and {len(off) - more} less often, for the reasons given. Computed in"
+        f"Of our {stated + more + less} intervals, {stated} cover as stated, {more} more often"
+        f" and {less} less often, for the reasons given. Computed in"
         f" {seconds / 60:.0f} minutes on one core.\n"
     )
     if missing:
         summary += f"\nNot computed yet: {', '.join(missing)}.\n"
-    return "\n".join([HEAD, summary, *tables])
+    chapters = {title: [] for title in (*CHAPTERS, OTHERS)}
+    for line in lines:
+        chapters[chapter_of(line.problem)].append(line)
+    known = {title: own for title, own in chapters.items() if own}
+    texts = [_chapter(title, own) for title, own in known.items()]
+    return "\n".join([HEAD, summary, _contents(known), *texts])
+
+
+def _counts(lines):
+    """Return how many of our intervals cover as stated, more often, and less often."""
+    ours = [line for line in lines if line.by == OURS and line.given]
+    off = [line.coverage[0] for line in ours if _is_off(line)]
+    more = sum(covered > 0.95 for covered in off)
+    return len(ours) - len(off), more, len(off) - more
+
+
+def _contents(chapters):
+    """Return the table of chapters, with how many of our intervals cover as stated in each."""
+    rows = [
+        f"| [{title}](#{_anchor(title)}) | {' | '.join(map(str, _counts(lines)))} |"
+        for title, lines in chapters.items()
+    ]
+    head = ["| | as stated | more often | less often |", "| --- | ---: | ---: | ---: |"]
+    return "\n".join([*head, *rows, "", "Each line below opens a table.", ""])
+
+
+def _anchor(title):
+    """Return the anchor of a heading, as GitHub and MyST form it."""
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+
+
+def _chapter(title, lines):
+    """Return the tables of a chapter, folded under the names of their problems."""
+    problems = {}
+    for line in lines:
+        problems.setdefault(line.problem, []).append(line)
+    tables = [_folded(problem, own) for problem, own in problems.items()]
+    return "\n".join([f"## {title}", "", *tables])
 
 
 def _is_off(line):
     return line._replace(reason="").unexplained
 
 
-def _table(problem, lines):
-    """Return the table of one problem, ours first and the others' below each."""
+def _folded(problem, lines):
+    """Return the table of one problem, under a line that says how many of our intervals are off."""
+    _, more, less = _counts(lines)
+    off = [f"{count} {words}" for count, words in ((more, "more"), (less, "less")) if count]
+    said = f" ({', '.join(off)} often than stated)" if off else ""
+    name = html.escape(f"{problem[0].upper()}{problem[1:]}{said}", quote=False)
+    head = f"<details><summary>{name}</summary>"
+    return "\n".join([head, "", _table(lines), "", "</details>", ""])
+
+
+def _table(lines):
+    """Return a table, ours first and the others' below each."""
     order = list(dict.fromkeys(line.what for line in lines))
     ordered = sorted(lines, key=lambda one: (order.index(one.what), one.by != OURS))
-    head = [f"## {problem[0].upper()}{problem[1:]}", ""]
-    head += ["| | by | covered | of | width | remark |", "| --- | --- | --- | --- | --- | --- |"]
-    return "\n".join([*head, *map(_row, ordered), ""])
+    head = ["| | by | covered | of | width | remark |", "| --- | --- | --- | --- | --- | --- |"]
+    return "\n".join([*head, *map(_row, ordered)])
 
 
 def _row(line):

@@ -75,10 +75,13 @@ def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
 
 def test_single_inputs_are_called_so_where_another_level_decides():
     """Neither x2 nor x3 alone matters, together they decide."""
-    found = answer(of_regimes(0.55, samples=1000, of_pairs=True))
+    ds = of_regimes(0.55, samples=1000, of_pairs=True)
+    found = answer(ds)
     assert found.levels.leader.inputs == ("x2", "x3")
     by = "x1, though it alone explains only 18 % (12 to 24 %)"
     assert found.regimes[0].decided_by.startswith(f"Of single inputs, decided most by {by}: from ")
+    traced = trace(ds, f"answer/regimes/{found.regimes[0].said}/decided_by")
+    assert traced["sentence"] == found.regimes[0].decided_by and traced["equal"]
     assert "x1 would again contribute most" not in found.enough.sentence
     other = answer(of_regimes(0.05))
     assert other.levels.leader.words == "the machine"

@@ -14,6 +14,7 @@ from uq.analysis.findings import Findings
 from uq.contract import Status
 from uq.drawing.catalogue import drawables
 from uq.errors import InputError
+from uq.keys import key_of
 from uq.report import write_report
 from uq.rows.row_choice import lowest_row
 from uq.store.files import write_result
@@ -105,6 +106,26 @@ def test_indices_are_those_of_each_label():
     ds, _ = with_period(2000)
     found = sensitivities(ds, "regional", "period")["outputs"]
     assert list(found) == ["P(period=aperiodic)", "P(period=1)", "P(period=2)"]
+
+
+@pytest.mark.parametrize("label", ["x[3].y", "x]y", "a/b", "x,y=1"])
+def test_a_label_may_hold_what_separates_the_parts_of_a_name(label):
+    ds, codes = with_period(2000)
+    ds["period"].attrs["flag_meanings"] = " ".join(("none", LABELS[0], label, *LABELS[2:]))
+    sites = ds.assign(period=(("sample", "site"), codes[:, None].astype(np.int8), ds.period.attrs))
+    for one, name in (
+        (ds, "period"),
+        (sites.assign_coords(site=["left"]), "period[site=left]"),
+        (sites.assign_coords(site=["x[3].y"]), "period[site=x[3].y]"),
+    ):
+        target = f"P({name}={label})"
+        assert list(sensitivities(one, "regional", target)["outputs"]) == [target]
+        for key in (
+            key_of("outputs", target, "S1", "x1", verb="sensitivity"),
+            key_of("outputs", target, "variance", verb="levels"),
+            key_of("categories", name, label, "share"),
+        ):
+            assert traced(one, key).equal
 
 
 def with_sites(samples=200):

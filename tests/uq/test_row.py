@@ -253,6 +253,8 @@ def test_the_trajectory_of_a_row_is_that_of_its_inputs_and_seed(uq, write_study,
     found.to_netcdf("kept.nc")
     refused = uq("row", "out.nc", *given, "--plot", "t.xyz")
     assert refused.code == 2 and "t.xyz: Format 'xyz' is not supported" in refused.err
+    refused = uq("row", "out.nc", *given, "--plot", "/proc/t.png")
+    assert refused.code == 2 and "choose another place with --plot" in refused.err
     assert everything(folder) == ["kept.nc", "new", "new/t.png", "out.nc", "small.toml"]
 
 

@@ -104,8 +104,8 @@ def test_options_are_part_of_a_key():
 def test_weighted_rows_are_traced_to_estimators_of_weighted_rows():
     key = "what-if[uncertain.x1.upper=0.8]/"
     for ds, path, estimator in (
-        (every_kind(), "outputs/angle/thresholds/0.5/above", "functionals.Population"),
-        (every_kind(), "outputs/angle/quantiles/0.5", "functionals.Population"),
+        (every_kind(), "outputs/angle/thresholds/0.5/above", "Population.above"),
+        (every_kind(), "outputs/angle/quantiles/0.5", "Population.quantile"),
         (every_kind(), "outputs/angle/effective_rows", "smoothing.effective_rows"),
         (every_kind(), "regime/slow", "means.weighted_share"),
         (linear(), "outputs/y/mean", "means.weighted_moments"),
@@ -132,6 +132,9 @@ def test_the_error_of_the_rows_is_that_of_the_rows_used():
     found = traced(ds, "convergence/outputs/y/own_error")
     used = ds["x1"].values[np.isin(ds["block"], [0, 5])]
     assert found.equal and found.numbers["value"] == pytest.approx(used.mean())
+    for key in ("answer/enough/own_error", "answer/enough/sampling_error"):
+        answered = traced(with_output(ds, "y_error", 10 * ds["x1"].values), key)
+        assert answered.equal and answered.rows_used == len(used)
 
 
 def test_values_of_options_may_have_commas():

@@ -50,9 +50,9 @@ def check_files(model: Model, output: Path | None, plot: Path | None) -> None:
     from uq.exploring.simulation import holds_trajectory
     from uq.store.files import check_target
 
-    for path in (output, plot):
+    for path, option in ((output, "-o"), (plot, "--plot")):
         if path is not None:
-            check_target(path, 0)
+            check_target(path, 0, option)
     if output and output.exists() and not holds_trajectory(output):
         raise InputError(
             f"{output}: exists and is not a trajectory of 'uq simulate'; choose another name"

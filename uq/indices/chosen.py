@@ -128,8 +128,8 @@ def _as_stored(name: str, element: str, found: Sequence[Target]) -> str:
 
 
 def output_in(inside: str) -> str:
-    """Return the output or element that the name of a target is about."""
-    return re.sub(r"=[^\]]*$", "", inside)
+    """Return the output or element that the name of a target is about, without any label."""
+    return re.sub(r"^([^\[=]*(?:\[.*?\])?)=.*$", r"\1", inside)
 
 
 def _elements(ds: xr.Dataset, name: str) -> list[Element]:

@@ -15,7 +15,7 @@ from uq.places import file_behind
 from uq.store.seal import seal
 
 
-def check_target(path: Path, size: int) -> None:
+def check_target(path: Path, size: int, option: str = "-o") -> None:
     """Refuse a path that cannot be written, before anything is computed.
 
     Parameters
@@ -23,13 +23,16 @@ def check_target(path: Path, size: int) -> None:
     path : Path
     size : int
         Expected size of what will be written [bytes].
+    option : str
+        Of the command, to choose another.
 
     Raises
     ------
     InputError
     """
-    folder = nearest_folder(file_behind(path))
-    remedy = "copy it elsewhere" if path.is_file() else "choose another place with -o"
+    folder = nearest_folder(file_behind(path, option))
+    elsewhere = f"choose another place with {option}"
+    remedy = "copy it elsewhere" if path.is_file() else elsewhere
     if not folder.is_dir():
         raise InputError(f"{path}: {folder} is a file, not a folder; {remedy}")
     try:

@@ -30,6 +30,7 @@ from uq.keys import Json, Options, Path, value_at
 from uq.nested_variance import nested_shares
 from uq.population.functionals import Population
 from uq.rows.elements import analysis_of, independent_rows, named_elements
+from uq.rows.nesting import is_nested
 from uq.rows.results import failed
 from uq.rows.weights import has_weights
 from uq.tracing.citations import Citation, cited
@@ -52,10 +53,11 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the answer: of the quantity or the part alone that a path names."""
     findings = Findings(ds)
     part, *names = path or ("",)
-    if part == "quantities" and names:
+    alone = not is_nested(ds)  # a level that decides changes what is said of the regimes
+    if part == "quantities" and names and alone:
         known = tuple(quantities(findings, names[0]))
         return answer_json(Answer("", 0, 0, known, (), ()))
-    if part == "regimes":
+    if part == "regimes" and alone:
         return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
     if part in ("rows", "failed"):
         return answer_json(Answer("", ds.sizes["sample"], int(failed(ds).sum()), (), (), ()))
@@ -74,7 +76,7 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(switching if "another_regime" in names else nested_shares),), ds)
     if part == "enough":
         if "error" in names[-1]:
-            return Origin((cited(compared),), ds)
+            return Origin((cited(compared),), independent_rows(ds))
         return Origin((cited(found_again), cited(share_interval)), ds)
     if part == "advice":
         return Origin((cited(what_if if "tolerances" in names else unsettled),), ds)

@@ -18,7 +18,7 @@ _TIMES = Listing("Times by which a share has succeeded", first="time")
 LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
 _BY = (order_statistics.quantile, order_statistics.quantile_interval)
 _BY_KAPLAN_MEIER = (life_quantiles, kaplan_meier)
-_LAWS = (Population,)
+_LAWS = (Population.quantile, Population)
 _ROWS = replace(COUNT, readers=Reader.REPORT)
 
 

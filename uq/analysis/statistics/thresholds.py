@@ -117,7 +117,9 @@ def _probabilities(
                 counts_hits=element.is_plain,
                 averages=not element.is_plain,
             ),
-            by=(share_of, share_interval) if element.is_plain else (Population,),
+            by=(share_of, share_interval)
+            if element.is_plain
+            else (getattr(Population, side), Population),
         )
         if not element.is_plain and sides is None:
             yield replace(one, estimate=Estimate(reason=_unknown_sides(element, threshold)))
