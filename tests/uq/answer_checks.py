@@ -228,6 +228,7 @@ class Checker:
         text = change.sentence()
         if not change.step or not change.by.has_interval or "direction" in text:
             return
+        text = text.replace(f" ({change.amount})", "") if change.amount else text
         _, by, *ends = numbers_in(text.replace("one standard deviation", "1"))
         if ends and not ends[0] <= by <= ends[1] or not is_about_even(change.by):
             yield f"interval of {text}"

@@ -51,11 +51,11 @@ def _denied_limit(event, x, hits):
     if event.limit is None or event.limit.why:
         return
     share, side, at, *band = re.fullmatch(
-        r"(?:Fewer|More) than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
+        r"Surely (?:fewer|more) than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
         r"(?: \(the limit lies between ([\d.e-]+) and ([\d.e-]+)\D*\))?\.",
         event.limited,
     ).groups()
-    is_wanted = event.limited.startswith("More")
+    is_wanted = event.limited.startswith("Surely more")
     unwanted = 1 - hits if is_wanted else hits
     at, sign = float(at), 1 if side == "least" else -1
     known = np.isfinite(hits)

@@ -39,9 +39,9 @@ def denied_mixing(ds, found):
     table = uq.regimes(ds)
     names = ("uncertainty_exponent", "uncertainty_exponent_low", "uncertainty_exponent_high")
     exponents = [float(table[name]) for name in names]
-    fewer = [100 * (1 - 2 ** -min(max(one, 0.0), 1.0)) for one in exponents]
+    value, high, low = (100 * 2 ** -min(max(one, 0.0), 1.0) for one in exponents)
     if exponents[2] >= 1 or not np.allclose(
-        numbers_in(said), [*fewer, 50, exponents[0]], atol=0.06, rtol=0.01
+        numbers_in(said), [value, low, high, 50, exponents[0]], atol=0.06, rtol=0.01
     ):
         yield said
 

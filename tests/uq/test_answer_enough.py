@@ -48,7 +48,7 @@ def test_rows_are_advised_for_what_the_study_is_about_alone():
     assert "rows" not in rules(found) and found.enough.sentence.startswith("The rows are enough: ")
     (said,) = found.enough.others
     assert said.startswith("The order of x") and "(meaning of even)" in said
-    assert "What else is not settled</summary><ul><li>The order of x" in fragment(found)
+    assert "What is not settled besides</summary><ul><li>The order of x" in fragment(found)
     first, second = verdict(Findings(asked))
     assert first == "Enough rows for what the study is about."
     assert second.startswith("Not enough rows: the order of x")

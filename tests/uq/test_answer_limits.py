@@ -27,7 +27,7 @@ def falling(x):
 def test_the_limit_of_a_known_curve_lies_where_it_says():
     found = limit(falling)
     at, low, high = numbers(
-        r"Fewer than 5 % fail where power is at least # "
+        r"Surely fewer than 5 % fail where power is at least # "
         r"\(the limit lies between # and #\)\.",
         found.sentence,
     )
@@ -76,7 +76,7 @@ def test_how_weak_the_motors_may_be():
     found = answer(ds)
     event = found.lead.events[0]
     at, low, high = numbers(
-        r"More than 95 % succeed within 20 s where x4 is at least # "
+        r"Surely more than 95 % succeed within 20 s where x4 is at least # "
         r"\(the limit lies between # and #\)\.",
         event.limited,
     )
@@ -96,7 +96,7 @@ def test_no_side_is_unwanted_where_the_study_states_none():
     for side in ("below", "above"):
         (event,) = answer(asking(ds, **asked, wanted={"level": side})).lead.events
         at[side] = event.limit.at
-        assert event.limited.startswith("More than 95 % exceed") == (side == "above")
+        assert event.limited.startswith("Surely more than 95 % exceed") == (side == "above")
     assert at["below"] < 0.7 < at["above"]
 
 
@@ -112,7 +112,7 @@ def test_a_value_is_a_limit_where_the_event_is_rare_at_it():
     for worst, said in ((3.0, "at most 2.5"), (2.0, "at most 1.5")):
         hits = (grade >= worst).astype(float)
         found = limit_of(event_curve(hits, grade), "grade", Unit(), "fail", True)
-        assert found.sentence == f"Fewer than 5 % fail where grade is {said}."
+        assert found.sentence == f"Surely fewer than 5 % fail where grade is {said}."
 
 
 def test_without_intervals_no_limit_is_denied():

@@ -147,7 +147,7 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
     promise, said = answer(ds).lead.promise, summarised(ds)["outputs"]["life"]
     assert said["tolerance"]["lower"] > said["quantiles"]["0.05"]["value"]
     (days,) = numbers(
-        "No tolerance bound: that of the rows, # days, lies beyond the quantile that it bounds."
+        "No tolerance bound: counted from the rows, # days, it lies beyond the quantile itself."
         " Instead, conservatively: the end of the 95 % interval.",
         promise.basis,
     )

@@ -13,8 +13,9 @@ from uq.estimate import Estimate
 
 def test_intermingled_regimes_say_how_little_better_known_inputs_tell():
     assert Intermingled(Estimate(0.5, 0.4, 0.6)).sentence == (
-        "The regimes are intermingled: were all inputs known twice as well, only 29.3 % (24.2 to"
-        " 34.0 %) fewer outcomes would be uncertain, instead of 50 % (uncertainty exponent 0.5)."
+        "The regimes are intermingled: with all inputs known twice as well, 70.7 % (66.0 to 75.8 %)"
+        " of the uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
+        " (uncertainty exponent 0.5)."
     )
 
 

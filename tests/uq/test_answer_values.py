@@ -46,7 +46,7 @@ def test_the_probability_of_an_event_is_that_at_each_value(found):
     assert event.decided_by == (
         "Decided most by x2: from 0 % where it is below 0.25 to 100 % where it is above 0.25."
     )
-    assert event.limited == "Fewer than 5 % exceed 3 m where x2 is at most 0.25."
+    assert event.limited == "Surely fewer than 5 % exceed 3 m where x2 is at most 0.25."
 
 
 def valued(values, kind="value", samples=400, **asked):
@@ -98,7 +98,8 @@ def test_no_less_is_promised_than_now():
     before = Estimate(19.0, 14.0, 21.0)
     assert promise.would_be(Estimate(20.0, 13.95, 22.0), before) == ""
     assert promise.would_be(Estimate(20.0, 14.2, 22.0), before).endswith(
-        "would then last longer than 14.2 h; as studied, by the same estimate, 14 h."
+        "would then last longer than 14.2 h; as studied, by the same estimate"
+        " (the interval of the quantile), 14 h."
     )
 
 

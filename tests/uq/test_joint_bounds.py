@@ -180,7 +180,7 @@ def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
     ds = kinds(samples=80, analysis={"joint_bounds": {"work": "upper"}})
     one = next(one for one in quantities(Findings(ds)) if one.output == "work").promise
     assert np.isnan(one.upper) and "With 95 % confidence" not in one.sentence
-    assert one.why.startswith("No joint bound: it needs 93 rows.")
+    assert one.basis.startswith("No joint tolerance bound: it needs 93 rows.")
 
 
 def test_both_joint_bounds_of_one_output_are_one_sentence():

@@ -20,14 +20,16 @@ def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error(
     assert np.isclose(above.own_error.worse[0], above.promise.lower - 0.2, rtol=1e-12)
     assert np.isnan(above.own_error.worse[1])
     assert above.own_error.sentence.startswith(
-        "The bound leaves out the rows' own numerical error: were every value too large by its"
-        f" error, it would be {above.promise.unit.text(above.own_error.worse[0], -np.inf)}."
+        "The bound does not allow for the rows' own numerical error: if every value were"
+        f" overestimated by as much, it would be {above.promise.unit.text(above.own_error.worse[0], -np.inf)}."
     )
     below = answer(values_that_err(-0.2, wanted={"y": "below"})).lead
     assert np.isclose(below.own_error.worse[1], below.promise.upper + 0.2, rtol=1e-12)
-    assert "too small" in below.own_error.sentence
+    assert "underestimated" in below.own_error.sentence
     both = answer(values_that_err(0.2)).lead.own_error.sentence
-    assert both.startswith("The bounds leave out") and "too large or too small" in both
+    assert (
+        both.startswith("The bounds do not allow for") and "overestimated or underestimated" in both
+    )
 
 
 def test_the_error_is_held_against_the_scatter():
@@ -63,7 +65,7 @@ def test_rows_that_are_not_independent_move_their_quantile():
     ds = values_that_err(0.2, "saltelli", 64, 8, wanted={"y": "above"})
     lead = answer(ds).lead
     assert np.isclose(lead.own_error.worse[0], lead.promise.quantiles[0].value - 0.2, rtol=1e-9)
-    assert lead.own_error.sentence.startswith("The quantile leaves out")
+    assert lead.own_error.sentence.startswith("The quantile does not allow for")
 
 
 def a_life_that_errs(relative):
@@ -78,7 +80,7 @@ def test_errors_of_lives_are_relative_and_a_missed_accuracy_is_said():
     found = answer(ds).lead
     assert np.isclose(found.own_error.worse[0], 0.9 * found.promise.lower)
     assert np.isclose(found.own_error.share, 0.01 / np.var(np.log(ds["life"].values)))
-    assert "were every life too long by its error" in found.own_error.sentence
+    assert "if every life were overestimated by as much" in found.own_error.sentence
     assert found.own_error.sentence.endswith("100 % of the rows miss the accuracy asked for, 5 %.")
     assert "miss" not in answer(a_life_that_errs(0.04)).lead.own_error.sentence
 

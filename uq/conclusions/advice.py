@@ -47,7 +47,7 @@ def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
         *_unknown(found),
         *_leave_to_chance(found.levels),
         *_measure(findings, found),
-        *([] if found.regimes_first else [*_tighten(findings, found)] or _keep(found)),
+        *([] if found.regimes_first else [*_tighten(findings, found)] or _keep(findings.ds, found)),
         *(_add_rows(findings.ds, enough) if found.quantities else ()),
     ]
     answered = found.quantities
@@ -55,7 +55,8 @@ def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
         known = any(one.rule == "known" for one in told)
         told = [one for one in told if one.rule != "known"]  # it says so, too
         nothing = "Nothing else" if told else "Nothing"
-        settled = f"what the study {'is about' if enough.besides else 'asks'} is settled"
+        noisy = any(one.own_error is not None and one.own_error.share >= 1 for one in answered)
+        settled = f"what the study {'is about' if enough.besides or noisy else 'asks'} is settled"
         settled += ", and no law that matters is an assumption" * known
         told.append(Advice("nothing", f"{nothing}: {settled}."))
     yield from told
@@ -109,8 +110,9 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, event = _leading(found)
     if leader is None:
         return
-    marks = {name: mark_of(findings.ds, name) for name in leader.inputs}
+    marks = {name: mark_of(findings.ds, name) for name in leader.sure}
     levels = levels_of(findings.ds)
+    to_what = f" to how many {event.clause}" if event else ""
     starts = {name for name in marks if "initial" in findings.ds[name].attrs}
     lasting = [
         name
@@ -124,7 +126,8 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
         yield Advice(
             "source",
             f"State how well {called_together(unstated)} {'is' if one else 'are'} known:"
-            f" {'it matters' if one else 'they matter'} most, and no source says it.",
+            f" {'it matters' if one else 'they matter'} most{to_what}, and no source says it"
+            " (given, inferred, fitted, assumed or chosen).",
             unstated,
         )
     elif not assumed and lasting:
@@ -132,7 +135,7 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
         yield Advice(
             "known",
             f"Nothing needs to be measured first: {'the law' if one else 'the laws'} of"
-            f" {called_together(lasting)}, which {'matters' if one else 'matter'} most,"
+            f" {called_together(lasting)}, which {'matters' if one else 'matter'} most{to_what},"
             f" {'is' if one else 'are'} not assumed.",
             tuple(lasting),
         )
@@ -140,12 +143,14 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
         return
     one = len(assumed) == 1
     words = called_together(assumed)
+    matters = "it matters" if one else "they matter"
+    if leader.doubtful:
+        matters = f"{'it' if one else 'they'} may matter"
     single = event is not None and event.is_of_single
     measure = "Of single inputs, measure" if single else "Measure"
-    to_what = f" to how many {event.clause}" if event else ""
     yield Advice(
         "measure",
-        f"{measure} {words} first: {'it matters' if one else 'they matter'} most{to_what}, and"
+        f"{measure} {words} first: {matters} most{to_what}, and"
         f" {'its law is' if one else 'their laws are'} assumed.",
         assumed,
     )
@@ -157,7 +162,7 @@ def _tighten(findings: Findings, found: Answer) -> Iterator[Advice]:
         yield from tighten(findings.ds, found.quantities[0], leader)
 
 
-def _keep(found: Answer) -> Iterator[Advice]:
+def _keep(ds: xr.Dataset, found: Answer) -> Iterator[Advice]:
     """Yield where to keep the input that decides an event, where the event is settled to differ."""
     _, event = _leading(found)
     lead = found.lead
@@ -165,14 +170,18 @@ def _keep(found: Answer) -> Iterator[Advice]:
         return
     place = event.curve.most if more else event.curve.least
     there, overall = event.curve.shares[place], event.share
+    if mark_of(ds, event.over) == ASSUMED:  # it is what it is
+        return
     if there.low > overall.high if more else there.high < overall.low:
-        path = ("quantities", lead.name, "events", event.name, "decided_by")
+        where, what = f"{event.part(place)}: {share_text(there)} do there", "decided_by"
+        if event.limit is not None and not event.limit.why:
+            where, what = f"{event.limit.place}: surely {event.limit.few} there", "limit"
         yield Advice(
             "keep",
             f"So that {'more' if more else 'fewer'} {event.said}, keep {called(event.over)}"
-            f" {event.part(place)}: {share_text(there)} do there.",
+            f" {where}.",
             (event.over,),
-            key=key_of(*path, verb="answer"),
+            key=key_of("quantities", lead.name, "events", event.name, what, verb="answer"),
         )
 
 

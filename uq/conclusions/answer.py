@@ -9,6 +9,7 @@ import xarray as xr
 from uq.analysis.findings import Findings
 from uq.analysis.summary import REGIME
 from uq.conclusions.advice import advise
+from uq.conclusions.assumptions import assumptions
 from uq.conclusions.deciding import Levels, levels_of, starts_alike
 from uq.conclusions.enough import enough_of
 from uq.conclusions.intermingled import intermingled
@@ -70,6 +71,7 @@ def without_advice(findings: Findings) -> Answer:
         tuple(findings.summary.notes),
         regimes_first=bool(regimes) and analysis_of(ds).outputs[:1] == (REGIME,),
         starts_alike=starts_alike(ds) if regimes else "",
+        assumptions=assumptions(ds),
     )
     known = beside_levels(plain, _levels(findings, plain))
     known = replace(known, ties=ties_of(ds, known))

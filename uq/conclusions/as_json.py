@@ -29,11 +29,11 @@ def answer_json(found: Answer) -> dict[str, Any]:
         ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
         ``range``, ``own_error`` (the promise if every value were wrong by the error that it
         states), ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
-        ``ranking``; ``regimes``: label -> event; ``enough``, whether the rows are: what is not
-        settled besides (``others``), what another seed would find of a share (``expected``), and
-        the errors of what the study is about where that of the rows is the larger;
+        ``ranking``; ``regimes``: label -> event; ``assumptions``, in sentences; ``enough``, whether
+        the rows are: what is not settled besides (``others``), what another seed would find of a
+        share (``expected``), and the errors of what the study is about where that of the rows is the larger;
         ``intermingled``, where the regimes are: the ``uncertainty_exponent`` of their boundary, and
-        how many ``fewer`` outcomes are uncertain with inputs known twice as well; ``levels``: the
+        how many uncertain outcomes are ``left`` with inputs known twice as well; ``levels``: the
         ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
         ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were compared: what half the
         scatter of their ``inputs`` would make ``after`` of the number ``what``. The numbers
@@ -50,6 +50,7 @@ def answer_json(found: Answer) -> dict[str, Any]:
         "failed": found.failed,
         "quantities": {one.name: _quantity(one) for one in found.quantities},
         "regimes": {one.said: _event(one) for one in found.regimes},
+        "assumptions": list(found.assumptions),
         "enough": _enough(found.enough),
         **_mixing(found.mixing),
         "levels": None if found.levels is None else _levels(found.levels),
@@ -71,7 +72,7 @@ def _mixing(one: Intermingled) -> dict[str, Any]:
         return {}
     numbers = {
         f"{name}{end}": value
-        for name, known in (("uncertainty_exponent", one.exponent), ("fewer", one.fewer))
+        for name, known in (("uncertainty_exponent", one.exponent), ("left", one.left))
         for end, value in zip(("", "_low", "_high"), known.numbers, strict=True)
     }
     return {"intermingled": {"sentence": one.sentence} | numbers}

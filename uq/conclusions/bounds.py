@@ -1,5 +1,6 @@
 """Which bounds of an output are promised: joint ones where a study asks for them, else its own."""
 
+from collections.abc import Iterator
 from math import inf, isfinite, isnan, nan
 
 import numpy as np
@@ -8,7 +9,7 @@ import xarray as xr
 from uq.analysis.joint_bounds import SIDES
 from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Described
-from uq.conclusions.promises import Known, Promise
+from uq.conclusions.promises import Known, Pile, Promise
 from uq.conclusions.words import Unit
 from uq.estimate import NOTHING, Estimate
 from uq.rows.elements import Element
@@ -61,6 +62,10 @@ def promise_of(
         one.estimate.value if matters and one else nan
         for one, matters in zip(both, sides, strict=True)
     ]
+    piled = () if joint else tuple(_piled(element, sides, coverage))
+    upper_piled = {one.upper for one in piled}
+    sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
+    bounds = [one if matters else nan for one, matters in zip(bounds, sides, strict=True)]
     # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
     signed = bool(joint) and element.is_angle
     found = [
@@ -70,10 +75,10 @@ def promise_of(
     ends = [one.best.estimate if one else NOTHING for one in found]
     with_failed = [one.best.failed if one else None for one in found]
     reason = ""
-    if not any(map(isfinite, bounds)):
+    if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(ds, element, both, bounds)
     elif isfinite(wrong := _contradicted(bounds, ends)):
-        reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
+        reason = f"counted from the rows, {unit.text(wrong)}, it lies beyond the quantile itself"
         bounds = [nan, nan]
     return Promise(
         coverage,
@@ -90,7 +95,29 @@ def promise_of(
         tuple(analysis.joint_bounds) if joint else (),
         known_of(element),
         _recurs(element),
+        (0, 0) if joint else _ranks(element, bounds),
+        int((element.present | element.failed).sum()),
+        piled,
     )
+
+
+def _ranks(element: Element, bounds: list[float]) -> tuple[int, int]:
+    """Return the places of bounds among the rows, failed ones beyond them; 0 without a bound."""
+    values, lower, upper = element.for_thresholds[element.present], *bounds
+    first = int(element.failed.sum() + (values < lower).sum()) + 1 if isfinite(lower) else 0
+    return first, int((values <= upper).sum()) if isfinite(upper) else 0
+
+
+def _piled(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[Pile]:
+    """Yield the sides on which more rows have the last value than a bound would leave out."""
+    values = element.for_thresholds[element.present]
+    if element.is_lifetime or not len(values) or values.min() == values.max():
+        return
+    for upper, matters in enumerate(sides):
+        last = values.max() if upper else values.min()
+        share = float((values == last).mean())
+        if matters and share >= 1 - coverage:
+            yield Pile(bool(upper), float(last), share)
 
 
 def known_of(element: Element) -> Known:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from uq.conclusions.words import Unit, called_together, sentence
+from uq.conclusions.words import Unit, called, called_together, joined, sentence
 from uq.estimate import NOTHING, Estimate
 from uq.wording import capitalized
 
@@ -20,6 +20,8 @@ class Change:
         1 if it rises with the input, -1 if it falls, 0 where that is not clear.
     step : str
         The change of the input: ``10 %``; "" where only the direction is known.
+    amount : str
+        How much that is in the unit of the input, where the step does not say it.
     by : Estimate
         The change of the target.
     unit : Unit
@@ -33,6 +35,7 @@ class Change:
     by: Estimate = NOTHING
     unit: Unit = field(default_factory=Unit)
     verbs: tuple[str, str] = ("lowers it", "raises it")
+    amount: str = ""
 
     def sentence(self, name: str = "") -> str:
         """Return direction and size in words, of an input with this name."""
@@ -42,7 +45,8 @@ class Change:
         if not self.step or not self.by.has_interval:
             return f"more{of} {verb}"
         low, high = sorted(map(abs, (self.by.low, self.by.high)))
-        text = f"{self.step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
+        step = f"{self.step} ({self.amount})" if self.amount else self.step
+        text = f"{step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
         if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
             return text
         return f"{text} ({self.unit.bare_between(low, high)})"
@@ -64,6 +68,8 @@ class Contribution:
         Of each; empty where they are not known.
     unit : Unit
         Of an index in the unit of the output.
+    doubtful : tuple of str
+        Those of the inputs that may as well have no effect.
     """
 
     inputs: tuple[str, ...]
@@ -71,11 +77,19 @@ class Contribution:
     share_of_variance: bool
     changes: tuple[Change, ...] = ()
     unit: Unit = field(default_factory=Unit)
+    doubtful: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
         """The inputs by their names."""
-        return called_together(self.inputs)
+        if not self.doubtful:
+            return called_together(self.inputs)
+        return joined([called_together(self.sure), *map(called, self.doubtful)], "or")
+
+    @property
+    def sure(self) -> tuple[str, ...]:
+        """The inputs that have more effect than one without."""
+        return tuple(one for one in self.inputs if one not in self.doubtful)
 
     @property
     def value(self) -> float:
@@ -174,6 +188,8 @@ class Ranking:
         if not self.leads:
             return f"No single input explains much: {leader.words} {leader.size}{self._of}."
         verb = "contribute" if len(leader.inputs) > 1 else "contributes"
+        if leader.doubtful:
+            verb = "may contribute"
         return f"{capitalized(leader.words)} {verb} most: {leader.size}{self._of}."
 
     @property

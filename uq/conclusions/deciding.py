@@ -28,7 +28,9 @@ class Level:
     words : str
         ``the start``, ``the machine``.
     inputs : tuple of str
-        On this level.
+        On this level, those that contribute most first.
+    ranked : int
+        How many of them contribute.
     share : Estimate
     """
 
@@ -36,11 +38,14 @@ class Level:
     words: str
     inputs: tuple[str, ...]
     share: Estimate
+    ranked: int = 0
 
     @property
     def inputs_named(self) -> str:
-        """Its inputs by their names."""
-        named = [called(name) for name in self.inputs[:_MOST_NAMED]]
+        """Its inputs by their names: those that contribute, or the first ones."""
+        named = [
+            called(name) for name in self.inputs[: min(self.ranked or _MOST_NAMED, _MOST_NAMED)]
+        ]
         more = len(self.inputs) - len(named)
         return joined([*named, f"{more} more"] if more else named)
 
@@ -119,14 +124,14 @@ def levels_of(
         return None
     words = _words(findings, known.inputs, known.units)
     shares = known.outputs[name].shares
-    ranked = () if ranking is None else [n for one in ranking.contributions for n in one.inputs]
+    ranked = () if ranking is None else [n for one in ranking.contributions for n in one.sure]
     place = {name: i for i, name in enumerate(ranked)}
 
     def on(level: str) -> tuple[str, ...]:
         return tuple(sorted(known.inputs_on(level), key=lambda name: place.get(name, len(place))))
 
     found = [
-        Level(level, words[level], on(level), shares[level])
+        Level(level, words[level], on(level), shares[level], len(place.keys() & set(on(level))))
         for level in LEVELS
         if known.inputs_on(level) or shares[level].value > 0
     ]

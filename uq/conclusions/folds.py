@@ -27,7 +27,7 @@ def items(lines: Iterable[str]) -> Markup:
 
 def unsettled(answer: Answer) -> Markup:
     """Return what is not settled besides what is advised; "" where there is nothing."""
-    return folded("What else is not settled", items(answer.enough.others))
+    return folded("What is not settled besides", items(answer.enough.others))
 
 
 def below(one: Advice) -> Markup:

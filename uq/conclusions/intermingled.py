@@ -22,9 +22,9 @@ class Intermingled:
     exponent: Estimate = field(default=NOTHING)
 
     @property
-    def fewer(self) -> Estimate:
-        """Share of uncertain outcomes that are saved if all inputs are known twice as well."""
-        value, low, high = (1 - 2.0 ** -np.clip(self.exponent.numbers, 0.0, 1.0)).tolist()
+    def left(self) -> Estimate:
+        """Share of uncertain outcomes that stay so if all inputs are known twice as well."""
+        value, high, low = (2.0 ** -np.clip(self.exponent.numbers, 0.0, 1.0)).tolist()
         return Estimate(value, low, high)
 
     @property
@@ -32,9 +32,10 @@ class Intermingled:
         """That they are; "" where they may have a smooth boundary."""
         if not (self.exponent.has_interval and self.exponent.high < 1):
             return ""
+        left = share_text(self.left)
         return (
-            "The regimes are intermingled: were all inputs known twice as well, only"
-            f" {share_text(self.fewer)} fewer outcomes would be uncertain, instead of 50 %"
+            f"The regimes are intermingled: with all inputs known twice as well, {left} of the"
+            " uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
             f" (uncertainty exponent {rounded(self.exponent.value)})."
         )
 

@@ -69,7 +69,7 @@ def _again(text: str, known: Repeated, key: str) -> Markup:
 
 def mixing(one: Answer) -> Markup:
     """Return that the regimes are intermingled, where they are."""
-    return keyed(one.mixing.sentence, _answer("intermingled", "fewer"))
+    return keyed(one.mixing.sentence, _answer("intermingled", "left"))
 
 
 def levels(one: Answer) -> Markup:

@@ -52,15 +52,19 @@ class Limit:
         """The limit and what is known of its place, or why there is none."""
         if self.why:
             return sentence(self.why)
-        side, outwards = ("least", inf) if self.is_lower else ("most", -inf)
-        at = self.unit.text(self.at, outwards)
-        where = f"where {called(self.over)} is at {side} {at}"
-        text = f"{self.few} {where}"
+        where = f"where {called(self.over)} is {self.place}"
+        text = f"surely {self.few} {where}"
         if self.until == self.until:
             low, high = sorted((self.at, self.until))
             ends = f"{self.unit.number(low, -inf)} and {self.unit.text(high, inf)}"
             text += f" (the limit lies between {ends})"
         return sentence(text)
+
+    @property
+    def place(self) -> str:
+        """Where it is rare: ``at least 2.16``."""
+        side, outwards = ("least", inf) if self.is_lower else ("most", -inf)
+        return f"at {side} {self.unit.text(self.at, outwards)}"
 
     @property
     def few(self) -> str:

@@ -67,19 +67,17 @@ class OwnError:
     @property
     def _moved(self) -> str:
         """Where the bounds would lie, of those that move by a digit that is shown."""
-        noun, ways = "value", ("too large", "too small")
-        if self.is_life:
-            noun, ways = "life", ("too long", "too short")
+        noun, ways = "life" if self.is_life else "value", ("overestimated", "underestimated")
         now, then = ([*self._texts(ends)] for ends in (self.bounds, self.worse))
         moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
         if not moved:
             return ""
         how = joined([ways[i] for i in moved], "or")
         what = "quantile" if self.are_quantiles else "bound"
-        leaves, it = (f"{what} leaves", "it") if len(moved) == 1 else (f"{what}s leave", "they")
+        does, it = (f"{what} does", "it") if len(moved) == 1 else (f"{what}s do", "they")
         return (
-            f"the {leaves} out the rows' own numerical error: were every {noun} {how} by its"
-            f" error, {it} would be {joined([then[i] for i in moved])}"
+            f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
+            f" by as much, {it} would be {joined([then[i] for i in moved])}"
         )
 
     def _texts(self, ends: Sides) -> Iterator[str]:

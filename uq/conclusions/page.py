@@ -120,6 +120,7 @@ def _verdict(answer: Answer) -> Markup:
         parts += [*_under(own), _line(shares) if shares else shares]
         decided = folds.items([*causes, answer.starts_alike])
         parts.append(folds.folded("What decides the regime", decided))
+    parts.append(folds.folded("What it assumes", folds.items(answer.assumptions)))
     if answer.failed or lead is None:
         parts.insert(0, _line(keyed.rows(answer)))
     return _block("verdict", parts)
@@ -181,7 +182,7 @@ def _levels(answer: Answer) -> Markup:
         size = Contribution(one.inputs, (one.share,), share_of_variance=True).size
         texts = capitalized(one.words), track, size, one.inputs_named
         found.append(_BAR.format(*map(_shown, texts)))
-    return Markup("").join(found)
+    return Markup("").join([*found, _small(f"Share of the variance of {answer.levels.of}.")])
 
 
 def _first(answer: Answer) -> Markup:

@@ -6,7 +6,7 @@ from math import inf, isfinite, nan
 from uq.conclusions.words import Unit, rounded, sentence, share_text
 from uq.estimate import NOTHING, Estimate
 from uq.intervals import CONFIDENCE
-from uq.wording import listed, percent
+from uq.wording import grouped, listed, percent
 
 _ONE_END = (1 + CONFIDENCE) / 2
 """Confidence in one end of an interval."""
@@ -32,6 +32,28 @@ class Known:
         if self.undefined > 0:
             return f"of the defined {noun}"
         return f"of the computed {noun}" if self.rows_failed else ""
+
+
+@dataclass(frozen=True)
+class Pile:
+    """Rows that share the smallest or the largest value of all, so that no bound leaves them out.
+
+    Attributes
+    ----------
+    upper : bool
+        Whether it is the largest.
+    value, share : float
+        The value, and how many rows have it.
+    """
+
+    upper: bool
+    value: float
+    share: float
+
+    def sentence(self, unit: Unit) -> str:
+        """Return how many they are, in words."""
+        which = "largest" if self.upper else "smallest"
+        return f"{percent(self.share)} of the rows have the {which} value, {unit.text(self.value)}"
 
 
 @dataclass(frozen=True)
@@ -62,6 +84,12 @@ class Promise:
         Which values it is about.
     recurs : bool
         Whether rows have equal values, so that many may have that of a bound.
+    ranks : tuple of int
+        Places of the bounds among all rows, the smallest first; 0 without one.
+    rows : int
+        How many rows these are.
+    piled : tuple of Pile
+        Instead of bounds: sides on which too many rows have the last value for one.
     """
 
     coverage: float
@@ -78,10 +106,18 @@ class Promise:
     joint: tuple[str, ...] = ()
     known: Known = field(default_factory=Known)
     recurs: bool = False
+    ranks: tuple[int, int] = (0, 0)
+    rows: int = 0
+    piled: tuple[Pile, ...] = ()
 
     @property
     def sentence(self) -> str:
-        """What can be promised; "" where nothing can."""
+        """What can be promised, and where rows pile up; "" where nothing can be said."""
+        piles = (f"{one.sentence(self.unit)}." for one in self.piled)
+        return " ".join(filter(None, (self._promised, *piles)))
+
+    @property
+    def _promised(self) -> str:
         share = f"{100 * self.coverage:g} %"
         covered = " ".join(filter(None, (share, self._of_bounded)))
         bounds = [
@@ -131,7 +167,8 @@ class Promise:
         if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
         then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
-        return f"{self.opening('would then')} {then}; as studied, by the same estimate, {studied}."
+        same = "as studied, by the same estimate (the interval of the quantile),"
+        return f"{self.opening('would then')} {then}; {same} {studied}."
 
     def opening(self, then: str = "") -> str:
         """Return what a single bound promises, up to the bound; `then` says when."""
@@ -146,10 +183,15 @@ class Promise:
     @property
     def basis(self) -> str:
         """What kind of bound it is, or why there is none."""
+        if not (isfinite(self.lower) or isfinite(self.upper) or self.reason):
+            return ""
         if not self.reason:
             several = isfinite(self.lower) and isfinite(self.upper)
             bound = f"{'joint ' * bool(self.joint)}tolerance bound{'s' * several}"
-            return f"{bound.capitalize()} from order statistics, valid for any distribution."
+            known = [grouped(rank) for rank in self.ranks if rank]
+            places = f"{'s' * several} {' and '.join(known)} of {grouped(self.rows)} in order"
+            which = f": value{places}" if known else ""
+            return f"{bound.capitalize()} from order statistics{which}, valid for any distribution."
         end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
         bound = f"{'joint ' * bool(self.joint)}tolerance bound"
         return f"No {bound}: {self.reason}.{end}"
@@ -230,5 +272,6 @@ class Range:
         """How many never end; "" where that is not known, or it is no life."""
         if self.never.value == 0 and self.never.has_interval:
             most = rounded(100 * self.never.high, inf)
-            return f"at most {most} % never {self.ends} (no row does)"
+            verb = self.ends + "s"
+            return f"every row {verb} (at most {most} % never {self.ends})"
         return f"{share_text(self.never)} never {self.ends}" if self.never.value > 0 else ""

@@ -11,7 +11,7 @@ from uq.analysis.findings import Findings
 from uq.conclusions.contributions import SMALL, Change, Contribution, Ranking
 from uq.conclusions.measured import Measured, measured_inputs
 from uq.conclusions.repeated import AGAIN
-from uq.conclusions.words import Unit, called, twin_of
+from uq.conclusions.words import Unit, called, twin_of, unit_of_input
 from uq.errors import choices
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
@@ -95,7 +95,8 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     least = LEAST * _scale(measured[0], kind)
     listed = [group for group in groups if group[0].index.value >= least]
     moved = _effects(findings, method, name, [one.name for group in listed for one in group])
-    contributions = tuple(_contribution(group, kind, name, moved, verbs) for group in listed)
+    units = {one: unit_of_input(findings.ds, one) for one in moved}
+    contributions = tuple(_contribution(group, kind, name, moved, verbs, units) for group in listed)
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
     of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
     rivals = _rivals(measured)
@@ -190,27 +191,32 @@ def _contribution(
     target: str,
     moved: Mapping[str, Effect],
     verbs: tuple[str, str],
+    units: Mapping[str, Unit],
 ) -> Contribution:
     names = tuple(one.name for one in group)
     form = split_name(target)[0]
-    changes = tuple(_change(moved[name], form, verbs) for name in names if name in moved)
+    changes = tuple(
+        _change(moved[name], form, verbs, units[name]) for name in names if name in moved
+    )
     return Contribution(
         names,
         tuple(one.index for one in group),
         kind.unit == "variance",
         changes if len(changes) == len(names) else (),
+        doubtful=tuple(one.name for one in group if not one.counts),
     )
 
 
-def _change(effect: Effect, form: str, verbs: tuple[str, str]) -> Change:
+def _change(effect: Effect, form: str, verbs: tuple[str, str], of_input: Unit) -> Change:
     """Return the change of a target with a usual step of an input."""
     if effect.direction == 0 or effect.of_values or form == "rank":
         return Change(effect.direction, verbs=verbs)
+    amount = ""
     if effect.logarithmic:
         size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])
         step, by = f"{100 * size:g} %", log1p(size)
     else:
-        step, by = "one standard deviation", effect.sd
+        step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)
     value, low, high = (by * one for one in effect.slope.numbers)
     unit = Unit()
     if form == "log":
@@ -219,4 +225,4 @@ def _change(effect: Effect, form: str, verbs: tuple[str, str]) -> Change:
     elif form == "P":
         value, low, high = 100 * value, 100 * low, 100 * high
         unit = Unit("percentage points")
-    return Change(effect.direction, step, Estimate(value, low, high), unit, verbs)
+    return Change(effect.direction, step, Estimate(value, low, high), unit, verbs, amount)

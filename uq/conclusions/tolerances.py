@@ -57,7 +57,7 @@ def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterato
 
 def twins(leader: Contribution) -> tuple[str, ...]:
     """Return the first of the inputs that lead, and its twins among them."""
-    return tuple(one for one in leader.inputs if twin_of(one) == twin_of(leader.inputs[0]))
+    return tuple(one for one in leader.sure if twin_of(one) == twin_of(leader.inputs[0]))
 
 
 def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> list[Contribution]:
@@ -76,7 +76,7 @@ def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> lis
 def _shown(ds: xr.Dataset, quantity: Quantity, of: Contribution) -> Sequence[Tightened]:
     """Return what half the scatter of inputs would change, of as many as the rows can show."""
     found: list[Tightened] = []
-    for inputs in dict.fromkeys((of.inputs, twins(of), of.inputs[:1])):
+    for inputs in dict.fromkeys((of.sure, twins(of), of.inputs[:1])):
         found = list(tightened(ds, quantity, inputs))
         if any(not one.reason for one in found):
             break

@@ -37,6 +37,8 @@ class Answer:
         That the start is the same in all rows, where it might decide the regime, or "".
     enough : Enough
         Whether the rows are.
+    assumptions : tuple of str
+        Which laws and fixed values are assumed.
     ties : str
         Which inputs have the value of one that contributes most to what the study is about, or "".
     mixing : Intermingled
@@ -54,6 +56,7 @@ class Answer:
     levels: Levels | None = None
     starts_alike: str = ""
     enough: Enough = field(default_factory=Enough)
+    assumptions: tuple[str, ...] = ()
     ties: str = ""
     mixing: Intermingled = field(default_factory=Intermingled)
 

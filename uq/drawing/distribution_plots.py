@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.life_quantiles import B_LIVES, life_quantiles
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
 from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Described, Summary, summarise
@@ -26,14 +26,12 @@ from uq.drawing.panel import arrows, column, figure_of, finish, is_wide, logarit
 from uq.drawing.style import INK, MARK, ROWS, WIDTH, styled, thinned
 from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
-from uq.intervals import Replicates
 from uq.printed import minus
 from uq.rows.elements import (
     Element,
     analysis_of,
     independent_rows,
     named_elements,
-    replicates_of,
 )
 from uq.units import Unit
 from uq.wording import brief
@@ -204,7 +202,7 @@ def lifetime(
     marked: set[str] = set()
     for i, element in enumerate(chosen):
         colour, _ = curve_style(i, element, chosen)
-        marked |= _mark(panel, element, replicates_of(rows), unit, colour)
+        marked |= _mark(panel, known.get(element.name), unit, colour)
     if marked:
         bands[f"marks: {', '.join(name for name in B_LIVES if name in marked)}"] = True
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
@@ -230,10 +228,13 @@ def _mark_bounds(
     return bool(drawn)
 
 
-def _mark(axes: Axes, element: Element, replicate: Replicates, unit: Unit, colour: str) -> set[str]:
+def _mark(axes: Axes, described: Described | None, unit: Unit, colour: str) -> set[str]:
     """Mark the B-lives of an element with their intervals, and return the names of those known."""
-    quantiles = life_quantiles(element, B_LIVES, replicate)
-    found = {name: one for name, one in quantiles.items() if np.isfinite(one.value)}
+    if described is None:
+        return set()
+    asked = {name: described.find("b_lives", name) for name in B_LIVES}
+    lives = {name: one.best.estimate for name, one in asked.items() if one is not None}
+    found = {name: one for name, one in lives.items() if np.isfinite(one.value)}
     if not found:
         return set()
     shares = np.array([B_LIVES[name] for name in found])

@@ -128,7 +128,10 @@ def bins(values: Floats) -> tuple[Floats, bool]:
     if high - low <= _MOST_BINS and not wide and (scaled == np.round(scaled)).all():
         return np.arange(low - 0.5, high + 1.0), False  # counts: a bin for each
     edges = np.histogram_bin_edges(scaled, _bin_count(scaled))
-    return (10**edges if wide else edges), wide
+    if wide:
+        edges = 10**edges
+        edges[0], edges[-1] = values.min(), values.max()  # not rounded: many rows may lie there
+    return edges, wide
 
 
 def shares_in_bins(
