@@ -206,7 +206,10 @@ OUTPUTS: Mapping[str, Output] = {
         scales=_LIFE_SCALES,
     ),
     "lifetime_ratio": Output(
-        "1", "linear over incremental time to depth", dims=("depth",), may_be_undefined=True
+        "1",
+        "time to depth at the initial wear rate, over that with wear followed as the gaps grow",
+        dims=("depth",),
+        may_be_undefined=True,
     ),
     "gap_ratio": Output(
         "1",

@@ -2,10 +2,12 @@
 
 import re
 
+import numpy as np
 import pytest
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 
 from uq.conclusions.answer import answer
+from uq.conclusions.contributions import Contribution, Ranking
 from uq.conclusions.intermingled import Intermingled
 from uq.conclusions.page import fragment
 from uq.estimate import Estimate
@@ -56,3 +58,45 @@ def test_screening_ranks_in_the_unit_of_the_output_and_says_what_it_cannot_promi
         "To know what can be promised: the rows of a 'morris' design do not follow the laws of the"
         " inputs; use 'monte-carlo'."
     )
+
+
+def piled(at):
+    """A depth that three in ten rows reach, as far as it is followed."""
+    ds = linear(samples=400)
+    depth = np.minimum(ds["x4"].values, at)
+    return asking(with_output(ds, "depth", depth), outputs=["depth"], wanted={"depth": "below"})
+
+
+def test_no_bound_is_promised_that_no_row_can_exceed():
+    found = answer(piled(0.7)).lead.promise
+    share = 100 * (linear(samples=400)["x4"].values >= 0.7).mean()
+    assert found.sentence == f"{share:.1f} % of the rows have the largest value, 0.7 m."
+    assert found.basis == ""
+    assert "do not exceed" not in repr(answer(piled(0.7)))
+    assert "at least 95 % stay below" in answer(piled(1.0)).lead.promise.sentence
+
+
+def test_inputs_that_may_have_no_effect_are_alternatives():
+    both = (Estimate(0.4), Estimate(0.3))
+    one = Contribution(("x_1", "x_2"), both, True, doubtful=("x_2",))
+    assert one.words == "x 1 or x 2" and one.sure == ("x_1",)
+    ranking = Ranking("y", "rbd-fast", contributions=(one,))
+    assert ranking.sentence == "x 1 or x 2 may contribute most: 40 % and 30 %."
+    assert Contribution(("x_1", "x_2"), both, True).words == "both xes"
+
+
+def test_assumed_laws_and_values_are_listed():
+    tables = {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 20, "seed": 1},
+        "uncertain": {
+            "rate": {"distribution": "lognormal", "median": 2e-10, "sigma": 0.5}
+            | {"source": "assumed: a guess"},
+            "depth": {"distribution": "lognormal", "median": 2.5e-4, "sigma": 0.1}
+            | {"source": "of a drawing"},
+        },
+    }
+    found = answer(computed(study_of(tables)))
+    assert found.assumptions[0] == "1 of 2 laws is assumed: rate."
+    assert found.assumptions[-1] == "No source says how well these laws are known: depth."
+    assert "What it assumes</summary><ul><li>1 of 2 laws" in fragment(found)

@@ -21,7 +21,8 @@ def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error(
     assert np.isnan(above.own_error.worse[1])
     assert above.own_error.sentence.startswith(
         "The bound does not allow for the rows' own numerical error: if every value were"
-        f" overestimated by as much, it would be {above.promise.unit.text(above.own_error.worse[0], -np.inf)}."
+        " overestimated by as much, it would be"
+        f" {above.promise.unit.text(above.own_error.worse[0], -np.inf)}."
     )
     below = answer(values_that_err(-0.2, wanted={"y": "below"})).lead
     assert np.isclose(below.own_error.worse[1], below.promise.upper + 0.2, rtol=1e-12)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from answered import lifetime
 from computed import asking, kinds, linear, summarised, with_output
 from drawn import words
 from matplotlib.figure import Figure
@@ -56,6 +57,32 @@ def test_histogram_shows_every_row_once():
     slow["slow"].attrs["units"] = "s"
     (axes,) = plots.histogram(slow, "slow").axes
     assert axes.get_xlabel() == "Meaning of slow [days]" and axes.get_xlim()[1] < 10
+
+
+def test_rows_at_the_ends_of_a_logarithmic_histogram_are_drawn():
+    """A third of them share a largest value whose logarithm is rounded down."""
+    values = np.where(np.arange(400) % 3, np.geomspace(1e-6, 5e-5, 400), 5e-4)
+    ds = asking(with_output(linear(samples=400), "depth", values), outputs=["depth"])
+    (axes,) = plots.histogram(ds, "depth").axes
+    assert axes.get_xscale() == "log"
+    assert np.isclose(sum(drawn_shares(axes)), 1.0)
+
+
+def drawn_shares(axes):
+    """Return the heights of the steps of a histogram."""
+    (steps,) = (one for one in axes.patches if hasattr(one, "get_data"))
+    return steps.get_data().values
+
+
+def test_marks_lie_on_the_curve_that_integrates_what_scales_a_life():
+    ds, _ = lifetime()
+    axes = plots.lifetime(ds, "life").axes[0]
+    curve = next(line for line in axes.lines if len(line.get_xdata()) > 100)
+    marks = next(line for line in axes.lines if line.get_marker() == "o")
+    known = summarised(ds)["outputs"]["life"]["b_lives"]
+    assert np.allclose(marks.get_xdata() * 86400, [known[n]["value"] for n in ("B1", "B10", "B50")])
+    on_it = np.interp(marks.get_xdata(), curve.get_xdata(), curve.get_ydata())
+    assert np.allclose(on_it, marks.get_ydata(), atol=0.006)
 
 
 def test_index_bars_show_values_intervals_and_full_names():

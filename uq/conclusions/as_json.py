@@ -31,9 +31,10 @@ def answer_json(found: Answer) -> dict[str, Any]:
         states), ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
         ``ranking``; ``regimes``: label -> event; ``assumptions``, in sentences; ``enough``, whether
         the rows are: what is not settled besides (``others``), what another seed would find of a
-        share (``expected``), and the errors of what the study is about where that of the rows is the larger;
-        ``intermingled``, where the regimes are: the ``uncertainty_exponent`` of their boundary, and
-        how many uncertain outcomes are ``left`` with inputs known twice as well; ``levels``: the
+        share (``expected``), and the errors of what the study is about where that of the rows is
+        the larger; ``intermingled``, where the regimes are: the ``uncertainty_exponent`` of their
+        boundary, and how many uncertain outcomes are ``left`` with inputs known twice as well;
+        ``levels``: the
         ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
         ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were compared: what half the
         scatter of their ``inputs`` would make ``after`` of the number ``what``. The numbers

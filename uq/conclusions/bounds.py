@@ -115,9 +115,9 @@ def _piled(element: Element, sides: tuple[bool, bool], coverage: float) -> Itera
         return
     for upper, matters in enumerate(sides):
         last = values.max() if upper else values.min()
-        share = float((values == last).mean())
-        if matters and share >= 1 - coverage:
-            yield Pile(bool(upper), float(last), share)
+        count = int((values == last).sum())
+        if matters and count > 1 and count >= (1 - coverage) * len(values):
+            yield Pile(bool(upper), float(last), count / len(values))
 
 
 def known_of(element: Element) -> Known:
