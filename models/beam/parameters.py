@@ -224,7 +224,9 @@ OUTPUTS: Mapping[str, Output] = {
         dims=("site", "instant"),
     ),
     "largest_worn_depth": Output(
-        "m", "larger worn depth of the two sites at the instant", dims=("instant",)
+        "m",
+        "larger worn depth of the two sites at the instant, at most the last of the depths",
+        dims=("instant",),
     ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
     "period": Output(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 
+import uq
 from uq.conclusions.answer import answer
 from uq.conclusions.contributions import Contribution, Ranking
 from uq.conclusions.intermingled import Intermingled
@@ -72,6 +73,9 @@ def test_no_bound_is_promised_that_no_row_can_exceed():
     share = 100 * (linear(samples=400)["x4"].values >= 0.7).mean()
     assert found.sentence == f"{share:.1f} % of the rows have the largest value, 0.7 m."
     assert found.basis == ""
+    traced = uq.trace(piled(0.7), "answer/quantities/depth/promise/share_at_largest")
+    assert traced["value"] == pytest.approx(share / 100)
+    assert [one["code"].rpartition(".")[2] for one in traced["estimators"]] == ["piles"]
     assert "do not exceed" not in repr(answer(piled(0.7)))
     assert "at least 95 % stay below" in answer(piled(1.0)).lead.promise.sentence
 

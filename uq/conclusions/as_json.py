@@ -38,7 +38,10 @@ def answer_json(found: Answer) -> dict[str, Any]:
         ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
         ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were compared: what half the
         scatter of their ``inputs`` would make ``after`` of the number ``what``. The numbers
-        of a sentence stand side by side, with the sentence, under a key of their own. An event has
+        of a sentence stand side by side, with the sentence, under a key of their own. A promise
+        has the places of its bounds among the rows in order (``lower_is_row``), and the share of
+        rows that have the last value, where that bounds nothing (``share_at_largest``). An event
+        has
         its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
         input ``over``, and the ``limit`` of this input, ``at`` which its unwanted side becomes
         rare, with that probability. A ranking has ``contributions``: ``inputs`` -> index,
@@ -142,7 +145,12 @@ def _promise(one: Promise) -> dict[str, Any]:
     }
     plain = {name: json_form.number(value) for name, value in numbers.items()}
     joint = {"joint": list(one.joint)} if one.joint else {}
-    return {"sentence": one.sentence, "reason": one.reason} | plain | joint
+    ends = (("lower", one.ranks[0]), ("upper", one.ranks[1]))
+    places = {f"{side}_is_row": rank for side, rank in ends if rank}
+    piled = {
+        f"share_at_{'largest' if each.upper else 'smallest'}": each.share for each in one.piled
+    }
+    return {"sentence": one.sentence, "reason": one.reason} | plain | places | piled | joint
 
 
 def _own_error(one: OwnError) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def promise_of(
         one.estimate.value if matters and one else nan
         for one, matters in zip(both, sides, strict=True)
     ]
-    piled = () if joint else tuple(_piled(element, sides, coverage))
+    piled = () if joint else tuple(piles(element, sides, coverage))
     upper_piled = {one.upper for one in piled}
     sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
     bounds = [one if matters else nan for one, matters in zip(bounds, sides, strict=True)]
@@ -108,7 +108,7 @@ def _ranks(element: Element, bounds: list[float]) -> tuple[int, int]:
     return first, int((values <= upper).sum()) if isfinite(upper) else 0
 
 
-def _piled(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[Pile]:
+def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[Pile]:
     """Yield the sides on which more rows have the last value than a bound would leave out."""
     values = element.for_thresholds[element.present]
     if element.is_lifetime or not len(values) or values.min() == values.max():

@@ -19,6 +19,7 @@ from uq.analysis.switching import switching
 from uq.analysis.what_if import what_if
 from uq.conclusions.answer import conclude, regimes_of, without_advice
 from uq.conclusions.as_json import answer_json
+from uq.conclusions.bounds import piles
 from uq.conclusions.limits import limit_of
 from uq.conclusions.quantities import LOW, quantities, with_bounds
 from uq.conclusions.repeated import found_again
@@ -116,6 +117,9 @@ def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) ->
             keys = [("tolerance", "lower")]
     elif part == "range" and "".join(rest).startswith("never"):
         yield from map(cited, (never_ending, Population if has_weights(ds) else share_interval))
+        keys = []
+    elif part == "promise" and "".join(rest).startswith("share_at"):
+        yield cited(piles)
         keys = []
     elif part == "promise":
         joint = asked.joint_bounds.get(name.partition("[")[0])
