@@ -101,6 +101,7 @@ def rows_inside(
         "model": model_option(rows),
         "file": shlex.quote(plain(file)),
         "total": whole.sizes["sample"],
+        "allowed": _allowed(findings.ds),
         "numbers": encoded(rows["sample"].values, "<i4"),
         "failed": encoded(failed(rows), "u1"),
         "columns": columns,
@@ -110,6 +111,12 @@ def rows_inside(
         "tolerances": laws,
         **design,
     }
+
+
+def _allowed(ds: xr.Dataset) -> list[int]:
+    """Return the first and last number of a row, whether the page holds it or not."""
+    numbers = ds["sample"].values
+    return [int(numbers.min()), int(numbers.max())]
 
 
 def why_no_rows(findings: Findings) -> str:
