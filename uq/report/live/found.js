@@ -14,7 +14,8 @@ class Found {
     this.said = make("p", {class: "said", role: "status"});
     this.table = make("table", {class: "found"});
     this.picture = make("figure");
-    this.element = make("div", {}, this.said, make("div", {class: "wide"}, this.table), this.picture,
+    this.element = make("div", {}, this.said, make("div", {class: "wide"}, this.table),
+      new InputsApart(selection).element, this.picture,
       make("p", {class: "note"}, this.rows.intervals));
     selection.listeners.push(() => this.show());
   }
