@@ -2,26 +2,38 @@
 
 const MOST_INPUTS = 8;
 
-// The rank of each value, from 0 to 1; equal values share theirs.
+// The rank of each value, from 0 to 1; equal values share theirs. With its distance from the middle.
 function ranksOf(column) {
-  if (column.ranks) return column.ranks;
-  const {order, values} = column, ranks = column.ranks = new Float64Array(values.length);
+  if (column.ranked) return column.ranked;
+  const {order, values} = column, ranks = new Float64Array(values.length);
   for (let start = 0, end = 0; start < order.length; start = end) {
     while (end < order.length && values[order[end]] === values[order[start]]) end++;
     for (let i = start; i < end; i++) ranks[order[i]] = (start + end) / 2 / order.length;
   }
-  return ranks;
+  const distances = ranks.map(one => Math.abs(one - 0.5));
+  return column.ranked = {ranks, distances, middle: total(distances) / distances.length};
+}
+
+// The median of the rows that are chosen, or of those that are not.
+function medianAmong({order, values}, mask, chosen, count) {
+  const own = [];
+  for (let i = 0; own.length <= count / 2; i++) if (mask[order[i]] === chosen) own.push(order[i]);
+  return count % 2 ? values[own.at(-1)] : (values[own.at(-2)] + values[own.at(-1)]) / 2;
 }
 
 // The mean of the chosen rows, of numbers between 0 and 1, with Student's interval of the rows, or of the parts that are independent.
-function meanAmong(rows, values, mask) {
-  const part = rows.replicate ?? rows.sample, kept = values.filter((_, row) => mask[row]);
-  const parts = part && part.filter((_, row) => mask[row]);
-  const own = rows.independent ? kept : [], mean = total(kept) / kept.length;
+function meanAmong(rows, values, mask, count) {
+  const part = rows.replicate ?? rows.sample, kept = new Float64Array(count), parts = part && new Int32Array(count);
+  for (let row = 0, i = 0; i < count; row++) {
+    if (!mask[row]) continue;
+    if (part) parts[i] = part[row];
+    kept[i++] = values[row];
+  }
+  const own = rows.independent ? kept : [], mean = total(kept) / count;
   const estimates = part ? estimatesOf(kept, parts, Boolean(rows.replicate)).estimates : own;
-  const count = estimates.length, centre = total(estimates) / count;
-  const scatter = total(estimates.map(one => (one - centre) ** 2)) / (count - 1) / count;
-  const half = count > 1 && scatter > 0 ? student(rows.students, count - 1) * Math.sqrt(scatter) : NaN;
+  const size = estimates.length, centre = total(estimates) / size;
+  const scatter = total(estimates.map(one => (one - centre) ** 2)) / (size - 1) / size;
+  const half = size > 1 && scatter > 0 ? student(rows.students, size - 1) * Math.sqrt(scatter) : NaN;
   return {mean, low: Math.max(mean - half, 0), high: Math.min(mean + half, 1)};
 }
 
@@ -30,19 +42,15 @@ function isClear({low, high}, middle) {
 }
 
 // Where the mean rank is not clearly another, the chosen rows may still lie nearer the middle, or farther from it.
-function apart(rows, column, mask) {
-  const ranks = ranksOf(column), {order, values} = column;
-  const median = chosen => {
-    const own = order.filter(row => Boolean(mask[row]) === chosen), half = own.length >> 1;
-    return own.length % 2 ? values[own[half]] : (values[own[half - 1]] + values[own[half]]) / 2;
+function apart(rows, column, mask, count) {
+  const {ranks, distances, middle} = ranksOf(column), rank = meanAmong(rows, ranks, mask, count);
+  const found = {
+    column, rank, median: medianAmong(column, mask, 1, count), others: medianAmong(column, mask, 0, rows.count - count),
   };
-  const rank = meanAmong(rows, ranks, mask), away = ranks.map(one => Math.abs(one - 0.5)), middle = total(away) / away.length;
-  const distance = meanAmong(rows, away, mask), isAway = !isClear(rank, 0.5) && isClear(distance, middle);
-  return {
-    column, rank, median: median(true), others: median(false),
-    size: isAway ? Math.abs(distance.mean - middle) / 0.5 : Math.abs(rank.mean - 0.5),
-    more: isAway ? distance.mean > middle ? "away from the middle" : "near the middle" : isClear(rank, 0.5) ? "" : "not clear",
-  };
+  if (isClear(rank, 0.5)) return {...found, size: Math.abs(rank.mean - 0.5), more: ""};
+  const distance = meanAmong(rows, distances, mask, count), away = distance.mean - middle;
+  if (!isClear(distance, middle)) return {...found, size: Math.abs(rank.mean - 0.5), more: "not clear"};
+  return {...found, size: Math.abs(away) / 0.5, more: away > 0 ? "away from the middle" : "near the middle"};
 }
 
 class InputsApart {
@@ -68,7 +76,7 @@ class InputsApart {
     const {isAll, mask, count} = this.selection, others = this.rows.count - count;
     this.element.hidden = isAll || !count || !others;
     if (this.element.hidden) return;
-    const found = this.columns.map(one => apart(this.rows, one, mask)).sort((a, b) => b.size - a.size);
+    const found = this.columns.map(one => apart(this.rows, one, mask, count)).sort((a, b) => b.size - a.size);
     const heads = ["Input", `${grouped(count)} chosen`, `${grouped(others)} others`, "mean rank"];
     const head = () => make("thead", {}, make("tr", {}, ...heads.map(text => make("th", {scope: "col"}, text))));
     const fill = (table, some) => table.replaceChildren(head(), make("tbody", {}, ...some.map(lineOf)));
