@@ -26,7 +26,7 @@ def test_the_axes_say_what_has_happened(locking):
     figure = plots.lifetime(locking, "locking")
     assert "Probability that the motors have locked" in words(figure)
     (other,) = figure.axes[0].child_axes
-    assert other.get_ylabel() == "Probability of not yet"
+    assert other.get_ylabel() == "Probability that it has\nnot happened yet"
 
 
 def test_the_latest_time_is_promised(locking):
