@@ -84,3 +84,13 @@ def test_of_many_inputs_those_that_differ_most_are_in_sight(shown):
     assert len(browser.value(seen)) == 13
     drag_handle(browser, "y", 1, 300)
     assert len(browser.value(seen)) == 13  # remains open
+
+
+def test_names_and_ranks_of_inputs_are_in_sight_on_a_phone(shown):
+    ds = linear(samples=400)
+    ds["x4"].attrs |= {"long_name": "wear coefficient of the surface", "units": "m2 N-1"}
+    ds["x4"].values[:] = 1e-15 * (1 + 20 * ds["x4"].values)
+    browser = shown(ds, width=375, height=800)
+    drag_handle(browser, "y", 1, 150)
+    box = "document.querySelector('.inputs-apart')"
+    assert browser.value(f"{box}.scrollWidth <= {box}.parentElement.clientWidth")

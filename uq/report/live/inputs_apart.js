@@ -89,8 +89,8 @@ class InputsApart {
 }
 
 function lineOf({column, median, others, rank, more}) {
-  const middle = value => make("td", {class: "number"}, data(value, column.words(value, 3)));
+  const middle = value => make("td", {class: "number"}, data(value, column.digits(value, 3)));
   const shifted = cellOf({share: rank.mean, low: rank.low, high: rank.high, more});
   return make("tr", {"data-key": `input/${column.name}`},
-    make("th", {scope: "row", title: column.meaning}, ...named(column)), middle(median), middle(others), shifted);
+    make("th", {scope: "row", title: column.meaning}, ...named(column), column.unit && ` [${column.unit}]`), middle(median), middle(others), shifted);
 }
