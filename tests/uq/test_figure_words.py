@@ -5,6 +5,7 @@ from computed import asking, kinds, linear, with_output
 from uq import plots
 from uq.analysis.findings import Findings
 from uq.drawing.catalogue import drawables
+from uq.drawing.figure import lay_out
 from uq.plots import FIGURES
 from uq.report.pictures import pictures
 
@@ -45,6 +46,12 @@ def test_counts_of_rows_have_their_thousands_apart():
     titles = [plots.histogram(ds, "y"), plots.inputs(ds)]
     for figure in titles:
         assert "1 024 rows" in figure.axes[0].get_title(loc="left").replace("\n", " ")
+
+
+def test_counts_along_an_axis_have_their_thousands_apart():
+    figure = plots.convergence(linear(samples=4096), "y")
+    lay_out(figure)
+    assert "1 024" in [one.get_text() for one in figure.axes[0].get_xticklabels()]
 
 
 def test_what_has_not_happened_is_said_as_one_says_it():
