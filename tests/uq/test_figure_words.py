@@ -61,3 +61,11 @@ def test_what_has_not_happened_is_said_as_one_says_it():
     axes = plots.lifetime(asking(ds, outputs=["locking"]), "locking").axes[0]
     (right,) = axes.child_axes
     assert right.get_ylabel() == "Probability that it has\nnot happened yet"
+
+
+def test_dashes_of_marked_lines_can_be_seen_in_the_legend():
+    figure = plots.convergence(kinds(samples=400), "life")
+    (legend,) = figure.legends
+    dashed = next(one for one in legend.legend_handles if one.get_linestyle() == "--")
+    start, *_, end = dashed.get_xdata()
+    assert end - start - dashed.get_markersize() >= 14  # two dashes [points]
