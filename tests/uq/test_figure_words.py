@@ -68,4 +68,4 @@ def test_dashes_of_marked_lines_can_be_seen_in_the_legend():
     (legend,) = figure.legends
     dashed = next(one for one in legend.legend_handles if one.get_linestyle() == "--")
     start, *_, end = dashed.get_xdata()
-    assert end - start - dashed.get_markersize() >= 14  # two dashes [points]
+    assert end - start - dashed.get_markersize() >= 12  # two dashes [points]

@@ -23,7 +23,7 @@ from uq.rows.elements import Floats
 _ENTRY = 0.15  # height of a line of the legend [inch]
 _BELOW = 0.5  # from given axes to the legend below them, where their label is one line [inch]
 _HALF = 19  # characters of a label that fits half of a `Drawing` of one column
-_LONG = 3.5  # length of a line of the legend that has a mark [its font size]
+_LONG = 3.0  # length of a line of the legend that has a dot [its font size]
 _SHORT = 30  # characters of labels that fit side by side
 
 _CHARACTERS = 6
@@ -182,9 +182,9 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
         lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
-        # A mark in the middle would hide the dashes of a short line.
-        marked = any(_is_marked_line(one) for one in handles)
-        style = {"handlelength": _LONG} if marked else {}
+        # A dot in the middle would hide the dashes of a short line.
+        dotted = any(isinstance(one, Line2D) and one.get_marker() == "." for one in handles)
+        style = {"handlelength": _LONG} if dotted else {}
         shown = figure.legend(
             handles, labels, loc="outside lower left", markerscale=1.5, ncols=across, **style
         )
@@ -198,13 +198,6 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
         place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
         axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
     return figure
-
-
-def _is_marked_line(handle: Any) -> bool:
-    return isinstance(handle, Line2D) and "None" not in (
-        handle.get_linestyle(),
-        handle.get_marker(),
-    )
 
 
 def heading(axes: Axes, text: str) -> None:
