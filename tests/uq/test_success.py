@@ -54,6 +54,6 @@ def test_a_report_speaks_of_success(locking):
     never = locking.copy(deep=True)
     never["locking"][:100] = np.inf
     found = answer(asking(never, outputs=["locking"])).lead.promise
-    assert found.why == "" or "too few succeed" in found.why
+    assert found.reason == "" or "too few succeed" in found.reason
     tables = list(result_tables(outcomes(never, summarise(never))))
     assert any("rows never succeeding" in one.header for one in tables)
