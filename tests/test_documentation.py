@@ -252,8 +252,10 @@ def test_the_picture_of_the_house_is_what_its_script_draws():
 @pytest.mark.parametrize("machine", generated.machines())
 def test_the_picture_of_a_machine_is_what_its_script_draws_and_shown_where_it_is_explained(machine):
     file = f"pictures/{machine}.svg"
-    drawn = sketches.SKETCHES[machine]().svg()
-    assert (HOUSE / "docs" / file).read_text() == drawn, "run: cd docs; python -m sketches"
+    drawn, static = sketches.SKETCHES[machine](), HOUSE / "docs" / "_static"
+    assert (HOUSE / "docs" / file).read_text() == drawn.svg(), "run: cd docs; python -m sketches"
+    narrow = (static / f"{machine}-narrow.svg").read_text()
+    assert narrow == drawn.narrow(), "run: cd docs; python -m sketches"
     assert f"](docs/{file})" in SOURCES["README.md"]
     assert f"](../{file})" in SOURCES[f"docs/machines/{machine}.md"]
 

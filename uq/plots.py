@@ -45,26 +45,28 @@ FIGURES: dict[str, Entry] = {
         in_report=(of.in_one_regime,),
         needs=("summary",),
     ),
-    "regimes": Entry(histogram_by_regime, of.outputs, "{name} by regime", applies=(of.in_regimes,)),
-    "quantiles": Entry(
-        quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
+    "regimes": Entry(
+        histogram_by_regime, of.outputs, "{what}, by regime", applies=(of.in_regimes,)
     ),
-    "shares": Entry(shares, of.categories, "Shares of {name}", section=""),
+    "quantiles": Entry(
+        quantile_table, of.outputs, "Quantiles: {what}", section="", needs=("summary",)
+    ),
+    "shares": Entry(shares, of.categories, "Shares: {what}", section=""),
     "events": Entry(
         event_probability,
         of.decided_events,
-        "{name} over the input that decides it",
+        "Probability that {event}, over the input that decides it",
     ),
     "scatter": Entry(
         scatter,
         of.outputs,
-        "{name} against the inputs with which it varies most",
+        "{what}, against the inputs with which it varies most",
         applies=(of.has_plain_rows,),
     ),
     "convergence": Entry(
         convergence,
         of.outputs,
-        "Convergence of {name}: {meaning}",
+        "Convergence: {what}",
         section="convergence",
         applies=(of.has_running_estimate,),
         needs=("running",),
@@ -79,19 +81,19 @@ FIGURES: dict[str, Entry] = {
     "indices": Entry(
         index_bars,
         of.targets,
-        "Sensitivity indices of {name} by {method}",
+        "Sensitivity indices by {method}: {what}",
         section="",
         file=("method", "name"),
     ),
     "index-curves": Entry(
         index_curves,
         of.curves,
-        "Sensitivity indices of {name} by {method}, along its dimension",
+        "Sensitivity indices by {method}, along its dimension: {what}",
     ),
     "convergence-indices": Entry(
         index_convergence,
         of.crossed_targets,
-        "Convergence of the total indices of {name}",
+        "Convergence of the total indices: {what}",
         section="convergence",
         needs=("running",),
     ),

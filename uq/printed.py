@@ -10,7 +10,8 @@ _FACTOR = rf"[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω|g)[⁻⁰¹
 _UNIT = re.compile(rf"(?<=\d)(?: {_FACTOR})+|(?<=\d) (?=(?:{_TIMES}|%)(?!\w))")
 _POWER = r"(?<=\d) (?=× 10)|(?<=×) (?=10)"
 _GROUP = r"(?<=\d) (?=\d{3}(?!\d))"
-_BEFORE_POWER = re.compile(rf"(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}|{_GROUP}")
+_DIFFERENCE = r"(?<=[₀-₉]) (?=[−+] )|(?<=[₀-₉] [−+]) "
+_BEFORE_POWER = re.compile(rf"(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}|{_GROUP}|{_DIFFERENCE}")
 
 
 def minus(text: str) -> str:

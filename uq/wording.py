@@ -219,7 +219,7 @@ def rows_in_words(rows: float) -> str:
 
 
 def counted(count: int, one: str, several: str = "") -> str:
-    """Return a number with the word for what is counted: ``1 row``, ``3 rows``.
+    """Return a number with the word for what is counted: ``1 row``, ``3 rows``, ``4 000 rows``.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def counted(count: int, one: str, several: str = "") -> str:
     several : str, optional
         Elsewhere; by default the same with an s.
     """
-    return f"{count} {one if count == 1 else several or f'{one}s'}"
+    return f"{grouped(count)} {one if count == 1 else several or f'{one}s'}"
 
 
 def grouped(rows: int) -> str:

@@ -1,4 +1,4 @@
-"""Write docs/pictures/beam.svg, vibrator.svg and mole.svg."""
+"""Write docs/pictures/beam.svg, vibrator.svg and mole.svg, and those for phones in docs/_static."""
 
 from pathlib import Path
 
@@ -6,5 +6,6 @@ from . import SKETCHES
 
 if __name__ == "__main__":
     for name, sketch in SKETCHES.items():
-        path = Path(__file__).parents[1] / "pictures" / f"{name}.svg"
-        path.write_text(sketch().svg(), encoding="utf-8")
+        docs, sheet = Path(__file__).parents[1], sketch()
+        (docs / "pictures" / f"{name}.svg").write_text(sheet.svg(), encoding="utf-8")
+        (docs / "_static" / f"{name}-narrow.svg").write_text(sheet.narrow(), encoding="utf-8")

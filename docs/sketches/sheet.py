@@ -36,6 +36,9 @@ styled = mpl.rc_context(_STYLE)
 
 WIDTH = 530
 LIST = 306  # where symbols are listed
+STEP = 17  # between them
+NARROW = 296
+"""Width of a card for phones [points]: the machine ends there, and the symbols stand below it."""
 
 
 class Sheet:
@@ -46,7 +49,7 @@ class Sheet:
         self._figure = Figure(figsize=(WIDTH / 72, height / 72), facecolor="none")
         self._axes: Axes = self._figure.add_axes((0, 0, 1, 1), xlim=(0, WIDTH), ylim=(0, height))
         self._axes.axis("off")
-        self.height = height
+        self.height, self._listed = height, 0
         card = FancyBboxPatch(
             (0, 0), WIDTH, height, boxstyle="round,pad=0,rounding_size=6", fc=CARD, ec="none"
         )
@@ -65,6 +68,24 @@ class Sheet:
         style = f"<style>@media (prefers-color-scheme: dark) {{\n{dark}\n}}</style>\n <defs>"
         whole = re.sub(r"<defs>", style, text.getvalue(), count=1)
         return re.sub(r" *\n(?=[LQCz])", " ", whole)  # one line for each path
+
+    def narrow(self) -> str:
+        """Return the same for phones: the drawing twice, cut to the machine and to the list."""
+        head, whole, figure = self.svg().partition('<g id="figure_1">')
+        below = STEP * (self._listed + 1)
+        above = (self.height - below) / 2
+        size = f'width="{NARROW}" height'
+        end = figure.rindex("</svg>")
+        tall = self.height + below
+        root = f'width="{NARROW}pt" height="{tall}pt" viewBox="0 0 {NARROW} {tall}"'
+        card = f'<rect {size}="{tall}" rx="6" style="fill: {CARD}"/>'
+        machine = f'<svg {size}="{self.height}">\n {whole}{figure[:end]}</svg>\n'
+        cut = f'viewBox="{LIST - 12} {above} {NARROW} {below}"'
+        listed = (
+            f'<svg y="{self.height}" {size}="{below}" {cut}><use xlink:href="#figure_1"/></svg>'
+        )
+        head = re.sub(r'width="\S+" height="\S+" viewBox="[^"]+"', root, head, count=1)
+        return f"{head}{card}\n{machine}{listed}\n</svg>\n"
 
     def line(
         self, *points: Point, colour: str = INK, width: float = 1.1, dashes: str = "-"
@@ -160,9 +181,9 @@ class Sheet:
     def symbols(self, meanings: Iterable[tuple[str, str]]) -> None:
         """List symbols with their meanings, on the right."""
         lines = list(meanings)
-        step = 17
-        top = self.height / 2 + step * (len(lines) - 1) / 2
+        self._listed = len(lines)
+        top = self.height / 2 + STEP * (len(lines) - 1) / 2
         for number, (symbol, meaning) in enumerate(lines):
-            y = top - step * number
+            y = top - STEP * number
             self.text((LIST, y), symbol, align="left")
             self.text((LIST + 60, y), meaning, size=10, align="left")

@@ -199,7 +199,11 @@ def bifurcation_diagram(
             settled["progression_rate"],
             {"units": "m s-1", "long_name": "mean velocity of the mole, positive forwards"},
         ),
-        regime=(along, words, {"long_name": "type of settled response"}),
+        regime=(
+            along,
+            words,
+            {"long_name": "type of settled response", "flag_meanings": " ".join(REGIMES)},
+        ),
     ).assign_coords(
         {along: (along, frequencies, {"units": "Hz", "long_name": "control frequency"})}
     )

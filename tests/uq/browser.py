@@ -95,8 +95,9 @@ class Tab:
         """Press keys, one after the other."""
         for key in keys:
             name = {"key": key, "code": key, "windowsVirtualKeyCode": _KEYS[key]}
-            for kind in ("rawKeyDown", "keyUp"):
-                self.do("Input.dispatchKeyEvent", type=kind, **name)
+            typed = {"text": "\r"} if key == "Enter" else {}  # else it submits no form
+            self.do("Input.dispatchKeyEvent", type="keyDown", **name, **typed)
+            self.do("Input.dispatchKeyEvent", type="keyUp", **name)
 
     def painted(self):
         """Wait until the page has drawn what changed."""

@@ -33,7 +33,7 @@ def of_event(share, samples=128, method=None, design="saltelli"):
 
 def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
     refusal = of_event(0.013)["refused"]
-    assert "hits in 2048 rows" in refusal and "5 are needed" in refusal
+    assert "hits in 2 048 rows" in refusal and "5 are needed" in refusal
     hits = int(re.match(r"only (\d+) hits", refusal)[1])
     wanted = int(re.search(r"about (\d+) samples instead of 128 would give 20", refusal)[1])
     assert wanted == pytest.approx(128 * 20 * 8 / hits, rel=0.05)
@@ -42,7 +42,7 @@ def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
 
 def test_an_event_with_fewer_than_twenty_hits_is_warned_of():
     found = of_event(0.05)
-    assert "hits in 2048 rows, 1" in found["notes"][0] and "rough" in found["notes"][0]
+    assert "hits in 2 048 rows, 1" in found["notes"][0] and "rough" in found["notes"][0]
     assert "too narrow" not in found["notes"][0] and "are conservative" in found["notes"][1]
     assert found["S1"]["x1"]["value"] == pytest.approx(0.169, abs=0.15)
     assert not any("rough" in note for note in of_event(0.3)["notes"])
@@ -53,7 +53,7 @@ def test_few_misses_are_as_bad_as_few_hits():
     high = with_event(ds, 0.013)["regime"].values
     ds = ds.assign(regime=("sample", (1 - high).astype(np.int8), ATTRS))
     refusal = sensitivities(ds, None, "P(regime=high)")["outputs"]["P(regime=high)"]["refused"]
-    assert "misses in 2048 rows" in refusal
+    assert "misses in 2 048 rows" in refusal
 
 
 def test_methods_without_replicates_count_their_hits_too():

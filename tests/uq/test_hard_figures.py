@@ -130,6 +130,6 @@ def test_the_title_of_weighted_inputs_has_room():
     ds = linear(samples=1000)
     ds = ds.assign(weight=("sample", np.linspace(0.5, 1.5, 1000), {"role": "weight"}))
     figure = plots.inputs(ds, names=["x1", "x2"])
-    assert "1000 weighted rows" in words(figure)
+    assert "1 000 weighted rows" in words(figure)
     lay_out(figure)
     assert not collisions(figure)

@@ -9,8 +9,10 @@ from matplotlib.colors import to_hex
 import models.beam.explore as beam
 import models.mole.explore as mole
 import uq
+from models.beam.parameters import REGIMES as BEAM_REGIMES
 from models.beam.parameters import Params as Beam
 from models.beam.parameters import Settings as BeamSettings
+from models.mole.parameters import REGIMES
 from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
 from uq import plots
@@ -137,6 +139,20 @@ def test_a_bifurcation_diagram_shows_every_point_in_the_colour_of_its_kind(swept
         assert line.get_color() == COLOURS[i]
         assert line.get_xdata() == pytest.approx([7.0 + i] * 5)
         assert line.get_ydata() == pytest.approx(1e3 * swept["displacement"][i].values)
+
+
+def test_a_regime_has_the_colour_that_it_has_in_results(swept):
+    words = np.array(["periodic", "chaotic"])
+    labelled = swept.assign(regime=("control_frequency", words, swept["regime"].attrs))
+    figure = plots.bifurcation(labelled, "displacement", by="regime")
+    assert entries(figure) == ["periodic", "chaotic"]
+    colours = [COLOURS[REGIMES.index(word)] for word in words]
+    assert [line.get_color() for line in figure.axes[0].lines] == colours
+
+
+def test_regimes_of_a_beam_are_in_the_order_of_its_model():
+    ds = beam.bifurcation_diagram(Beam(), BeamSettings(), [54.6], periods=2)
+    assert tuple(ds["regime"].attrs["flag_meanings"].split()) == BEAM_REGIMES
 
 
 def test_curves_are_named_and_marked_where_the_regime_changes(worn):

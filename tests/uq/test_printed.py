@@ -49,6 +49,10 @@ def test_a_unit_stays_with_its_number():
     assert printed("-") == "–"
 
 
+def test_a_difference_of_symbols_stays_in_one_line():
+    assert printed("angle ψ₁ − ψ₂, mean").split(" ") == ["angle", "ψ₁\u00a0−\u00a0ψ₂,", "mean"]
+
+
 def test_a_report_shows_no_hyphen_for_a_minus_sign():
     ds = linear(samples=200)
     low = with_output(ds, "low", ds["y"].values - 8.0)

@@ -11,6 +11,7 @@ from computed import asking, kinds, linear, with_output, with_status
 from explored import open_by_keyboard
 
 from uq.analysis.findings import Findings
+from uq.conclusions.answer import conclude
 from uq.contract import Status
 from uq.learning.inspections import read_inspections, read_tables
 from uq.report import page
@@ -153,3 +154,12 @@ def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path):
     (tmp_path / "inspections.csv").write_text(given)
     assert read_inspections(tmp_path / "inspections.csv") == read_tables(found)
     assert "inspections.csv" not in page(linear(samples=4), "a.nc")
+
+
+def test_the_first_plot_is_over_what_the_answer_names(shown):
+    ds = linear(samples=2000, analysis={"thresholds": {"y": 100.5}})
+    rare = 100.0 * (ds["x2"].values > 0.9)
+    ds["y"].values[:] = ds["x1"].values + rare  # ranks vary most over x1, values over x2
+    assert "ontributes most" in repr(conclude(Findings(ds)))
+    names = "[...document.querySelectorAll('.range')].map(one => one.dataset.name)"
+    assert shown(ds).value(names) == ["x2", "y"]

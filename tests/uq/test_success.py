@@ -26,7 +26,7 @@ def test_the_axes_say_what_has_happened(locking):
     figure = plots.lifetime(locking, "locking")
     assert "Probability that the motors have locked" in words(figure)
     (other,) = figure.axes[0].child_axes
-    assert other.get_ylabel() == "Probability of not yet"
+    assert other.get_ylabel() == "Probability that it has\nnot happened yet"
 
 
 def test_the_latest_time_is_promised(locking):
@@ -54,6 +54,6 @@ def test_a_report_speaks_of_success(locking):
     never = locking.copy(deep=True)
     never["locking"][:100] = np.inf
     found = answer(asking(never, outputs=["locking"])).lead.promise
-    assert found.why == "" or "too few succeed" in found.why
+    assert found.reason == "" or "too few succeed" in found.reason
     tables = list(result_tables(outcomes(never, summarise(never))))
     assert any("rows never succeeding" in one.header for one in tables)

@@ -19,7 +19,8 @@ _STYLE = """
   grid-template-columns: minmax(0, 1fr); align-items: start; align-content: start; }
 .answer figure { padding: 0; }
 @media screen and (min-width: 60rem) {
-  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr); }
+  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr); line-height: 1.4; }
+  .answer figure svg { max-height: 24rem; } /* what to do stays on the first screen */
 }
 @media screen and (width < 60rem) { /* one column: what to do comes before what ends first */
   .answer-words, .answer-side { display: contents; }
@@ -39,7 +40,9 @@ _STYLE = """
 .answer-size { font-size: .875em; }
 @media (max-width: 40rem) {
   .answer { font-size: .875rem; line-height: 1.3; }
+  .answer :is(p, ul, .answer-bar) { margin: .15rem 0; }
   .answer h3 { margin-top: .4rem; }
+  .answer figure svg { max-height: 22rem; }
   .answer .answer-promise { font-size: 1.2rem; }
 }
 @media (max-width: 40rem), print {

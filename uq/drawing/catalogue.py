@@ -9,7 +9,8 @@ from typing import Any, Literal
 from matplotlib.figure import Figure
 
 from uq.analysis.findings import Findings
-from uq.conclusions.targets import Target
+from uq.drawing.index_plot import subject
+from uq.wording import capitalized
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Entry:
     of : callable
         Findings -> subjects: a function of `uq.drawing.subjects`.
     caption : str
-        With ``{name}``, ``{meaning}`` and ``{method}``.
+        With ``{what}``, ``{event}`` and ``{method}``: an output or a target in words, and an event.
     section : str
         Of the report; "" if the report does not show it.
     applies : tuple of callable
@@ -65,7 +66,7 @@ class Entry:
 
     draw: Callable[..., Figure]
     of: Callable[[Findings], Iterator[Subject]]
-    caption: str = "{name}: {meaning}"
+    caption: str = "{what}"
     section: Literal["inputs", "rows", "results", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
     in_report: tuple[Applies, ...] = ()
@@ -93,11 +94,10 @@ class Drawable:
     def caption(self) -> str:
         """What it shows."""
         ds, name = self.findings.ds, self.subject.name
-        meaning = ds[name].attrs["long_name"] if name in ds else ""
-        shown = name if name in ds or not name else Target(ds, name).name
-        words = {"name": shown, "method": self.subject.method, "meaning": meaning}
-        part = f" ({self.subject.part})" * bool(self.subject.part)
-        return self.entry.caption.format(**words) + part
+        what = str(ds[name].attrs["long_name"]) if name in ds else subject(ds, name) if name else ""
+        event = what.removeprefix("whether ")
+        caption = self.entry.caption.format(what=what, event=event, method=self.subject.method)
+        return capitalized(caption) + f" ({self.subject.part})" * bool(self.subject.part)
 
     def draw(self) -> Figure:
         """Return the figure."""
@@ -117,11 +117,11 @@ def drawables(
     chosen = [one for one in figures.items() if section in (None, one[1].section)]
     for of, entries in groupby(chosen, key=lambda one: one[1].of):
         together = list(entries)
-        for subject in of(findings):
+        for one in of(findings):
             for figure, entry in together:
                 conditions = entry.applies + (entry.in_report if section else ())
-                if all(applies(findings, subject.name) for applies in conditions):
-                    yield Drawable(figure, entry, subject, findings)
+                if all(applies(findings, one.name) for applies in conditions):
+                    yield Drawable(figure, entry, one, findings)
 
 
 def file_name(*words: str) -> str:

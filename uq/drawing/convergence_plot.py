@@ -18,6 +18,7 @@ from uq.drawing.words import as_label, label, labelled
 from uq.errors import InputError
 from uq.methods.indices import ST
 from uq.rows.elements import Floats, independent_rows, named_elements
+from uq.wording import grouped
 
 _MOST_INPUTS = 6
 _MARKS = "os^vDP"
@@ -159,7 +160,7 @@ def _over_samples(axes: Axes, ds: xr.Dataset) -> str:
     """Draw the axis of samples, and return what the bands are."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_major_formatter(lambda value, _: grouped(round(value)))
     axes.minorticks_off()
     replicates = int(ds.attrs["replicates"])
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))

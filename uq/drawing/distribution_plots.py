@@ -206,7 +206,8 @@ def lifetime(
     if marked:
         bands[f"marks: {', '.join(name for name in B_LIVES if name in marked)}"] = True
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
-    other.set_ylabel("Probability of not yet" if success else "Survival probability")
+    not_yet = "Probability that it has\nnot happened yet"
+    other.set_ylabel(not_yet if success else "Survival probability")
     entitle(panel, chosen, part, *bands)
     return finish(panel)
 

@@ -13,7 +13,7 @@ from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.drawing.symbols import literal
 from uq.drawing.words import labelled, rows_in_words
-from uq.printed import minus
+from uq.printed import minus, printed
 from uq.rows.elements import Element, Floats, Mask, analysis_of, flags, named_elements
 from uq.rows.variables import input_unit
 from uq.units import Unit, typical, unit_of
@@ -56,7 +56,8 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
 def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:
     """Write a wrapped title: the place of the element drawn, how many rows there are, and more."""
     texts = filter(None, (of, rows_in_words(chosen), *more))
-    axes.set_title(textwrap.fill(", ".join(texts), 44), loc="left")
+    text = printed(", ".join(texts))  # no line breaks within a number
+    axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
 
 
 def display_unit(units: str, values: Floats) -> Unit:

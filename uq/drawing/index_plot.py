@@ -129,9 +129,9 @@ def subject(ds: xr.Dataset, name: str) -> str:
         asked = analysis_of(ds).thresholds.get(element.output, ())
         at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)
         side = "below" if "<" in name else "above"
-        words = (
-            f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is {side} {at}"
-        )
+        size = "magnitude of the " * element.is_angle
+        what = f"{size}{words.removeprefix('the ')}{',' * (',' in words)}"
+        words = f"whether the {what} is {side} {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return words

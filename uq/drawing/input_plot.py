@@ -16,7 +16,9 @@ from uq.drawing.words import as_label
 from uq.errors import InputError, choices
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.law import Law
+from uq.printed import printed
 from uq.rows.elements import Floats, independent_rows
+from uq.wording import grouped
 
 _IN_ONE_COLUMN = 2  # inputs
 
@@ -65,11 +67,12 @@ def inputs(
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))
         _panel(panel, law, values, weights, per, ticks=6 // columns)
-    rows = f"{len(next(iter(found.values()))[1])}{' weighted' if weights is not None else ''} rows"
-    several = independent_rows(ds).sizes["sample"] > len(next(iter(found.values()))[1])
+    count = len(next(iter(found.values()))[1])
+    rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
+    several = independent_rows(ds).sizes["sample"] > count
     of = ", one of each sample" * several
     said = f"Share of {rows} per bin{of}; line: stated law"
-    panels[0].set_title(textwrap.fill(said, 50), loc="left")
+    panels[0].set_title(textwrap.fill(printed(said), 50).replace("\u00a0", " "), loc="left")
     return figure_of(panels[0])
 
 

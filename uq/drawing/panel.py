@@ -23,6 +23,7 @@ from uq.rows.elements import Floats
 _ENTRY = 0.15  # height of a line of the legend [inch]
 _BELOW = 0.5  # from given axes to the legend below them, where their label is one line [inch]
 _HALF = 19  # characters of a label that fits half of a `Drawing` of one column
+_LONG = 3.0  # length of a line of the legend that has a dot [its font size]
 _SHORT = 30  # characters of labels that fit side by side
 
 _CHARACTERS = 6
@@ -181,8 +182,11 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
         lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
+        # A dot in the middle would hide the dashes of a short line.
+        dotted = any(isinstance(one, Line2D) and one.get_marker() == "." for one in handles)
+        style = {"handlelength": _LONG} if dotted else {}
         shown = figure.legend(
-            handles, labels, loc="outside lower left", markerscale=1.5, ncols=across
+            handles, labels, loc="outside lower left", markerscale=1.5, ncols=across, **style
         )
         for handle in shown.legend_handles:
             if isinstance(handle, Line2D) and handle.get_linestyle() == "None":

@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from uq.drawing.panel import column, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of
@@ -92,6 +94,8 @@ def bifurcation(
         The parameter, a variable along one dimension; by default the first dimension of `output`.
     by : str, optional
         A variable of text along the same dimension, for instance ``regime``, that sets the colour.
+        If its attribute ``flag_meanings`` lists the regimes of a model, each has the colour that it
+        has in figures of results.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -107,19 +111,26 @@ def bifurcation(
     """
     up, across = find(ds, output), find(ds, against or _first_dimension(ds, output))
     kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
+    known = str(kinds.attrs.get("flag_meanings", "")).split()
     (axes,) = column(axes, 2.4)
     scales = label_axes(axes, across, up)
     up, across, kinds = xr.broadcast(up, across, kinds)
     there = np.isfinite(up.values)
     values, places = (one.values * s.factor for one, s in ((up, scales[1]), (across, scales[0])))
-    words = [str(word) for word in np.unique(kinds.values[there])]
-    for word, colour in zip(words, cycle(COLOURS)):
+    for word, colour in _coloured(kinds.values[there], known):
         chosen = there & (kinds.values == word)
         points = places[chosen], values[chosen]
         size = point_size("diagram", there.sum())
         many = are_many(int(chosen.sum()))
         axes.plot(*points, "o", ms=size, mew=0, color=colour, label=literal(word), rasterized=many)
     return finish(axes)
+
+
+def _coloured(words: NDArray[Any], known: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the words that occur, each with its colour: those known have their own."""
+    there = {str(word) for word in np.unique(words)}
+    order = [*known, *sorted(there - set(known))]
+    return [pair for pair in zip(order, cycle(COLOURS)) if pair[0] in there]
 
 
 @styled

@@ -183,7 +183,7 @@ def _conditional(
     jumps = np.flatnonzero(np.diff(along(inside)) > _GAP * np.ptp(width))
     gaps = np.searchsorted(middle, (inside[jumps] + inside[jumps + 1]) / 2)
     middle, line, low, high = (np.insert(one, gaps, np.nan) for one in (middle, line, low, high))
-    what = f"{'median' if medians else 'mean'} in slices of {len(x) // count} rows"
+    what = f"{'median' if medians else 'mean'} in slices of {counted(len(x) // count, 'row')}"
     if independent:
         what += ", 95 % band"
     if np.isfinite(line).any():

@@ -14,7 +14,7 @@ from uq.literals import plain
 from uq.printed import minus
 from uq.rows.elements import Element
 from uq.units import powers as powers
-from uq.wording import capitalized, counted, percent, quantity
+from uq.wording import capitalized, counted, grouped, percent, quantity
 
 
 def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
@@ -93,7 +93,7 @@ def rows_in_words(chosen: Sequence[Element]) -> str:
     for state in ("failed", "undefined", "censored"):
         most = max(int(getattr(element, state).sum()) for element in chosen)
         if most:
-            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{most} {state}")
+            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{grouped(most)} {state}")
     if chosen[0].weights is not None:
         counts.append("weighted by inspections")
     return ", ".join(counts)

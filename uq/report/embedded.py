@@ -13,7 +13,6 @@ from uq.conclusions.parts import Quantity
 from uq.conclusions.words import called
 from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
-from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
 from uq.drawing.words import element_in_words, meaning_of, symbol_beside, unbroken
@@ -25,6 +24,7 @@ from uq.population.scaling import population
 from uq.printed import printed
 from uq.quantile_functions import student
 from uq.report.encoding import encoded
+from uq.report.opened import first_element, first_input
 from uq.report.symbols import parts_of
 from uq.report.tolerances import promised, tolerances
 from uq.rows.commands import model_option
@@ -86,8 +86,8 @@ def rows_inside(
         _output(rows, one, analysis) | {"promised": list(promised(promises.get(one.name)))}
         for one in elements
     ]
-    drawn = _drawn(elements, analysis)
-    first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
+    drawn = first_element(elements, answered, analysis)
+    first = list(inputs).index(first_input(independent_inputs(rows), elements[drawn], answered))
     design = _design(rows)
     laws = tolerances(rows, elements)
     if integrated := dict.fromkeys(one for each in elements for one in _integrated(each)):
@@ -101,6 +101,7 @@ def rows_inside(
         "model": model_option(rows),
         "file": shlex.quote(plain(file)),
         "total": whole.sizes["sample"],
+        "allowed": _allowed(findings.ds),
         "numbers": encoded(rows["sample"].values, "<i4"),
         "failed": encoded(failed(rows), "u1"),
         "columns": columns,
@@ -110,6 +111,12 @@ def rows_inside(
         "tolerances": laws,
         **design,
     }
+
+
+def _allowed(ds: xr.Dataset) -> list[int]:
+    """Return the first and last number of a row, whether the page holds it or not."""
+    numbers = ds["sample"].values
+    return [int(numbers.min()), int(numbers.max())]
 
 
 def why_no_rows(findings: Findings) -> str:
@@ -156,14 +163,6 @@ def part_of(rows: xr.Dataset, columns: int) -> xr.Dataset:
     order = np.random.default_rng(int(rows.attrs["seed"])).permutation(len(names))
     chosen = names[order[np.cumsum(size[order]) <= most]]
     return rows.isel(sample=np.isin(sample, chosen))
-
-
-def _drawn(elements: Sequence[Element], analysis: AnalysisTable) -> int:
-    """Return the place of the element shown first: one that the study asks about, a life first."""
-    return max(
-        range(len(elements)),
-        key=lambda i: (elements[i].output in analysis.thresholds, elements[i].is_lifetime, -i),
-    )
 
 
 def _input(rows: xr.Dataset, name: str, unit: Unit) -> dict[str, Any]:

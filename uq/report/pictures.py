@@ -67,18 +67,20 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
     """
     for one in drawables(FIGURES, findings, section):
         if one.subject.name not in without:
-            yield picture(one.draw(), readable(one.caption))._replace(of=one.subject)
+            yield picture(one.draw(), readable(one.caption), one.file)._replace(of=one.subject)
 
 
 @styled
-def picture(figure: Figure, caption: str) -> Picture:
+def picture(figure: Figure, caption: str, name: str = "") -> Picture:
     """Return a figure as part of a page.
 
     Parameters
     ----------
     figure : Figure
     caption : str
-        Its text alternative; unique within a page.
+        Its text alternative.
+    name : str, optional
+        Unique within a page; by default the caption.
 
     Returns
     -------
@@ -90,7 +92,7 @@ def picture(figure: Figure, caption: str) -> Picture:
     lay_out(figure)
     wide = figure.get_figwidth() > WIDTH
     # Identifiers must be unique within a page.
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": name or caption}):
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
     svg = _embedded(drawn.getvalue(), caption)
     if len(_IMAGE.sub("", svg)) <= HEAVIEST_SVG:

@@ -146,7 +146,8 @@ def labels(variable: xr.DataArray) -> xr.DataArray:
     order = np.argsort(codes)
     places = np.searchsorted(codes, variable.values, sorter=order)
     found = variable.copy(data=np.array(words)[order][places])
-    found.attrs = {"long_name": variable.attrs["long_name"]}
+    known = " ".join(word for code, word in flags(variable) if code >= 0)
+    found.attrs = {"long_name": variable.attrs["long_name"], "flag_meanings": known}
     return found
 
 

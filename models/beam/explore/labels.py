@@ -60,5 +60,7 @@ def dataset(variables: dict[str, Any], settings: Settings, sweep: Sweep = "none"
         name: (dims, values, {"units": _ABOUT[name][0], "long_name": _ABOUT[name][1]})
         for name, (dims, values) in variables.items()
     }
+    for name in labelled.keys() & {"regime", "change_from", "change_to"}:
+        labelled[name][2]["flag_meanings"] = " ".join(REGIMES)
     propagator = settings.propagator if sweep == "none" else "exact"
     return xr.Dataset(labelled, _SITE, {"model": "beam", "propagator": propagator, "sweep": sweep})

@@ -6,9 +6,12 @@ function explorerOf(rows) {
   let x = columns[rows.first[0]], y = columns[rows.first[1]];
   const card = make("div", {"aria-live": "polite"});
   const scatter = new Scatter(selection, columns, (row, byKey) => {
-    card.replaceChildren(cardOf(rows, row, close));
+    present(cardOf(rows, row, close));
     if (byKey) card.querySelector("button").focus({preventScroll: true});
-    reveal();
+  });
+  const byNumber = rowByNumber(rows, row => scatter.open(row), name => {
+    scatter.mark(-1);
+    present(cardElsewhere(rows, name, close));
   });
   const ranges = new Map(), shelf = make("div", {class: "ranges"});
 
@@ -16,6 +19,11 @@ function explorerOf(rows) {
     make("select", {"on:change": event => choose(columns[event.target.value])},
       ...["input", "output"].map(role => make("optgroup", {label: `${role}s`}, ...columns.flatMap((one, place) =>
         one.role === role ? [make("option", {value: place, selected: one === chosen, title: one.meaning}, one.title)] : [])))));
+
+  function present(shown) {
+    card.replaceChildren(shown);
+    reveal();
+  }
 
   // Scroll to the card, but never the plot out of sight.
   function reveal() {
@@ -51,7 +59,7 @@ function explorerOf(rows) {
   const chips = rows.categories.filter(one => one.entries.length > 1).map(category => {
     const buttons = category.entries.map(({code, label, colour, count}) => {
       const chip = make("button", {type: "button", class: "chip", "on:click": () => selection.toggle(category, code)},
-        ...dotOf(colour), `${label} (${count})`);
+        ...dotOf(colour), `${label} (${grouped(count)})`);
       selection.listeners.push(() => press());
       const press = () => chip.setAttribute("aria-pressed", selection.shows(category, code));
       press();
@@ -60,17 +68,17 @@ function explorerOf(rows) {
     return make("div", {class: "chips", role: "group", "aria-label": category.label}, `${category.label} `, ...buttons);
   });
 
-  const hint = make("p", {class: "note"}, "Click to leave out or take in.");
+  const hint = make("p", {class: "note"}, "Click one to exclude or include its rows.");
   const clear = make("button", {type: "button", class: "clear", "on:click": () => selection.clear()}, "Choose all rows");
   selection.listeners.push(showRanges, () => { clear.disabled = selection.isAll; });
   clear.disabled = true;
   const keys = make("p", {class: "note", id: "keys"}, "Drag over points to choose rows, or move the handles; click"
-    + " a point to see its row. On the plot, the arrow keys go from row to row, Enter opens one, and"
+    + " a point to see its row, or give its number. On the plot, the arrow keys go from row to row, Enter opens one, and"
     + " Escape closes it.");
   const element = make("div", {},
     make("div", {class: "explorer"},
       make("div", {}, ...chips, ...(chips.length ? [hint] : []), chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
-        chooser("Horizontal:", x, one => { x = one; arrange(); }), card, keys, shelf, clear),
+        chooser("Horizontal:", x, one => { x = one; arrange(); }), byNumber, card, keys, shelf, clear),
       found.element));
   document.addEventListener("keydown", event => { // a click on what takes no focus leaves it to the page
     const isHere = element.contains(event.target) || event.target === document.body;

@@ -14,7 +14,8 @@ class Found {
     this.said = make("p", {class: "said", role: "status"});
     this.table = make("table", {class: "found"});
     this.picture = make("figure");
-    this.element = make("div", {}, this.said, make("div", {class: "wide"}, this.table), this.picture,
+    this.element = make("div", {}, this.said, make("div", {class: "wide"}, this.table),
+      new InputsApart(selection).element, this.picture,
       make("p", {class: "note"}, this.rows.intervals));
     selection.listeners.push(() => this.show());
   }
@@ -47,9 +48,9 @@ class Found {
     this.column = column;
     const {selection, rows} = this, {isAll, mask, count} = selection;
     this.said.replaceChildren(...(isAll
-      ? [rows.count < rows.total ? `All ${rows.count} rows in this page, a random part of ${rows.total}.`
-        : rows.count === 1 ? "The only row." : `All ${rows.count} rows.`]
-      : [data(count, `${count}`), ` of ${rows.count} rows, chosen after the fact: the intervals assume that the`
+      ? [rows.count < rows.total ? `All ${grouped(rows.count)} rows in this page, a random part of ${grouped(rows.total)}.`
+        : rows.count === 1 ? "The only row." : `All ${grouped(rows.count)} rows.`]
+      : [data(count, grouped(count)), ` of ${grouped(rows.count)} rows, chosen after the fact: the intervals assume that the`
         + " choice was made before the rows were seen, and a difference from all rows need not be an effect of"
         + " what was chosen."]));
     const chosen = isAll ? this.all : this.numbers(mask);

@@ -139,9 +139,13 @@ class Scatter {
 
   open(row, byKey = false) {
     if (row < 0) return;
+    this.mark(row);
+    this.pick(row, byKey);
+  }
+
+  mark(row) {
     this.picked = row;
     this.draw();
-    this.pick(row, byKey);
   }
 
   // Back to the row that was open.

@@ -44,7 +44,7 @@ function tolerancesOf(rows) {
     const least = used.reduce((a, b) => b.effective < a.effective ? b : a, used[0]);
     const most = used.reduce((a, b) => b.k > a ? b.k : a, -Infinity);
     said.replaceChildren(...(problem ? [problem] : !changed ? ["The laws of the study."] : !least ? [capitalized(`${why.join("; ")}.`)]
-      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${least.rows} ${rows.parts}${rows.count < rows.total ? " in this page" : ""}`,
+      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${grouped(least.rows)} ${rows.parts}${rows.count < rows.total ? " in this page" : ""}`,
         isFinite(most) ? ` (Pareto k = ${number(most, 2)}).` : ".",
         why.length ? ` Where a number is missing, ${why.join("; ")}.` : ""]));
   }

@@ -14,6 +14,11 @@ function number(value, digits = 4) {
   return String(Number(value.toPrecision(digits))).replace("-", "\u2212");
 }
 
+// A count with its thousands apart.
+function grouped(count) {
+  return String(count).replace(/\B(?=(\d{3})+$)/g, "\u00a0");
+}
+
 function percent(share) {
   if (share === 0 || share === 1) return `${100 * share}\u00a0%`;
   if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))}\u00a0%`;
