@@ -158,7 +158,7 @@ def test_all_that_is_said_of_an_output_stands_together(asked, text):
     first = [one for one in sections if "life[side=left,depth=0.5]</small>" in one]
     assert len(first) == 1 and first[0].startswith(' id="output-1"')
     of_event = "Indices of P(life[side=left,depth=0.5] &lt; 1 s) by pawn"
-    for expected in ("B10 is the time", "Probabilities", of_event, "life by regime"):
+    for expected in ("B10 is the time", "Probabilities", of_event, "Time to a depth, by regime"):
         assert expected in first[0], expected
     assert "an angle" not in first[0]
     order = [re.search('id="([a-z-]+)', one)[1] for one in sections]
