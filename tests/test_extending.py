@@ -46,7 +46,7 @@ def rows_in_order(ds, output, *, axes=None):
 
 @pytest.fixture
 def toy_figure(no_other_figures, monkeypatch):
-    entry = Entry(rows_in_order, subjects.outputs, "{name} row by row: {meaning}")
+    entry = Entry(rows_in_order, subjects.outputs, "{what} row by row")
     monkeypatch.setitem(plots.FIGURES, "rows-in-order", entry)
 
 
@@ -56,7 +56,8 @@ def test_a_figure_is_drawn_reported_and_documented(toy_figure, tmp_path):
     assert {"rows-in-order-work", "rows-in-order-life"} == stems
     text = page(ds, "toy.nc")
     for output in ("work", "life"):
-        assert f'aria-label="{output} row by row: {ds[output].long_name}"' in text
+        meaning = ds[output].long_name
+        assert f'aria-label="{meaning[:1].upper()}{meaning[1:]} row by row"' in text
     assert "| `rows-in-order` | each output with numbers |" in generated.figures()
     assert "the values of an output as the rows came in" in generated.figures()
 

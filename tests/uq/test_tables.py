@@ -6,6 +6,7 @@ from computed import asking, linear, summarised, with_output, with_status
 
 from uq.contract import Status
 from uq.store.files import write_result
+from uq.wording import grouped
 
 
 @pytest.fixture
@@ -78,7 +79,7 @@ def test_indices_are_ranked_and_dropped_groups_counted(printed):
     lost = int(np.isnan(ds["y"].values.reshape(-1, 6)).any(axis=1).sum())
     assert lost > 0
     lines = printed("sensitivity", ds)
-    rows = f"of {1536 - 6 * lost} rows, {lost} groups dropped"
+    rows = f"of {grouped(1536 - 6 * lost)} rows, {lost} groups dropped"
     assert cells(lines, "Sensitivity by sobol") == [rows]
     assert [line[0] for line in lines if line[0][:1] == "x"] == ["x4", "x3", "x2", "x1"]
     whole = printed("sensitivity", linear("saltelli", samples=16, replicates=4))

@@ -8,6 +8,7 @@ from uq.conclusions.intermingled import Intermingled
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.remedies import Advice
 from uq.conclusions.words import share_text
+from uq.wording import grouped
 
 RARE = 0.01
 MOST_REGIMES = 3
@@ -64,8 +65,10 @@ class Answer:
     def rows_sentence(self) -> str:
         """How many rows were computed."""
         if self.failed:
-            return f"{self.failed} of {self.rows} rows failed."
-        return f"All {self.rows} rows were computed." if self.rows else "There are no rows."
+            return f"{grouped(self.failed)} of {grouped(self.rows)} rows failed."
+        return (
+            f"All {grouped(self.rows)} rows were computed." if self.rows else "There are no rows."
+        )
 
     @property
     def main_regimes(self) -> tuple[Event, ...]:

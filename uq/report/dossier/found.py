@@ -10,6 +10,7 @@ from uq.analysis.summary import REGIME
 from uq.conclusions.answer import conclude
 from uq.conclusions.page import fragment
 from uq.conclusions.parts import Quantity
+from uq.conclusions.promises import Range
 from uq.conclusions.verdict import verdict
 from uq.designs.registry import DESIGNS
 from uq.keys import key_of
@@ -138,13 +139,13 @@ def _coverage_intervals(findings: Findings) -> Table:
         "from",
         "to",
     )
-    rows = [_interval(findings, one) for one in conclude(findings).quantities]
+    known = conclude(findings).quantities
+    rows = [_interval(findings, one, one.range) for one in known if one.range is not None]
     return Table("Estimates and coverage intervals", header, rows)
 
 
-def _interval(findings: Findings, one: Quantity) -> tuple[Cell, ...]:
-    assert one.range is not None
-    unit, described = one.range.unit, findings.summary.outputs[one.name]
+def _interval(findings: Findings, one: Quantity, likely: Range) -> tuple[Cell, ...]:
+    unit, described = likely.unit, findings.summary.outputs[one.name]
 
     def cell(value: float, *key: str) -> Cell:
         if value != value:
@@ -159,8 +160,8 @@ def _interval(findings: Findings, one: Quantity) -> tuple[Cell, ...]:
         Cell(unit.name),
         *(cell(found.estimate.value, *found.key) for found in moments if found),
         Cell(f"{100 * COVERAGE:g} %"),
-        cell(one.range.low.value, "quantiles", "0.05"),
-        cell(one.range.high.value, "quantiles", "0.95"),
+        cell(likely.low.value, "quantiles", "0.05"),
+        cell(likely.high.value, "quantiles", "0.95"),
     )
 
 
