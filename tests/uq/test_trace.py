@@ -14,6 +14,8 @@ from learnt_studies import measured, wear
 from nested_studies import nested
 
 import uq as api
+from uq.conclusions.answer import answer
+from uq.conclusions.as_json import answer_json
 from uq.errors import InputError
 from uq.exploring.row_again import row
 from uq.exploring.updating import update
@@ -135,6 +137,24 @@ def test_the_error_of_the_rows_is_that_of_the_rows_used():
     for key in ("answer/enough/own_error", "answer/enough/sampling_error"):
         answered = traced(with_output(ds, "y_error", 10 * ds["x1"].values), key)
         assert answered.equal and answered.rows_used == len(used)
+
+
+def test_a_ranking_of_samples_with_several_rows_says_which_it_rests_on():
+    ds = computed(nested(samples=200))
+    known = answer_json(answer(ds))["quantities"]
+    name, first = next(
+        (name, one["ranking"]["contributions"][0]["inputs"])
+        for name, one in known.items()
+        if one["ranking"]["contributions"]
+    )
+    key = key_of("quantities", name, *_CONTRIBUTION, next(iter(first)), verb="answer")
+    (said,) = api.trace(ds, key)["notes"]
+    assert (
+        said == f"the index rests on {ds.attrs['samples']} of these rows, the first of each sample"
+    )
+
+
+_CONTRIBUTION = ("ranking", "contributions", "0", "inputs")
 
 
 def test_values_of_options_may_have_commas():

@@ -31,7 +31,7 @@ from uq.keys import Json, Options, Path, value_at
 from uq.nested_variance import nested_shares
 from uq.population.functionals import Population
 from uq.rows.elements import analysis_of, independent_rows, named_elements
-from uq.rows.nesting import is_nested
+from uq.rows.nesting import is_nested, one_of_each_sample
 from uq.rows.results import failed
 from uq.rows.weights import has_weights
 from uq.tracing.citations import Citation, cited
@@ -39,6 +39,7 @@ from uq.tracing.of_indices import estimator_of
 from uq.tracing.of_summary import functions_of, states_of
 from uq.tracing.origin import Origin
 from uq.uncertainty_exponent import uncertainty_exponent
+from uq.wording import grouped
 
 _OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
     "lower": (off_by_error,),
@@ -84,7 +85,9 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     if "ranking" in names:
         ranking = value_at(said, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
-        return Origin((cited(effects) if "effects" in names else index,), ds)
+        if "effects" in names:
+            return Origin((cited(effects),), ds)
+        return Origin((index,), ds, notes=tuple(_one_of_each(ds)))
     if "earliest" in names:
         return Origin((cited(inputs_apart),), ds)
     if "limit" in names:
@@ -99,6 +102,13 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     return Origin(
         tuple(dict.fromkeys(_estimators(ds, said["quantities"][names[0]], *names))), rows, states
     )
+
+
+def _one_of_each(ds: xr.Dataset) -> Iterator[str]:
+    """Yield that an index rests on fewer rows, where samples have several."""
+    if is_nested(ds):
+        used = one_of_each_sample(ds).sizes["sample"]
+        yield f"the index rests on {grouped(used)} of these rows, the first of each sample"
 
 
 def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
