@@ -76,13 +76,13 @@ class Checker:
         if one.promise is None or not one.promise.sentence:
             return
         text, values = one.promise.sentence, self.known(one)
-        piles = r"([\d.]+) % of the rows have the (largest|smallest) value, (\S+)"
+        piles = r"([\d.]+) % of the rows share the (largest|smallest) value, (\S+)"
         for share, which, last in re.findall(piles, text):
             end = values.max() if which == "largest" else values.min()
             there = 100 * (values == end).mean()
             if abs(there - float(share)) > 0.06 or there < 5:
                 yield text
-            if not np.isclose(float(last.rstrip(".")) * one.promise.unit.per, end, rtol=0.01):
+            if not np.isclose(float(last.rstrip(".,")) * one.promise.unit.per, end, rtol=0.01):
                 yield text
         text = re.sub(rf" ?{piles}[^.]*\.", "", text)
         if not text:

@@ -71,7 +71,8 @@ def piled(at):
 def test_no_bound_is_promised_that_no_row_can_exceed():
     found = answer(piled(0.7)).lead.promise
     share = 100 * (linear(samples=400)["x4"].values >= 0.7).mean()
-    assert found.sentence == f"{share:.1f} % of the rows have the largest value, 0.7 m."
+    text = f"{share:.1f} % of the rows share the largest value, 0.7 m"
+    assert found.sentence == f"{text}, at which values may be cut off."
     assert found.basis == ""
     traced = uq.trace(piled(0.7), "answer/quantities/depth/promise/share_at_largest")
     assert traced["value"] == pytest.approx(share / 100)

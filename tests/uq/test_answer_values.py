@@ -65,8 +65,8 @@ def test_a_bound_that_many_rows_have_is_not_said_to_be_exceeded():
     assert lead.events[0].said == "end before 5 s"  # those that end at 5 s are not among them
     gaps = valued(lambda x, *_: np.maximum(x - 0.97, 0) * -1.0)
     assert answer(gaps).lead.promise.sentence == (
-        "With 95 % confidence, at least 95 % do not fall below 0 m. 97.8 % of the rows have the"
-        " largest value, 0 m."
+        "With 95 % confidence, at least 95 % do not fall below 0 m. 97.8 % of the rows share the"
+        " largest value, 0 m, at which values may be cut off."
     )
     assert valued_promise(lambda x, *_: 3.0 + x, "lifetime").startswith("last longer than")
 

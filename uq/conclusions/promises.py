@@ -53,7 +53,8 @@ class Pile:
     def sentence(self, unit: Unit) -> str:
         """Return how many they are, in words."""
         which = "largest" if self.upper else "smallest"
-        return f"{percent(self.share)} of the rows have the {which} value, {unit.text(self.value)}"
+        text = f"{percent(self.share)} of the rows share the {which} value, {unit.text(self.value)}"
+        return f"{text}, at which values may be cut off"
 
 
 @dataclass(frozen=True)
