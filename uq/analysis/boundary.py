@@ -80,9 +80,15 @@ def boundary_json(one: Statistic | None) -> dict[str, Any]:
     return {} if one is None else {BOUNDARY: {EXPONENT: entry(one)}}
 
 
+def still_uncertain(exponent: Estimate) -> Estimate:
+    """Return the share of uncertain outcomes that stay so if all inputs are known twice as well."""
+    value, high, low = (2.0 ** -np.clip(exponent.numbers, 0.0, 1.0)).tolist()
+    return Estimate(value, low, high)
+
+
 def in_words(one: Statistic) -> str:
     """Return what an exponent means for a user, in a clause."""
-    value, low, high = (1 - 2.0 ** -np.clip(one.estimate.numbers, 0.0, 1.0)).tolist()
+    value, high, low = (1 - end for end in still_uncertain(one.estimate).numbers)
     return (
         f"if all inputs are known twice as well, {percent(value)} ({percent_interval(low, high)})"
         " fewer outcomes are uncertain (50 % where the boundary between regimes is smooth, 0 %"

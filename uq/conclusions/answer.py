@@ -74,10 +74,13 @@ def without_advice(findings: Findings) -> Answer:
         assumptions=assumptions(ds),
     )
     known = beside_levels(plain, _levels(findings, plain))
-    known = replace(known, ties=ties_of(ds, known))
     about = known.main_regimes if known.regimes_first else ()
-    mixing = intermingled(findings) if known.regimes_first else known.mixing
-    return replace(known, enough=enough_of(findings, known.quantities, about), mixing=mixing)
+    return replace(
+        known,
+        enough=enough_of(findings, known.quantities, about),
+        ties=ties_of(ds, known),
+        mixing=intermingled(findings) if known.regimes_first else known.mixing,
+    )
 
 
 def beside_levels(found: Answer, levels: Levels | None) -> Answer:

@@ -34,20 +34,18 @@ def answer_json(found: Answer) -> dict[str, Any]:
         share (``expected``), and the errors of what the study is about where that of the rows is
         the larger; ``intermingled``, where the regimes are: the ``uncertainty_exponent`` of their
         boundary, and how many uncertain outcomes are ``left`` with inputs known twice as well;
-        ``levels``: the
-        ``shares`` of the variance, and the probability of ``another_regime``; ``advice``: rule ->
-        ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were compared: what half the
-        scatter of their ``inputs`` would make ``after`` of the number ``what``. The numbers
-        of a sentence stand side by side, with the sentence, under a key of their own. A promise
-        has the places of its bounds among the rows in order (``lower_is_row``), and the share of
-        rows that have the last value, where that bounds nothing (``share_at_largest``). An event
-        has
-        its ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
-        input ``over``, and the ``limit`` of this input, ``at`` which its unwanted side becomes
-        rare, with that probability. A ranking has ``contributions``: ``inputs`` -> index,
-        ``effects`` -> change with a ``step`` of the input, in a ``unit`` or, where that is "", in
-        that of the output. The earliest rows have ``lives`` (row -> life), and the ``inputs`` that
-        distinguish them and the ``regimes`` of most of them.
+        ``levels``: the ``shares`` of the variance, and the probability of ``another_regime``;
+        ``advice``: rule -> ``text``, ``inputs``, ``rows``, and the ``tolerances`` that were
+        compared: what half the scatter of their ``inputs`` would make ``after`` of the number
+        ``what``. The numbers of a sentence stand side by side, with the sentence, under a key of
+        their own. A promise has the places of its bounds among the rows in order
+        (``lower_is_row``), and the share of rows that have the last value, where that bounds
+        nothing (``share_at_largest``). An event has its ``share``, what it is ``decided_by``, its
+        probability in ``parts`` of the range of the input ``over``, and the ``limit`` of this
+        input, ``at`` which its unwanted side becomes rare, with that probability. A ranking has
+        ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the input,
+        in a ``unit`` or, where that is "", in that of the output. The earliest rows have ``lives``
+        (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of them.
     """
     return {
         "rows": found.rows,

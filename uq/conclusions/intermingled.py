@@ -1,9 +1,8 @@
 """Whether the regimes are intermingled: better known inputs then tell little of the outcome."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-import numpy as np
-
+from uq.analysis.boundary import still_uncertain
 from uq.analysis.findings import Findings
 from uq.conclusions.words import rounded, share_text
 from uq.estimate import NOTHING, Estimate
@@ -19,13 +18,12 @@ class Intermingled:
         The uncertainty exponent of the boundary between them; without a number if unknown.
     """
 
-    exponent: Estimate = field(default=NOTHING)
+    exponent: Estimate = NOTHING
 
     @property
     def left(self) -> Estimate:
         """Share of uncertain outcomes that stay so if all inputs are known twice as well."""
-        value, high, low = (2.0 ** -np.clip(self.exponent.numbers, 0.0, 1.0)).tolist()
-        return Estimate(value, low, high)
+        return still_uncertain(self.exponent)
 
     @property
     def sentence(self) -> str:

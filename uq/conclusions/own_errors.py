@@ -155,4 +155,5 @@ def _again(promise: Promise, are_quantiles: bool, element: Element, context: Con
     alike = (one for one in population(context.rows, [element.output]) if one.name == element.name)
     drawn = replace(next(alike), values=element.values)  # with the law of what scales its lives
     known = {one.key[-1]: one.best.estimate.value for one in quantiles(drawn, context)}
-    return known[repr(round(1 - promise.coverage, 12))], known[repr(promise.coverage)]
+    low, high = (known[repr(p)] for p in promise.probabilities)
+    return low, high

@@ -118,6 +118,11 @@ class Promise:
         return " ".join(filter(None, (self._promised, *piles)))
 
     @property
+    def probabilities(self) -> tuple[float, float]:
+        """Those of its quantiles."""
+        return round(1 - self.coverage, 12), self.coverage
+
+    @property
     def _promised(self) -> str:
         share = f"{100 * self.coverage:g} %"
         covered = " ".join(filter(None, (share, self._of_bounded)))

@@ -95,7 +95,7 @@ def repeated_quantile(
     """
     order = _ranked_again(ranking)
     if promise is not None:
-        for p, one in zip((1 - promise.coverage, promise.coverage), promise.quantiles, strict=True):
+        for p, one in zip(promise.probabilities, promise.quantiles, strict=True):
             low, high = found_again(one, promise.is_life)
             if isfinite(low):
                 if likely is not None and p < 0.5:

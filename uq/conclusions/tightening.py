@@ -112,8 +112,7 @@ def _promised(
         return
     if quantity.is_life and known is not None:
         known = not known  # more ends are shorter lives
-    ends = (round(1 - promise.coverage, 12), promise.coverage)
-    for p, before in zip(ends, promise.quantiles, strict=True):
+    for p, before in zip(promise.probabilities, promise.quantiles, strict=True):
         if isfinite(before.value):
             words = f"the {100 * p:g} % quantile"
             yield ("quantiles", repr(p)), words, before, promise.unit, known
