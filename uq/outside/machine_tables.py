@@ -53,7 +53,7 @@ def data_of(path: Path) -> dict[str, Any]:
     if path.stat().st_size > _LONGEST:
         raise InputError(f"{path}: larger than a machine file can be")
     try:
-        data = read_toml(path.read_text(encoding="utf-8"))
+        data = read_toml(path.read_text(encoding="utf-8-sig"))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{path}: not valid TOML: {one_line(error)}") from None
     if "study" in data and "machine" not in data:
