@@ -17,6 +17,7 @@ import os
 import platform
 import re
 import time
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
@@ -117,7 +118,7 @@ def _snapshot(root: Path) -> _Snapshot:
     whole, words, stamps = hashlib.sha256(), set[bytes](), {}
     for path in filter(Path.is_file, sorted(root.rglob("*.py")) if root.is_dir() else [root]):
         stamps[path] = _stamp(path)
-        source = path.read_bytes()
+        source = path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
         whole.update(b"%s %d\n" % (os.fsencode(path.relative_to(root.parent)), len(source)))
         whole.update(source)
         words.update(re.findall(rb"\w+", source))

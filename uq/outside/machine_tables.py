@@ -1,5 +1,6 @@
 """Machine files in TOML: read, and checked against the tables that they may have."""
 
+from codecs import BOM_UTF8
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -59,6 +60,11 @@ def data_of(path: Path) -> dict[str, Any]:
     if "study" in data and "machine" not in data:
         raise InputError(f"{path}: is a study, not a machine file; it needs a table [machine]")
     return data
+
+
+def content_of(path: Path) -> bytes:
+    """Return a machine file as it is identified: without a byte-order mark, lines ended by LF."""
+    return path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
 
 
 def read_as(kind: type[T], path: Path) -> T:
