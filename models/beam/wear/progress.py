@@ -212,10 +212,16 @@ def scale(i, life):
 
 @inlined
 def control(i, life, out):
-    """Return the site that wears fastest among those that have not reached the last growth."""
+    """Return the site that wears fastest among those that have not reached the last growth.
+
+    If none of these wears, it is the other one: only as its gap widens can it be seen whether they
+    ever will.
+    """
     last = life.growths.shape[1] - 1
     right = 0.0 if out.reached[i, 0, last] else life.rate[i, 0]
     left = 0.0 if out.reached[i, 1, last] else life.rate[i, 1]
+    if right <= 0.0 and left <= 0.0:
+        right, left = life.rate[i, 0], life.rate[i, 1]
     return 0 if right >= left else 1
 
 
