@@ -65,7 +65,7 @@ def hold(i, life, out, now, grown, period, nearing, regime, accuracy, largest, s
     smooth = orbital and regime == life.regime[i] and _is_even(i, life, out, now, grown)
     error = _step_error(i, life, out, now, grown, _SMOOTH if smooth else 1.0)
     planned = life.rate[i, site] * life.span[i]
-    divisible = planned > 1.5 * SMALLEST_STEP * scale(i, life) and not was_last(
+    divisible = planned > 1.5 * SMALLEST_STEP * scale(i, life, out) and not was_last(
         i, life, out, now, grown
     )
     if error > _TIGHT * accuracy and divisible and settled:

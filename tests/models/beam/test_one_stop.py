@@ -83,6 +83,25 @@ def test_the_first_life_is_known_and_the_other_infinite(side):
     assert not outputs["time_to_depth_censored"].any()
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_worn_stop_is_followed_over_many_times_the_last_depth(side):
+    """An orbit of five periods at one stop; contact ends after 1e5 times the depth."""
+    p = {
+        "gap_asymmetry": 1.236913 * side,
+        "contact_stiffness": 27987.9,
+        "mass_damping": 14.9712,
+        "stiffness_damping": 3.7e-5,
+        "forcing_frequency": 44.477256,
+        "force_amplitude": 0.290711,
+    }
+    x = np.array([list(Params(**(MODEL.nominal | p)))])
+    settings = Settings(depths=(1e-9,), accuracy=1.0)
+    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), settings)
+    assert status[0] == Status.OK
+    assert np.isfinite(outputs["time_to_depth"]).sum() == 1
+    assert np.isposinf(outputs["time_to_depth"]).sum() == 1
+
+
 def test_under_a_random_load_the_worn_stop_widens_until_the_other_is_met_or_contact_ends():
     grown = np.array([[1.0, 0.0], [1.0, 1.0], [0.5, 0.0]])
     rate = np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 0.0]])
