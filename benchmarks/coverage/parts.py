@@ -65,6 +65,10 @@ PARTS = {
     },
     "fit-wrong": Part(curves.wrong_fits, 1000),
     "bands": Part(curves.bands, 1000),
+    **{
+        f"bands-censored-{rows}": Part(partial(curves.censored_bands, rows), 1000)
+        for rows in (30, 60, 200, 1000)
+    },
     "sobol": Part(indices.sobol),
     "sobol-jump": Part(indices.sobol_of_jump),
     "sobol-others": Part(indices.sobol_of_others, 500),
