@@ -110,6 +110,10 @@ PARTS = {
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),
     "importance": Part(fewer_rows.importance),
+    **{
+        f"hidden-{method}": Part(partial(fewer_rows.hidden, method), 400)
+        for method in ("subset", "importance")
+    },
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
