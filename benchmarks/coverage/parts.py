@@ -118,5 +118,9 @@ PARTS = {
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
     "fleet-shared": Part(fleets.shared_scale, 1000),
+    **{
+        f"fleet-law-{name.split()[0].lower()}": Part(partial(fleets.other_laws, name), 400)
+        for name in fleets.LAWS
+    },
     "basins": Part(basins.exponents, 1000),
 }
