@@ -84,7 +84,7 @@ class BetaProducts:
     def ended_after(self, time: Floats) -> MatchedBeta:
         """Return the law whose upper quantiles bound the share that has ended by each time."""
         place = np.searchsorted(self.ends, time, side="right")
-        left = self.at_risk_after(time).astype(float)
+        left = self.at_risk_after(time)
         with np.errstate(divide="ignore", invalid="ignore"):
             log_mean = self._log_mean[place] + np.log(left / (left + 1))
             log_relative = self._log_relative[place] + np.log1p(1 / (left * (left + 2)))
@@ -92,11 +92,12 @@ class BetaProducts:
 
     def at_risk_after(self, time: Floats) -> Floats:
         """Return the number of rows seen longer than each time, of those that end."""
-        return len(self._sorted) - np.searchsorted(self._sorted, time, side="right")
+        seen = np.searchsorted(self._sorted, time, side="right")
+        return np.asarray(len(self._sorted) - seen, dtype=float)
 
     def rows_ended_by(self, time: Floats) -> Floats:
         """Return the number of rows that have ended by each time."""
-        return self._ended[np.searchsorted(self.ends, time, side="right")]
+        return np.asarray(self._ended[np.searchsorted(self.ends, time, side="right")], dtype=float)
 
     def _law(self, log_mean: Floats, log_relative: Floats) -> MatchedBeta:
         among, scatter = -np.expm1(log_mean), np.exp(2 * log_mean) * np.expm1(log_relative)

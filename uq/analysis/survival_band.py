@@ -82,7 +82,7 @@ def _tail(ranks: bytes, censored: bytes, known_at_once: bool) -> float:
     ever = rng.beta(a, b, (DRAWS, 1)) if b else np.ones((DRAWS, 1))
     logs = np.cumsum(steps, axis=1)
     curves = ever * -np.expm1(-logs)
-    left = int(law.at_risk_after(last)[0])
+    left = float(law.at_risk_after(last)[0])
     further = logs[:, -1] + rng.standard_exponential(DRAWS) / left if left else np.inf
     beyond = ever[:, 0] * -np.expm1(-further)
 

@@ -254,10 +254,13 @@ def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outco
         "typical": ("parameter", np.median(inside, axis=0) if len(inside) else nothing),
     }
     estimates = np.array([one.probability for one in found])
-    ends = [float(binomial_interval(k / rows, rows)[1]) for k in (hits, hits + failed[0])]
+    supported, failed_high = (
+        float(binomial_interval(k / rows, rows)[1]) for k in (hits, hits + failed[0])
+    )
     plain = 0 if all(one.levels == 1 and hits for one in found) else rows
     scatter = disagreement(found, samples)
-    return _Outcome(estimates, subset_interval(found, samples), *ends, plain, scatter, variables)
+    interval = subset_interval(found, samples)
+    return _Outcome(estimates, interval, supported, failed_high, plain, scatter, variables)
 
 
 def _importance(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
