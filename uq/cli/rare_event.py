@@ -91,7 +91,7 @@ def _shown_unseen(ds: xr.Dataset) -> list[tuple[str, str]]:
         return []
     hits, rows = int(ds["wide_hits"]), int(ds["wide_rows"])
     return [
-        ("a hidden part", f"up to {number(float(ds['hidden_high']))}"),
+        ("a hidden part", f"at most {float(ds['hidden_high']):.2g} (95 %)"),
         ("rows drawn wide", f"{rows}, {hits} within the event"),
     ]
 
