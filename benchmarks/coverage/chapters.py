@@ -36,7 +36,7 @@ CHAPTERS = {
     "Joint bounds": r"Joint",
     "Two fidelities": r".*cheap twin",
     "Runs that stop early": r"Runs that stop",
-    "Rare events": r"P = 1e-5|Subset simulation",
+    "Rare events": r"P = \d|Subset simulation",
     "Lives scaled by an input": r"Life scaled",
     "What-if": r"What if",
     "Fleets": r"Fleet",
