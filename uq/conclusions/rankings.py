@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import expm1, hypot, isfinite, log1p, nan
+from math import expm1, isfinite, log1p, nan
 
 import xarray as xr
 
@@ -78,6 +78,9 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     what = f"{share}{kind.words}{'' if share else of}{by}"
     if not measured[0].counts:
         reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
+        needed = found.indices.rows_factors.get(measured[0].name, 1.0)
+        if needed > 1:
+            factor = max(factor, needed)
         return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
     # What does not exceed inputs without effect may yet contribute as much as the first.
     weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
@@ -86,7 +89,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
-        factor = (hypot(first.half, second.half) / apart) ** 2
+        factor = (first.apart(second) / apart) ** 2
         reason, is_flat = f"the order of {names} is not settled", False
         if factor <= 1:  # the rows tell apart what differs by more
             is_flat = kind.unit == "variance" and first.index.value < SMALL
@@ -126,6 +129,8 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False
     goal = GOAL * _scale(first, kind)
+    if first.index.reason:
+        return f"{which}: {text}, and {first.index.reason}", (first.half / goal) ** 2, False
     if first.half > goal:
         ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
@@ -169,7 +174,7 @@ def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]
 
 def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
     """Return whether another input may have as large an index, errors multiplied by `times`."""
-    return first.index.value - other.index.value <= times * hypot(first.half, other.half)
+    return first.index.value - other.index.value <= times * first.apart(other)
 
 
 def _effects(

@@ -7,7 +7,7 @@ import numpy as np
 from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import upper_probability
-from uq.methods.given_data import beside_nulls, one_kind
+from uq.methods.given_data import DUMMIES, beside_nulls, null_of, one_kind
 from uq.methods.indices import S1, Indices
 from uq.methods.measures import first_order
 from uq.methods.residual_variance import Part, Residual, residual_variance, variance
@@ -37,7 +37,8 @@ def first_order_indices(sample: Sample) -> Indices:
         (`uq.methods.residual_variance`), without bias however steep the output is. Intervals are
         Student's, on the scale of log(1 - S1): of independent rows by the influence of each row
         [1]_, raised at both ends by one more row as influential as the most influential; of
-        replicates by the jackknife. None where the error rests on fewer than `ENOUGH_ROWS` rows.
+        replicates by the jackknife. None where the error rests on fewer than `ENOUGH_ROWS` rows;
+        of an event, inputs without effect then show what is negligible.
         Of one replicate, whose rows depend on each other, the index is that of random balance,
         beside inputs without effect.
 
@@ -59,11 +60,12 @@ def first_order_indices(sample: Sample) -> Indices:
     y = y - y.mean(axis=0)
     columns = dict(sample.inputs)
     estimate = _of_rows if part is None else _of_replicates
-    values, errors, widest, few = estimate(columns, y, part, sample.confidence)
+    values, errors, widest, factors = estimate(columns, y, part, sample.confidence)
     names = list(columns)
     own = np.sqrt(np.diag(errors))
     found = {
-        name: _estimate(values[i], own[i], widest[:, i], few[i]) for i, name in enumerate(names)
+        name: _estimate(float(values[i]), own[i], widest[:, i], factors[i])
+        for i, name in enumerate(names)
     }
     products = {
         (names[i], names[j]): float(errors[i, j])
@@ -71,16 +73,29 @@ def first_order_indices(sample: Sample) -> Indices:
     }
     lacking = {name: one.reason for name, one in found.items() if one.reason}
     notes = tuple(f"S1 of {name} has no interval: {why}" for name, why in lacking.items())
-    return Indices({S1: found}, notes, half_products=products)
+    nulls = {}
+    if lacking and sample.nulls and len(np.unique(y)) == 2:
+        nulls = {S1: null_of(_without_effect(y, part), len(names))}
+    missing = {name: factor for name, factor in zip(names, factors, strict=True) if factor > 1}
+    return Indices({S1: found}, notes, nulls, half_products=products, rows_factors=missing)
+
+
+def _without_effect(y: Floats, part: Part) -> Floats:
+    """Return the indices of inputs without effect."""
+    idle = np.random.default_rng(0).random((DUMMIES, len(y)))
+    return _shares({str(i): column for i, column in enumerate(idle)}, y, part)
 
 
 def _of_rows(
     columns: dict[str, Floats], y: Floats, part: Part, confidence: float
-) -> tuple[Floats, Floats, Floats, list[str]]:
-    """Return indices, products of half-widths, and what one more row would add at either end."""
+) -> tuple[Floats, Floats, Floats, list[float]]:
+    """Return indices, products of half-widths, and what one more row would add at either end.
+
+    Last, how many times the rows each would need for an interval.
+    """
     n, every = len(y), variance(y)
     squares = np.sum(y**2, axis=1)
-    values, influences, noises, few = [], [], [], []
+    values, influences, noises, factors = [], [], [], []
     for column in columns.values():
         left = residual_variance(column, y)
         value = 1 - left.variance / every
@@ -89,12 +104,12 @@ def _of_rows(
         values.append(value)
         influences.append(influence)
         noises.append(_beyond(left, influence, value, every))
-        few.append(_why_few(influence))
+        factors.append(_rows_factor(influence))
     influence = np.array(influences)
     quantile = student(upper_probability(confidence), n - 1)
     scatter = influence @ influence.T / (n - 1) + np.diag(noises)
     widest = np.array([influence.max(axis=1), -influence.min(axis=1)]) / n
-    return np.array(values), quantile**2 * scatter / n, widest, few
+    return np.array(values), quantile**2 * scatter / n, widest, factors
 
 
 def _beyond(left: Residual, influence: Floats, value: float, every: float) -> float:
@@ -104,18 +119,16 @@ def _beyond(left: Residual, influence: Floats, value: float, every: float) -> fl
     return left.noise / every**2 - min(excess, 0.9 * scatter)
 
 
-def _why_few(influence: Floats) -> str:
-    """Return why an interval would not hold, or ""."""
-    fourth = float(np.sum(influence**4))
-    rows = float(influence @ influence) ** 2 / fourth if fourth > 0 else 0.0
-    if rows >= ENOUGH_ROWS:
-        return ""
-    return f"its error rests on about {counted(round(rows), 'row')}; {ENOUGH_ROWS} are needed"
+def _rows_factor(influence: Floats) -> float:
+    """Return how many times the rows an interval needs: those that an error rests on, at least."""
+    square = float(influence @ influence)
+    rows = square**2 / float(np.sum(influence**4)) if square > 0 else 0.0
+    return ENOUGH_ROWS / max(rows, 1.0)
 
 
 def _of_replicates(
     columns: dict[str, Floats], y: Floats, part: Part, confidence: float
-) -> tuple[Floats, Floats, Floats, list[str]]:
+) -> tuple[Floats, Floats, Floats, list[float]]:
     """Return the same from the jackknife over replicates."""
     assert part is not None
     numbers = np.unique(part)
@@ -134,8 +147,7 @@ def _of_replicates(
     away = left_out - left_out.mean(axis=0)
     quantile = student(upper_probability(confidence), r - 1)
     errors = quantile**2 * (r - 1) / r * away.T @ away
-    why = ["" if errors[i, i] > 0 else "all replicates agree" for i in range(len(columns))]
-    return values, errors, np.zeros((2, len(columns))), why
+    return values, errors, np.zeros((2, len(columns))), [1.0] * len(columns)
 
 
 def _shares(columns: dict[str, Floats], y: Floats, part: Part) -> Floats:
@@ -143,12 +155,15 @@ def _shares(columns: dict[str, Floats], y: Floats, part: Part) -> Floats:
     return np.array([1 - residual_variance(x, y, part).variance / every for x in columns.values()])
 
 
-def _estimate(value: float, half: float, widest: Floats, why: str) -> Estimate:
+def _estimate(value: float, half: float, widest: Floats, factor: float) -> Estimate:
     """Return an index with its interval on the scale of log(1 - S1)."""
-    if why or not half > 0:
-        return Estimate(float(value), reason=why or "the rows show no error")
+    if factor > 1:
+        rows = counted(round(ENOUGH_ROWS / factor), "row")
+        return Estimate(value, reason=f"its error rests on about {rows}; {ENOUGH_ROWS} are needed")
+    if not half > 0:
+        return Estimate(value, reason="the rows show no error")
     # Beyond an error as large as what is left, the scale would send the lower end far away.
     relative = min(half / (1 - value), 1.0) if value < 1 else 1.0
     low = value - half * np.expm1(relative) / relative - widest[0]
     high = value - half * np.expm1(-relative) / relative + widest[1]
-    return Estimate(float(value), float(low), float(high))
+    return Estimate(value, float(low), float(high))
