@@ -12,15 +12,18 @@ from uq.conclusions.contributions import SMALL, Change, Contribution, Ranking
 from uq.conclusions.measured import Measured, measured_inputs
 from uq.conclusions.repeated import AGAIN
 from uq.conclusions.words import Unit, called, twin_of, unit_of_input
+from uq.designs.registry import DESIGNS
 from uq.errors import choices
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
-from uq.indices.independent_inputs import independent_inputs
+from uq.indices.independent_inputs import independent_inputs, why_dependent
+from uq.indices.sensitivities import TargetIndices
 from uq.indices.targets import FORMS, Target, split_name
-from uq.methods.indices import IndexKind
+from uq.methods.indices import S1, ST, IndexKind
+from uq.methods.registry import fed_by
 from uq.rows.elements import replicates_of, study_file_of
+from uq.rows.ranked import ranked_in_words
 from uq.study.file import Tied
-from uq.wording import rows_in_words
 
 GOAL = 0.1
 """Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
@@ -33,6 +36,8 @@ ALIKE = 0.5
 
 LEAST = 0.01
 """A smaller index is not listed."""
+
+_EXPANSION = "hdmr"  # the method that finds total indices in a plain sample
 
 _STEPS = (0.1, 0.01, 0.001)
 _WITHIN = 4.0  # standard deviations that a step may span
@@ -56,9 +61,9 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     Ranking
     """
     ranking = _ranking(findings.ranked, name, method, verbs)
-    if findings.ranked is findings:
+    by = ranked_in_words(findings.ranked.ds, findings.ds)
+    if not by:
         return ranking
-    by = f"by the first {rows_in_words(findings.ranked.ds.sizes['sample'])} rows"
     reason = f"{ranking.reason} ({by})" if ranking.reason else ""
     return replace(ranking, what=f"{ranking.what}, {by}", reason=reason, rows_factor=nan)
 
@@ -103,7 +108,50 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
     of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
     rivals = _rivals(measured)
-    return Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+    ranking = Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+    if kind != S1 or len(kinds) > 1:
+        return ranking
+    behind = (one.index.value for one in measured if one not in groups[0])
+    ranking = replace(
+        ranking,
+        unexplained=unexplained(found),
+        runner_up=max(behind, default=0.0),
+        remedy="a 'saltelli' design shows them",
+    )
+    if ranking.may_be_overturned and not ranking.of_event:
+        ranking = replace(ranking, totals=_totals(findings, name))
+    return ranking
+
+
+def unexplained(found: TargetIndices) -> Estimate:
+    """Return the share of the variance that no single input explains.
+
+    Parameters
+    ----------
+    found : TargetIndices
+        With first-order indices.
+    """
+    indices = found.indices
+    value = 1 - sum(one.value for one in indices.values[S1].values())
+    lacking = any(not one.has_interval for one in indices.values[S1].values())
+    if lacking or not indices.half_products:
+        return Estimate(value)
+    square = sum(
+        product * (1 if first == second else 2)
+        for (first, second), product in indices.half_products.items()
+    )
+    half = max(square, 0.0) ** 0.5
+    return Estimate(value, value - half, value + half)
+
+
+def _totals(findings: Findings, name: str) -> dict[str, float]:
+    """Return the total indices, the largest first, of an expansion that represents the rows."""
+    dependent = bool(why_dependent(findings.ds))
+    if _EXPANSION not in fed_by(DESIGNS[findings.ds.attrs["design"]], dependent):
+        return {}
+    found = findings.indices(_EXPANSION, name)
+    values = {} if found.refused else found.indices.values[ST]
+    return {label: values[label].value for label in sorted(values, key=lambda x: -values[x].value)}
 
 
 def _scale(first: Measured, kind: IndexKind) -> float:

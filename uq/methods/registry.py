@@ -43,7 +43,6 @@ METHODS = {
         source="difference-based residual variance in the order of the input (Tong & Wang 2005)",
         intervals="influence of each row, or jackknife over replicates; none where few rows decide",
         least=MIN_ROWS,
-        most_rows=200_000,
         aggregates=True,
     ),
     "rbd-fast": _of_plain_rows(
@@ -51,7 +50,6 @@ METHODS = {
         estimate=beside_nulls(one_kind(S1, first_order)),
         kinds=(S1,),
         source="random balance, bias corrected; correlation ratio of inputs with many equal values",
-        most_rows=200_000,
         aggregates=True,
     ),
     "delta": _of_any_inputs(
@@ -84,7 +82,6 @@ METHODS = {
         kinds=(),
         gives="share of a quantile's contrast that an input explains",
         source="Fort et al. (2016), corrected by inputs without effect",
-        most_rows=200_000,
         takes_events=False,
     ),
     "regional": _of_any_inputs(
