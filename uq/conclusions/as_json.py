@@ -45,8 +45,9 @@ def answer_json(found: Answer) -> dict[str, Any]:
         input, ``at`` which its unwanted side becomes rare, with that probability. A ranking has
         ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the input,
         in a ``unit`` or, where that is "", in that of the output; and, of shares that inputs
-        explain alone, what is ``unexplained`` by any single one, with the ``totals`` of an expansion
-        where interactions could change the order. The earliest rows have ``lives`` (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of them.
+        explain alone, what is ``unexplained`` by any single one, with the ``totals`` of an
+        expansion where interactions could change the order. The earliest rows have ``lives``
+        (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of them.
     """
     return {
         "rows": found.rows,
