@@ -173,17 +173,21 @@ class Promise:
         if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
         then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
-        side = "upper" if is_upper else "lower"
-        p = self.coverage if is_upper else 1 - self.coverage
-        of = " of magnitudes" if self.of_magnitude else ""
-        end = f"The {side} end of the interval of the {100 * p:.3g} % quantile{of}"
-        return f"{end} would then be {then}; as studied, {studied}."
+        return f"{self.end_of_quantile} {then}; as studied, {studied}."
 
-    def opening(self, then: str = "") -> str:
-        """Return what a single bound promises, up to the bound; `then` says when."""
+    @property
+    def end_of_quantile(self) -> str:
+        """What an end of the interval of the quantile that it bounds would be, up to the number."""
+        is_upper = isfinite(self.upper)
+        side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
+        of = " of magnitudes" if self.of_magnitude else ""
+        return f"The {side} end of the interval of the {100 * p:.3g} % quantile{of} would then be"
+
+    def opening(self) -> str:
+        """Return what a single bound promises, up to the bound."""
         side = self._side(isfinite(self.upper))
         share = f"at least {100 * self.coverage:g} %"
-        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, then, side)))}"
+        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
 
     @property
     def _sure(self) -> str:
