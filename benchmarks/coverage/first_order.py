@@ -194,7 +194,4 @@ FEW = (
     " samples of 300 rows or fewer, there is no interval"
 )
 REASONS = {"S1": FEW}
-WIDE = {
-    "S1": "conservative: the jackknife counts the noise of comparing rows twice (Efron & Stein"
-    " 1981)"
-}
+WIDE = {"S1": "conservative: the interval of independent rows, of designs that spread more evenly"}

@@ -23,8 +23,6 @@ FINE = 0.01
 """An index whose doubled error is below this has it as its interval, however few rows decide: those
 beside a jump of an output that nothing else changes."""
 
-_FEWEST_REPLICATES = 3
-
 
 def first_order_indices(sample: Sample) -> Indices:
     """Estimate the share of the variance that each input explains alone.
@@ -39,10 +37,12 @@ def first_order_indices(sample: Sample) -> Indices:
     Indices
         ``S1``, 1 less the variance that is left when an input is known over that of all rows
         (`uq.methods.residual_variance`), without bias however steep the output is. Intervals are
-        Student's, on the scale of log(1 - S1): of independent rows by the influence of each row
-        [1]_, raised at both ends by one more row as influential as the most influential; of
-        replicates by the jackknife. None where the error rests on fewer than `ENOUGH_ROWS` rows;
-        of an event, inputs without effect then show what is negligible.
+        Student's, on the scale of log(1 - S1), by the influence of each row [1]_, raised at both
+        ends by one more row as influential as the most influential. They are those of independent
+        rows for replicates, too, whose mean influence scatters no more; a few
+        replicates may have as many rows each beyond a jump, and hide its error. None where the error
+        rests on fewer than `ENOUGH_ROWS` rows; of an event, inputs without effect then show what
+        is negligible.
         Of one replicate, whose rows depend on each other, the index is that of random balance,
         beside inputs without effect.
 
@@ -52,7 +52,7 @@ def first_order_indices(sample: Sample) -> Indices:
        Stat. 25, 573-595 (2013).
     """
     part = sample.replicate
-    if part is not None and len(np.unique(part)) < _FEWEST_REPLICATES:
+    if part is not None and len(np.unique(part)) < 2:
         by_balance = beside_nulls(one_kind(S1, first_order))(sample)
         note = (
             "the rows of one replicate depend on each other: by random balance, too small where"
@@ -63,8 +63,7 @@ def first_order_indices(sample: Sample) -> Indices:
     y = sample.values.reshape(len(sample.values), -1)
     y = y - y.mean(axis=0)
     columns = dict(sample.inputs)
-    estimate = _of_rows if part is None else _of_replicates
-    values, errors, widest, factors = estimate(columns, y, part, sample.confidence)
+    values, errors, widest, factors = _of_rows(columns, y, part, sample.confidence)
     names = list(columns)
     own = np.sqrt(np.diag(errors))
     found = {
@@ -97,11 +96,11 @@ def _of_rows(
 
     Last, how many times the rows each would need for an interval.
     """
-    n, every = len(y), variance(y)
+    n, every = len(y), variance(y, part)
     squares = np.sum(y**2, axis=1)
     values, influences, noises, factors = [], [], [], []
     for column in columns.values():
-        left = residual_variance(column, y)
+        left = residual_variance(column, y, part)
         value = 1 - left.variance / every
         influence = (left.squares - (1 - value) * squares) / every
         influence -= influence.mean()
@@ -128,30 +127,6 @@ def _rows_factor(influence: Floats) -> float:
     square = float(influence @ influence)
     rows = square**2 / float(np.sum(influence**4)) if square > 0 else 0.0
     return ENOUGH_ROWS / max(rows, 1.0)
-
-
-def _of_replicates(
-    columns: dict[str, Floats], y: Floats, part: Part, confidence: float
-) -> tuple[Floats, Floats, Floats, list[float]]:
-    """Return the same from the jackknife over replicates."""
-    assert part is not None
-    numbers = np.unique(part)
-    values = _shares(columns, y, part)
-    left_out = np.array(
-        [
-            _shares(
-                {k: x[part != number] for k, x in columns.items()},
-                y[part != number],
-                part[part != number],
-            )
-            for number in numbers
-        ]
-    )
-    r = len(numbers)
-    away = left_out - left_out.mean(axis=0)
-    quantile = student(upper_probability(confidence), r - 1)
-    errors = quantile**2 * (r - 1) / r * away.T @ away
-    return values, errors, np.zeros((2, len(columns))), [1.0] * len(columns)
 
 
 def _shares(columns: dict[str, Floats], y: Floats, part: Part) -> Floats:

@@ -41,7 +41,7 @@ METHODS = {
         first_order_indices,
         (S1,),
         source="difference-based residual variance in the order of the input (Tong & Wang 2005)",
-        intervals="influence of each row, or jackknife over replicates; none where few rows decide",
+        intervals="influence of each row; none where few rows decide",
         least=MIN_ROWS,
         aggregates=True,
     ),

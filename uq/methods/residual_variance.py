@@ -145,7 +145,8 @@ def _of_neighbours(y: Floats, part: Part) -> Residual:
         diagonal[lag : 2 * lag] += weight / 4
         diagonal[-lag:] -= weight / 4
         diagonal[-2 * lag : -lag] += weight / 4
-        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag]))
+        used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
+        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag])) / max(used, 0.1)
     excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
     return Residual(left, squares * diagonal, noise, excess)
 
