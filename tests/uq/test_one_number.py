@@ -12,13 +12,12 @@ from uq.conclusions.as_json import answer_json
 from uq.indices.as_json import sensitivity_json
 from uq.indices.sensitivities import sensitivities
 from uq.report.page import page
-from uq.rows import ranked
 
 
 @pytest.fixture
 def life(monkeypatch):
     """A life of 1,000 rows, as if these were too many to rank inputs by all of them."""
-    monkeypatch.setattr(ranked, "RANKED", 400)
+    monkeypatch.setattr("uq.rows.ranked.RANKED", 400)
     return asking(lifetime()[0], tolerance={"coverage": 0.95, "confidence": 0.95})
 
 

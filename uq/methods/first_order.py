@@ -39,10 +39,9 @@ def first_order_indices(sample: Sample) -> Indices:
         (`uq.methods.residual_variance`), without bias however steep the output is. Intervals are
         Student's, on the scale of log(1 - S1), by the influence of each row [1]_, raised at both
         ends by one more row as influential as the most influential. They are those of independent
-        rows for replicates, too, whose mean influence scatters no more; a few
-        replicates may have as many rows each beyond a jump, and hide its error. None where the error
-        rests on fewer than `ENOUGH_ROWS` rows; of an event, inputs without effect then show what
-        is negligible.
+        rows for replicates, too, whose mean influence scatters no more; a few replicates may have
+        as many rows each beyond a jump, and hide its error. None where the error rests on fewer
+        than `ENOUGH_ROWS` rows; of an event, inputs without effect then show what is negligible.
         Of one replicate, whose rows depend on each other, the index is that of random balance,
         beside inputs without effect.
 
