@@ -216,7 +216,7 @@ def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
 def _of_ranking(one: Ranking | None) -> dict[str, Any]:
     if one is None:
         return {}
-    found = {
+    found: dict[str, Any] = {
         "sentence": one.sentence,
         "target": one.target,
         "method": one.method,
