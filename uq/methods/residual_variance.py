@@ -11,7 +11,7 @@ from uq.contract import Floats, Mask
 LEAST_LAGS = 8
 """Fewer lags than this leave the intercept of a parabola too noisy."""
 
-_MOST_LAGS = 250
+_MOST_LAGS = 100
 _FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
 _MOST_NEIGHBOURS = 30
 _JUMP = 16.0  # a squared residual from one side this many times that from the other side
