@@ -111,6 +111,8 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     found = [(rows, one) for rows, one in found if np.isfinite(one.variance)]
     kept = sum(len(rows) for rows, _ in found)
     squares = np.zeros(len(y))
+    if not found:  # no two rows of one value are of different replicates
+        return Residual(np.nan, squares, 0.0, 0.0)
     for rows, one in found:
         squares[rows] = one.squares
     parts = np.array([(one.variance, one.noise, one.excess) for _, one in found])
