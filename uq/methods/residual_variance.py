@@ -1,6 +1,7 @@
 """The variance that remains when one input is known, from rows in the order of that input."""
 
-from functools import cache
+from functools import lru_cache
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ LEAST_LAGS = 8
 """Fewer lags than this leave the intercept of a parabola too noisy."""
 
 _MOST_LAGS = 100
+_FEWEST_LAGS = 4
+_LEAST_PAIRED = 0.1  # share of the pairs of rows some places apart that are of two replicates
 _FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
 _MOST_NEIGHBOURS = 30
 _JUMP = 16.0  # a squared residual from one side this many times that from the other side
@@ -137,32 +140,44 @@ def _of_equal(y: Floats, part: Part) -> Residual:
 
 def _of_neighbours(y: Floats, part: Part) -> Residual:
     """Return the residual variance of rows in the order of the input."""
-    lags = _number_of_lags(y, part)
+    number = _number_of_lags(y, part)
+    lags = _lags(number, len(y), part)
     left = _intercept(y, part, lags)
-    squares, local, smoothed = _squared_residuals(y, lags, left)
-    weights, diagonal, noise = _weights(lags), np.ones(len(y)), 0.0
-    for lag, weight in enumerate(weights, 1):
+    squares, local, smoothed = _squared_residuals(y, number, left)
+    diagonal, noise = np.ones(len(y)), 0.0
+    for lag, weight in zip(lags, _weights(lags), strict=True):
         # Near the ends of the order rows count a quarter less, and those they meet a quarter more.
         diagonal[:lag] -= weight / 4
         diagonal[lag : 2 * lag] += weight / 4
         diagonal[-lag:] -= weight / 4
         diagonal[-2 * lag : -lag] += weight / 4
         used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
-        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag])) / max(used, 0.1)
+        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag])) / used
     excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
     return Residual(left, squares * diagonal, noise, excess)
 
 
-@cache
-def _weights(lags: int) -> tuple[float, ...]:
+def _lags(number: int, rows: int, part: Part) -> tuple[int, ...]:
+    """Return the first lags at which enough rows are of different replicates."""
+    if part is None:
+        return tuple(range(1, number + 1))
+    lags = range(1, min(3 * number, rows // 3) + 1)
+    usable = (lag for lag in lags if np.mean(part[lag:] != part[:-lag]) >= _LEAST_PAIRED)
+    return tuple(islice(usable, number))
+
+
+@lru_cache(256)
+def _weights(lags: tuple[int, ...]) -> tuple[float, ...]:
     """Return the weight of each lag in the intercept of a parabola fitted by least squares."""
-    lag = np.arange(1.0, lags + 1)
-    fitted = np.linalg.pinv(np.column_stack([np.ones(lags), lag, lag**2]))
+    lag = np.array(lags, float)
+    fitted = np.linalg.pinv(np.column_stack([np.ones(len(lags)), lag, lag**2]))
     return tuple(fitted[0].tolist())
 
 
-def _intercept(y: Floats, part: Part, lags: int) -> float:
-    weights = enumerate(_weights(lags), 1)
+def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
+    if len(lags) < _FEWEST_LAGS:
+        return np.nan
+    weights = zip(lags, _weights(lags), strict=True)
     return float(sum(weight * _half_square(y, part, lag) for lag, weight in weights))
 
 
@@ -174,7 +189,7 @@ def _half_square(y: Floats, part: Part, lag: int) -> float:
     counts[-lag:] += 0.5
     if part is not None:
         counts *= part[lag:] != part[:-lag]
-    return float(counts @ squares / counts.sum()) if counts.any() else np.nan
+    return float(counts @ squares / counts.sum())
 
 
 def _number_of_lags(y: Floats, part: Part) -> int:
@@ -184,7 +199,9 @@ def _number_of_lags(y: Floats, part: Part) -> int:
     if not every > 0:
         return LEAST_LAGS
     pilot = min(12, most)
-    left = max(_intercept(y, part, pilot) / every, 1e-6)
+    left = max(_intercept(y, part, _lags(pilot, n, part)) / every, 1e-6)
+    if np.isnan(left):
+        return LEAST_LAGS
     explained = max(1 - left, 3 * max(left, 1e-3) / np.sqrt(n * pilot))
     return int(np.clip(0.4 * n**0.6 * (left / explained) ** 0.4, LEAST_LAGS, most))
 
