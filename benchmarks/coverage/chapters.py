@@ -23,6 +23,7 @@ CHAPTERS = {
     "Sobol' indices": (
         r"(Ishigami|Two regimes|G-function|Life that may never end), saltelli, .* groups"
     ),
+    "Shares that inputs explain alone": r"First-order",
     "Shapley effects": r"Ishigami, shapley",
     "Indices of all elements of an output": r"A front|Worn depth",
     "Shapley effects of dependent inputs": r"Dependent inputs",

@@ -12,6 +12,7 @@ from benchmarks.coverage import (
     effects,
     few,
     fewer_rows,
+    first_order,
     fleets,
     indices,
     joint,
@@ -87,6 +88,11 @@ PARTS = {
     **{f"levels-{name}": Part(partial(nested.effects, name)) for name in nested.EFFECTS},
     "levels-integrated": Part(nested.integrated),
     "levels-weighted": Part(nested.weighted),
+    **{
+        f"first-order-{rows}": Part(partial(first_order.rows, rows), 1000)
+        for rows in first_order.ROWS
+    },
+    "first-order-replicates": Part(first_order.replicates, 300),
     "morris": Part(indices.morris),
     **{
         f"null-{name}": Part(partial(indices.nulls, name), 1000 if name in HSIC else REPETITIONS)
