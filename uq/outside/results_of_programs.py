@@ -10,6 +10,7 @@ import numpy as np
 
 from uq.errors import one_line
 from uq.literals import read_number
+from uq.netcdf_files import refuse_tricks
 from uq.outside.machine_file import STDOUT, OutputTable
 from uq.outside.returned import WrongReturnError
 
@@ -106,7 +107,10 @@ def _matched(text: str, pattern: str) -> float:
 def _in_netcdf(path: Path, variable: str) -> Any:
     import netCDF4
 
+    refuse_tricks(path)
     with netCDF4.Dataset(path) as data:
         if variable not in data.variables:
             raise ValueError(f"no variable '{variable}'")
+        if data[variable].size * 8 > LONGEST:
+            raise ValueError(f"too large: {data[variable].size} numbers")
         return np.ma.filled(np.ma.asarray(data[variable][...], dtype=float), np.nan).tolist()
