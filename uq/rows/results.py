@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model
 from uq.errors import InputError, choices, nearest
+from uq.literals import without_control
 from uq.netcdf_files import most_bytes, refuse_tricks
 from uq.places import node
 from uq.provenance import provenance
@@ -161,7 +162,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
     try:
-        ds = _opened(path)
+        ds = _legible(_opened(path))
         check(ds, path)
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
@@ -192,6 +193,21 @@ def _opened(path: Path) -> xr.Dataset:
         return ds
     except UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
+
+
+def _legible(ds: xr.Dataset) -> xr.Dataset:
+    """Return a Dataset of which no text can control a terminal."""
+    for owner in (ds, *ds.variables.values()):
+        for name, value in owner.attrs.items():
+            if isinstance(value, str):
+                owner.attrs[name] = without_control(value)
+            elif isinstance(value, list):
+                owner.attrs[name] = [without_control(str(text)) for text in value]
+    for name, variable in ds.coords.items():
+        if variable.dtype.kind in "OU" and variable.ndim == 1:
+            labels = [without_control(str(label)) for label in variable.values]
+            ds = ds.assign_coords({name: (variable.dims, labels, variable.attrs)})
+    return ds
 
 
 def _others(path: Path) -> str:

@@ -40,7 +40,7 @@ def remote_workers(address: str) -> Iterator[Workers]:
         _check_certificates(where, encrypted=address.startswith("tls:"))
         try:
             client = Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, TypeError, RuntimeError) as error:  # also of its addresses
             reason = one_line(error)
             raise InputError(
                 f"{where}: cannot connect: {reason}; is a dask scheduler running there?"
