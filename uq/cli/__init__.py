@@ -84,8 +84,8 @@ def _unforeseen(error: Exception) -> str:
     except OSError:
         name = "nowhere, as no temporary file can be written"
     return (
-        f"uq: this input was not foreseen ({described(error)}); please report it with its traceback,"
-        f" kept in {name}"
+        f"uq: this input was not foreseen ({described(error)}); please report it with its"
+        f" traceback, kept in {name}"
     )
 
 
