@@ -69,8 +69,9 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
     if faults:
         raise InputError(*(f"machine '{model.name}': {fault}" for fault in faults))
     with suppress(OSError):
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        kept.touch()
+        if kept.is_absolute():  # else there is no home: the path begins with "~"
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            kept.touch()
 
 
 def _at_ends(study: "Study", row: Floats) -> Floats:
