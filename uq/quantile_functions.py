@@ -13,6 +13,7 @@ from scipy import special
 
 from uq.contract import Floats
 
+_LARGEST_INT = 2**31 - 1  # that `scipy.special` counts to
 _TIE = 64 * np.finfo(float).eps  # probabilities this close, relatively, are equal but for rounding
 
 
@@ -46,8 +47,15 @@ def negative_binomial(probability: float, hits: int, share: float) -> int:
     """Return the least number of misses before so many hits, as `binomial` does."""
     return _least(
         special.nbdtrik(probability, hits, share),
-        lambda misses: special.nbdtr(misses, hits, share) >= probability * (1 - _TIE),
+        lambda misses: _at_most(misses, hits, share) >= probability * (1 - _TIE),
     )
+
+
+def _at_most(misses: int, hits: int, share: float) -> Any:
+    """Return the probability of at most so many misses before so many hits."""
+    if misses < _LARGEST_INT:
+        return special.nbdtr(misses, hits, share)
+    return special.betainc(hits, misses + 1.0, share)
 
 
 def _least(guess: Any, is_enough: Callable[[int], Any]) -> int:
