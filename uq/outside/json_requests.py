@@ -16,7 +16,7 @@ from threading import Timer
 from typing import Any
 from urllib.parse import urlsplit
 
-from uq.errors import one_line
+from uq.literals import plain_line
 
 LONGEST = 10_000_000
 """Most bytes of a request's body."""
@@ -29,7 +29,7 @@ class RequestError(Exception):
 
     def __init__(self, status: int, kind: str, message: str):
         super().__init__(message)
-        self.answer = status, {"error": {"type": kind, "message": one_line(message)}}
+        self.answer = status, {"error": {"type": kind, "message": plain_line(message)}}
 
 
 def invalid(message: object, status: int = HTTPStatus.BAD_REQUEST) -> RequestError:
