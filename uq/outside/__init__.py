@@ -18,5 +18,6 @@ Reading order; a module imports only those above it:
     machine         a machine file of either kind, or an FMU
     um_bridge       the protocol by which servers of models are asked
     server          a model on a server as a machine
-    serving         a model offered to others
+    offered         answers of a model to the questions of that protocol
+    serving         a model offered to others over HTTP
 """

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import count
-from math import inf
+from math import inf, nan
 from typing import Any, Self
 
 from uq.contract import Model, Parameter, censored_name
@@ -66,7 +66,7 @@ def server_model(address: str) -> Model:
                     one["name"],
                     one["unit"],
                     one["meaning"],
-                    (float(one["bounds"][0]), float(one["bounds"][1])),
+                    _bounds(one["bounds"]),
                     "assumed: of the server",
                 ),
                 float(one["nominal"]),
@@ -127,6 +127,12 @@ def _known(address: str) -> _Known:
     if not 0 < sum(outputs) <= _LARGEST or min(outputs) < 1:
         raise InputError(f"{address}: has outputs of sizes {outputs}")
     return _Known(server, name, sizes, outputs, about)
+
+
+def _bounds(pair: Any) -> tuple[float, float]:
+    """Return the bounds that a server describes, null for none."""
+    low, high = pair
+    return -inf if low is None else float(low), inf if high is None else float(high)
 
 
 def _vectors(count: int) -> list[str]:
@@ -195,6 +201,10 @@ class _Evaluate:
         for name, one in described["outputs"].items():
             flags = columns.get(censored_name(name)) or [0.0] * len(columns[name])
             both = zip(columns[name], flags, strict=True)
-            values = [Censored(value) if cut else value for value, cut in both]
+            absent = inf if one["life"] else nan  # null, as JSON has neither
+            values = [
+                Censored(value) if cut else absent if value is None else value
+                for value, cut in both
+            ]
             found[name] = values if one["shape"] else values[0]
         return found

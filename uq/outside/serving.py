@@ -1,18 +1,30 @@
-"""A model offered to others by the protocol of UM-Bridge; see `uq.outside.um_bridge`."""
+"""A model offered to others over HTTP by the protocol of UM-Bridge; see `uq.outside.um_bridge`."""
 
+import io
 import json
+import re
 import socket
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Lock
+from ipaddress import ip_address
+from threading import BoundedSemaphore
 from typing import Any
 
-import numpy as np
-
-from uq.contract import Model, Status
-from uq.outside.um_bridge import DESCRIBED, VERSION
-from uq.wording import counted
+from uq.contract import Model
+from uq.errors import described, one_line
+from uq.literals import plain_line, shown
+from uq.outside.offered import OfferedModel, RefusedError, invalid
 
 _LONGEST = 10_000_000  # bytes of a question
+_PART = 65536  # of it, read at once
+_QUESTION_SECONDS = 10.0  # for a question to arrive
+_MOST_CONNECTIONS = 500  # at once; others are refused
+_MOST_CHARACTERS = 200  # of what could not be read, in an answer
+_UNREAD_SECONDS = 1.0  # for which the rest of a refused question is read and discarded
 
 
 def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> ThreadingHTTPServer:
@@ -22,9 +34,11 @@ def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> Thread
     ----------
     model : Model
         Its parameters are one vector; each output is a vector, and so is each flag of a censored
-        life. The seed of a row is 0, or ``seed`` in ``config``.
+        life. The seed of a row is 0, or ``seed`` in ``config``. A life that never ends, and an
+        undefined value, is ``null``.
     host : str
-        Loopback by default: whoever reaches it can have rows computed.
+        Loopback by default: whoever reaches it can have rows computed. Pages in a browser cannot:
+        their requests, and on loopback those addressed to another name, are refused.
     port : int
         0 for any that is free.
 
@@ -33,13 +47,12 @@ def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> Thread
     OSError
         When it cannot be reached there.
     """
-    place: Any
     family, _, _, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
 
-    class Server(ThreadingHTTPServer):
+    class Server(_Server):
         address_family = family
 
-    return Server(place, _handler(_Offered(model)))
+    return Server(place, OfferedModel(model), host)
 
 
 def address_of(host: str, port: int, name: str) -> str:
@@ -47,117 +60,191 @@ def address_of(host: str, port: int, name: str) -> str:
     return f"http://{f'[{host}]' if ':' in host else host}:{port}/{name}"
 
 
-class _Offered:
-    """What is asked of a model."""
-
-    def __init__(self, model: Model):
-        self._settings = model.settings()
-        self.model = model.given(self._settings)
-        self._one_at_a_time = Lock()
-        row = self._row([list(model.nominal.values())], {})
-        self._sizes = {name: values.size for name, values in row.items()}
-
-    def _row(self, vectors: Any, config: Any) -> dict[str, Any]:
-        x = np.array([np.concatenate([np.asarray(one, float) for one in vectors])])
-        if x.shape[1] != len(self.model.parameter_names):
-            given, expected = counted(x.shape[1], "input"), len(self.model.parameter_names)
-            raise ValueError(f"{given}, expected {expected}")
-        seed = np.array([int(config.get("seed", 0))], np.uint64)
-        with self._one_at_a_time, np.errstate(all="ignore"):
-            outputs, status, *said = self.model.batch(x, seed, self._settings)
-        code = Status(int(status[0]))
-        if code not in (Status.OK, Status.OUT_OF_BUDGET):
-            raise ValueError(said[0].get(0, code.meaning) if said else code.meaning)
-        return {name: np.asarray(values)[0] for name, values in outputs.items()}
-
-    def answer(self, what: str, body: Any) -> Any:
-        """Return the answer to a question."""
-        model = self.model
-        if what == "Info":
-            return {"protocolVersion": VERSION, "models": [model.name]}
-        if body.get("name") != model.name:
-            raise LookupError(f"no such model: {body.get('name')} (there: {model.name})")
-        if what == "InputSizes":
-            return {"inputSizes": [len(model.parameter_names)]}
-        if what == "OutputSizes":
-            return {"outputSizes": list(self._sizes.values())}
-        if what == "ModelInfo":
-            return {"support": {"Evaluate": True}, DESCRIBED: self._described()}
-        if what == "Evaluate":
-            row = self._row(body["input"], body.get("config") or {})
-            return {"output": [values.astype(float).ravel().tolist() for values in row.values()]}
-        raise LookupError(f"no such question: {what}")
-
-    def _described(self) -> dict[str, Any]:
-        model, axes = self.model, self.model.coordinates(self._settings)
-        declared = [(name, model.parameter(name)) for name in model.parameter_names]
-        return {
-            "version": model.version,
-            "random": model.random,
-            "columns": list(self._sizes),
-            "parameters": [
-                {
-                    "name": name,
-                    "nominal": model.nominal[name],
-                    "unit": one.unit,
-                    "bounds": list(one.bounds),
-                    "meaning": one.meaning,
-                }
-                for name, one in declared
-            ],
-            "outputs": {
-                name: {
-                    "unit": one.unit,
-                    "meaning": one.meaning,
-                    "life": one.is_lifetime,
-                    "shape": [int(np.prod([len(axes[dim]) for dim in one.dims]))] * bool(one.dims),
-                    "may_be_undefined": one.may_be_undefined,
-                    "scales": dict(one.scales),
-                }
-                for name, one in model.outputs.items()
-            },
-        }
+def _refuse_constant(name: str) -> float:
+    raise invalid(f"the question is not JSON: {name} is no number of JSON")
 
 
-def _handler(offered: _Offered) -> type[BaseHTTPRequestHandler]:
-    class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
-            self._answer({})
+class _Server(ThreadingHTTPServer):
+    """Answers of a model, each connection in a thread, of which there is a largest number."""
 
-        def do_POST(self) -> None:
-            length = int(self.headers.get("Content-Length") or 0)
-            if length > _LONGEST:
-                self._send(413, {"error": {"type": "InvalidInput", "message": "too long"}})
-                return
-            try:
-                body = json.loads(self.rfile.read(length) or b"{}")
-                if not isinstance(body, dict):
-                    raise ValueError("not an object")
-            except ValueError as error:
-                self._send(400, {"error": {"type": "InvalidInput", "message": str(error)}})
-                return
-            self._answer(body)
+    request_queue_size = 128
 
-        def _answer(self, body: Any) -> None:
-            try:
-                self._send(200, offered.answer(self.path.strip("/"), body))
-            except LookupError as error:
-                self._send(400, {"error": {"type": "ModelNotFound", "message": str(error)}})
-            except (ValueError, TypeError, OverflowError) as error:
-                self._send(400, {"error": {"type": "InvalidInput", "message": str(error)}})
-            except Exception as error:
-                message = f"{type(error).__name__}: {error}"
-                self._send(500, {"error": {"type": "InternalError", "message": message}})
+    def __init__(self, place: Any, offered: OfferedModel, host: str):
+        super().__init__(place, _Handler)
+        self.offered, self.host = offered, host
+        self.on_loopback = ip_address(place[0].partition("%")[0]).is_loopback
+        self._free = BoundedSemaphore(_MOST_CONNECTIONS)
 
-        def _send(self, code: int, answer: Any) -> None:
-            data = json.dumps(answer).encode()
-            self.send_response(code)
-            self.send_header("Content-Type", "application/json")
-            self.send_header("Content-Length", str(len(data)))
-            self.end_headers()
+    def process_request(self, request: Any, client_address: Any) -> None:
+        if not self._free.acquire(blocking=False):
+            with suppress(OSError):
+                request.settimeout(_UNREAD_SECONDS)
+                request.sendall(_BUSY)
+            self.shutdown_request(request)
+            return
+        try:
+            super().process_request(request, client_address)
+        except RuntimeError:  # no thread can be started
+            self._free.release()
+            raise
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._free.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Log an error in one line; a connection that broke needs none."""
+        error = sys.exception()
+        if error is not None and not isinstance(error, OSError):
+            print(plain_line(f"{client_address[0]}: {described(error)}"), file=sys.stderr)
+
+
+class _Arriving(io.RawIOBase):
+    """What comes through a connection, until the time for a question is over."""
+
+    def __init__(self, connection: socket.socket):
+        self._connection, self._until = connection, time.monotonic() + _QUESTION_SECONDS
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        try:
+            self._connection.settimeout(max(self._until - time.monotonic(), 1e-3))
+            return self._connection.recv_into(buffer)
+        except TimeoutError:
+            late = f"the question did not arrive within {_QUESTION_SECONDS:g} s"
+            raise RefusedError(HTTPStatus.REQUEST_TIMEOUT, "InvalidInput", late) from None
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: _Server
+    default_request_version = "HTTP/1.0"  # an error without a status line is none
+    request_version, requestline, command = default_request_version, "", ""  # until it is read
+
+    def setup(self) -> None:
+        super().setup()
+        self.rfile.close()
+        self.rfile = io.BufferedReader(_Arriving(self.connection))
+
+    def handle_one_request(self) -> None:
+        try:
+            super().handle_one_request()
+        except RefusedError as refused:
+            self._send_error(refused)
+        except OSError:
+            raise
+        except Exception as error:
+            fault = RefusedError(
+                HTTPStatus.INTERNAL_SERVER_ERROR, "InternalError", described(error)
+            )
+            self._send_error(fault)
+
+    def do_GET(self) -> None:
+        self._reply(lambda: {})
+
+    def do_POST(self) -> None:
+        self._reply(self._question)
+
+    def _reply(self, question: Callable[[], Any]) -> None:
+        """Send the answer to a question."""
+        self._refuse_strangers()
+        answer = self.server.offered.answer(self.path.strip("/"), question())
+        self._send(HTTPStatus.OK, answer)
+
+    def _refuse_strangers(self) -> None:
+        """Refuse what a page in a browser asks.
+
+        A page of another site sends its ``Origin``; if its name leads to this computer, its ``Host``
+        is that name.
+        """
+        if origin := self.headers.get("Origin"):
+            said = f"requests of web pages are refused (Origin: {shown(origin)})"
+            raise RefusedError(HTTPStatus.FORBIDDEN, "InvalidInput", said)
+        hosts = self.headers.get_all("Host", [])
+        if len(hosts) > 1 or (not hosts and self.request_version == "HTTP/1.1"):
+            raise invalid("one header 'Host' is needed")
+        if hosts and self.server.on_loopback and not self._is_here(hosts[0]):
+            said = f"this server is not {shown(hosts[0])} (it is at {self.server.host})"
+            raise RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "InvalidInput", said)
+
+    def _is_here(self, host: str) -> bool:
+        name = re.sub(r":\d*$", "", host.strip()).strip("[]").lower()
+        if name in ("localhost", self.server.host.lower()):
+            return True
+        with suppress(ValueError):
+            return ip_address(name).is_loopback
+        return False
+
+    def _question(self) -> Any:
+        """Return what is asked, as read from JSON."""
+        kind = self.headers.get_content_type() if "Content-Type" in self.headers else ""
+        if kind not in ("", "application/json"):
+            said = f"Content-Type must be application/json, not {shown(kind)}"
+            raise RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "InvalidInput", said)
+        lengths = self.headers.get_all("Content-Length", [])
+        if "Transfer-Encoding" in self.headers or not lengths:
+            said = "a question needs its Content-Length"
+            raise RefusedError(HTTPStatus.LENGTH_REQUIRED, "InvalidInput", said)
+        if len(lengths) > 1 or not re.fullmatch(r"[0-9]{1,18}", lengths[0].strip()):
+            raise invalid(f"Content-Length must be one whole number, not {shown(lengths[0])}")
+        length = int(lengths[0])
+        if length > _LONGEST:
+            said = f"a question of {length} bytes is too long; at most {_LONGEST} bytes"
+            raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "InvalidInput", said)
+        text = self.rfile.read(length)
+        if len(text) < length:
+            raise invalid(f"the question ended after {len(text)} of {length} bytes")
+        try:
+            return json.loads(text or b"{}", parse_constant=_refuse_constant)
+        except RecursionError:
+            raise invalid("the question is nested too deeply") from None
+        except ValueError as error:
+            raise invalid(f"the question is not JSON: {one_line(error)}") from None
+
+    def _send(self, status: HTTPStatus, answer: Any) -> None:
+        data = json.dumps(answer, allow_nan=False).encode()
+        self.connection.settimeout(_QUESTION_SECONDS)
+        self.send_response(status)
+        self.send_header("Content-Type", "application/json")
+        self.send_header("Content-Length", str(len(data)))
+        self.send_header("Connection", "close")
+        self.end_headers()
+        if self.command != "HEAD":
             self.wfile.write(data)
 
-        def log_message(self, *arguments: Any) -> None:
-            pass
+    def _send_error(self, refused: RefusedError) -> None:
+        self._send(refused.status, _error(refused))
+        self._discard()
 
-    return Handler
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """Send why a request cannot be read, as JSON instead of a page."""
+        status = HTTPStatus(code)
+        sentence = plain_line(message or status.phrase)[:_MOST_CHARACTERS]
+        self._send_error(RefusedError(status, "InvalidInput", sentence))
+
+    def _discard(self) -> None:
+        """Read what else arrives: closing a connection before could destroy the answer."""
+        with suppress(OSError):
+            self.connection.shutdown(socket.SHUT_WR)
+            until = time.monotonic() + _UNREAD_SECONDS
+            for _ in range(10 * _LONGEST // _PART):
+                self.connection.settimeout(max(until - time.monotonic(), 0.001))
+                if not self.connection.recv(_PART):
+                    return
+
+    def log_message(self, *arguments: Any) -> None:
+        pass
+
+
+def _error(refused: RefusedError) -> dict[str, Any]:
+    return {"error": {"type": refused.kind, "message": str(refused)}}
+
+
+_BUSY = (
+    f"HTTP/1.0 {HTTPStatus.SERVICE_UNAVAILABLE:d} {HTTPStatus.SERVICE_UNAVAILABLE.phrase}\r\n"
+    "Content-Type: application/json\r\n\r\n"
+    '{"error": {"type": "InternalError", "message": "too many connections; try again later"}}'
+).encode()
