@@ -84,9 +84,9 @@ class Output:
     unit : str
     meaning : str
     kind : {"value", "lifetime", "angle", "category"}
-        A ``lifetime`` is +inf where the event never occurs and, unless `may_be_censored` is false,
-        ``batch`` returns a companion ``<name>_censored`` (bool). The magnitude of an ``angle`` is
-        compared with thresholds. A ``category`` is an index into `categories`.
+        A ``lifetime`` is at least 0, +inf where the event never occurs. Unless `may_be_censored`
+        is false, ``batch`` returns a companion ``<name>_censored`` (bool). The magnitude of an
+        ``angle`` is compared with thresholds. A ``category`` is an index into `categories`.
     dims : tuple of str
         Names of the dimensions beyond the row; their coordinates come from `Model.coordinates`.
     may_be_undefined : bool
@@ -148,8 +148,13 @@ class Output:
         if self.is_category:
             return values < 0
         if self.is_lifetime:
-            return np.isnan(values) | np.isneginf(values)
+            return np.isnan(values) | (values < 0.0)
         return ~np.isfinite(values)
+
+    def absence(self, name: str, value: float) -> str:
+        """Return a sentence for a row whose value is missing."""
+        reason = "; a life cannot be negative" if self.is_lifetime and value < 0.0 else ""
+        return f"'{name}' is {value}{reason}"
 
     def for_thresholds(self, values: Floats) -> Floats:
         """Return the numbers compared with thresholds: the magnitude of an angle, else `values`."""

@@ -1,16 +1,61 @@
 """Standard streams that are closed, full or no longer read: one line, no traceback."""
 
+import codecs
 import errno
 import io
 import os
+import re
 import sys
+import unicodedata
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, TextIO
 
 from uq.literals import plain_line
 
+_READABLE = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺₀₁₂₃₄₅₆₇₈₉", "0123456789-+0123456789", strict=True)) | {
+    "µ": "u",
+    "μ": "u",
+    "Ω": "ohm",
+    "°": "deg",
+    "≥": ">=",
+    "≤": "<=",
+    "≈": "~",
+    "±": "+-",
+    "×": "x",
+    "·": "*",
+    "\N{MINUS SIGN}": "-",
+    "\N{EN DASH}": "-",
+    "\N{EM DASH}": "-",
+    "\N{NO-BREAK SPACE}": " ",
+    "…": "...",
+    "∞": "inf",
+    "√": "sqrt",
+}
+_GREEK = re.compile("GREEK (SMALL|CAPITAL) LETTER ([A-Z]+)")
+
 _PLACES = ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY))
+
+
+def readable(error: UnicodeError) -> tuple[str, int]:
+    """Return ASCII for characters that a stream cannot encode, as an error handler of `codecs`."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    text = error.object[error.start : error.end]
+    return "".join(map(_in_ascii, text)), error.end
+
+
+def _in_ascii(character: str) -> str:
+    if character in _READABLE:
+        return _READABLE[character]
+    if greek := _GREEK.match(unicodedata.name(character, "")):
+        name = greek[2].replace("LAMDA", "LAMBDA")
+        return name.lower() if greek[1] == "SMALL" else name.capitalize()
+    letters = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return letters or "?"
+
+
+codecs.register_error("uq.readable", readable)
 
 
 class Watched(io.TextIOWrapper):
@@ -61,7 +106,7 @@ def watch() -> None:
 def _watched(stream: io.TextIOWrapper | None, number: int) -> Watched:
     if stream is None:
         return Watched(open(number, "wb", closefd=False), "utf-8")
-    how = (stream.encoding, stream.errors, None, stream.line_buffering, stream.write_through)
+    how = (stream.encoding, "uq.readable", None, stream.line_buffering, stream.write_through)
     return Watched(stream.detach(), *how)
 
 

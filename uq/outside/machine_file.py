@@ -114,7 +114,7 @@ def template_of(machine: MachineTable, folder: Path) -> str:
     """
     if not machine.template:
         return ""
-    return (folder / machine.template).read_bytes().decode()
+    return (folder / machine.template).read_bytes().decode("utf-8-sig")
 
 
 def code_files(machine: MachineTable, folder: Path) -> list[Path]:

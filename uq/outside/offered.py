@@ -106,7 +106,7 @@ class OfferedModel:
         for name, output in self.model.outputs.items():
             absent = output.is_absent(outputs[name][0])
             if np.any(absent) and not output.may_be_undefined and not output.is_category:
-                raise _failed(f"'{name}' is {np.asarray(outputs[name][0])[absent].flat[0]}")
+                raise _failed(output.absence(name, np.asarray(outputs[name][0])[absent].flat[0]))
         return {name: np.asarray(values)[0] for name, values in outputs.items()}
 
     def _described(self) -> dict[str, Any]:

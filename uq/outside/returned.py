@@ -213,7 +213,7 @@ def checked(
     WrongReturnError
         When the row returns anything else than `expected`.
     NonFiniteError
-        When a number is NaN that may not be, or -inf.
+        When a number is NaN that may not be, -inf, or a negative life.
     """
     if isinstance(returned, tuple) and len(returned) == len(expected):
         returned = dict(zip(expected, returned, strict=True))
@@ -244,5 +244,5 @@ def checked(
         if one.may_be_undefined:
             absent &= ~np.isnan(numbers)
         if absent.any():
-            raise NonFiniteError(f"'{name}' is {numbers[absent][0]}")
+            raise NonFiniteError(one.output(name).absence(name, numbers[absent][0]))
         yield name, numbers, cut

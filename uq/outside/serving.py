@@ -157,8 +157,8 @@ class _Handler(BaseHTTPRequestHandler):
     def _refuse_strangers(self) -> None:
         """Refuse what a page in a browser asks.
 
-        A page of another site sends its ``Origin``; if its name leads to this computer, its ``Host``
-        is that name.
+        A page of another site sends its ``Origin``; if its name leads to this computer, its
+        ``Host`` is that name.
         """
         if origin := self.headers.get("Origin"):
             said = f"requests of web pages are refused (Origin: {shown(origin)})"
