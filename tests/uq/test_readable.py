@@ -17,7 +17,6 @@ WRITTEN = [
 
 @pytest.mark.parametrize(("encoding", "text", "expected"), WRITTEN)
 def test_a_character_that_cannot_be_encoded_is_written_readably(encoding, text, expected):
-    readable.register()
     stream = io.BytesIO()
     with io.TextIOWrapper(stream, encoding, readable.HANDLER, write_through=True) as written:
         written.write(text)

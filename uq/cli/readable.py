@@ -4,7 +4,7 @@ import codecs
 import unicodedata
 
 HANDLER = "readable"
-"""Name of the error handler of codecs, once `register` has been called."""
+"""Name of the error handler of codecs."""
 
 _WRITTEN = {
     **{"µ": "u", "μ": "u", "≥": ">=", "≤": "<=", "≠": "!=", "≈": "~", "±": "+/-", "∓": "-/+"},
@@ -16,11 +16,6 @@ _WRITTEN = {
 }
 
 _EXPONENTS = tuple("⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def register() -> None:
-    """Register the error handler."""
-    codecs.register_error(HANDLER, _replaced)
 
 
 def _replaced(error: UnicodeError) -> tuple[str, int]:
@@ -43,6 +38,10 @@ def _readable(character: str) -> str:
     if parts != character:
         return "".join(_readable(part) for part in parts if not unicodedata.combining(part))
     kind, _, letter = unicodedata.name(character, "").partition(" LETTER ")
+    letter = letter.replace("LAMDA", "LAMBDA")
     if kind.startswith("GREEK") and " " not in letter:
         return letter.lower() if kind.endswith("SMALL") else letter.capitalize()
     return "" if unicodedata.combining(character) else "?"
+
+
+codecs.register_error(HANDLER, _replaced)

@@ -51,7 +51,6 @@ def watch() -> None:
             os.fstat(number)
         except OSError:
             os.open(os.devnull, way)
-    readable.register()
     for number, name in ((1, "stdout"), (2, "stderr")):
         stream = getattr(sys, name)
         if stream is None or type(stream) is io.TextIOWrapper:  # else it has been replaced already

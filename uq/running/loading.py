@@ -19,6 +19,7 @@ from uq.errors import InputError
 from uq.outside.descendants import end_with_descendants
 from uq.outside.returned import Returned, as_plain, from_plain, joined
 from uq.outside.row_by_row import RowByRow
+from uq.places import cache_path
 from uq.running.child import FIRST_SECONDS, REFUSED, Action, answer_of
 from uq.running.environment import started
 from uq.running.options import Say, ignore
@@ -125,14 +126,12 @@ def _found(
     reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
 ) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
-    from platformdirs import user_cache_path
-
     from uq.provenance import __version__
 
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
     code = f"{__version__}\n{reference}\n{code_of(reference)}"
     key = hashlib.sha256(code.encode() + numbers).hexdigest()
-    kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
+    kept = cache_path(DISTRIBUTION) / "returns" / f"{key}.json"
     if not kept.is_absolute():  # there is no home: the path begins with "~"
         return joined(list(_returned(reference, tried, say, limit)))
     with suppress(OSError, ValueError):
