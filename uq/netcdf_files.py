@@ -11,6 +11,7 @@ import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -73,9 +74,8 @@ def refuse_tricks(path: Path) -> None:
 @cache
 def _library() -> Any:
     """Return the HDF5 library of netCDF4."""
-    import netCDF4
-
-    library = ctypes.CDLL(netCDF4._netCDF4.__file__)  # finds what it depends on, too
+    extension: Any = import_module("netCDF4._netCDF4")
+    library: Any = ctypes.CDLL(extension.__file__)  # finds what it depends on, too
     for name in (
         "H5Fopen H5Dopen2 H5Dget_create_plist H5Dget_space H5Dget_type H5Aopen_by_idx"
         " H5Aget_space H5Aget_type H5Sget_simple_extent_npoints"
