@@ -197,7 +197,8 @@ def _opened(path: Path) -> xr.Dataset:
 
 def _legible(ds: xr.Dataset) -> xr.Dataset:
     """Return a Dataset of which no text can control a terminal."""
-    for owner in (ds, *ds.variables.values()):
+    owners: list[Any] = [ds, *ds.variables.values()]
+    for owner in owners:
         for name, value in owner.attrs.items():
             if isinstance(value, str):
                 owner.attrs[name] = without_control(value)
