@@ -107,6 +107,24 @@ def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(metho
     assert "identical" not in moved["mean"]["difference"]
 
 
+@pytest.mark.parametrize(("method", "replicates"), [("monte-carlo", 1), ("sobol", 4)])
+def test_rows_that_differ_but_change_no_side_are_not_identical(method, replicates):
+    ds = asking(linear(method, replicates=replicates), thresholds={"y": 5.0})
+    moved = with_output(ds, "y", 5.0 + 0.99 * (ds["y"].values - 5.0))
+    both, n = kinds(method, replicates=replicates), ds.sizes["sample"]
+    other = with_output(both, "angle", 0.5 * both["angle"].values)
+    most = 1 - 0.025 ** (1 / n)
+    assert most == pytest.approx(3.7 / n, rel=0.04)
+    for found in (
+        compared(ds, moved)["outputs"]["y"]["thresholds"]["5.0"]["above"]["difference"],
+        compared(both, other)["regime"]["slow"]["difference"],
+    ):
+        assert found.pop("no_row_changes_sides")
+        assert found == pytest.approx({"value": 0.0, "low": -most, "high": most})
+    same = compared(both, both)["regime"]["slow"]["difference"]
+    assert same == {"value": 0.0, "low": None, "high": None, "identical": True}
+
+
 def test_a_nested_result_is_identical_to_itself_alone():
     ds = nested_result(samples=30)
     found = compared(ds, ds)

@@ -111,8 +111,10 @@ def comparison_json(comparison: "Comparison") -> dict[str, Any]:
         `Comparison`. ``regime``: label -> estimate; ``categories``: the same of others, such as
         the period; ``outputs``: element -> its statistics under their keys in a summary, each with
         ``a`` and ``b``, as `summary_json` has them, and ``difference``: ``value``, ``low``,
-        ``high`` of b less a, and ``identical`` where the rows are paired and agree: then there is
-        no interval. A scale also has ``ratio``. ``notes``: sentences.
+        ``high`` of b less a, with ``identical`` where the rows are paired and agree: then there is
+        no interval. ``no_row_changes_sides``: where they differ, but none is a hit in one result
+        alone; the ends are the largest share that may change sides. A scale also has ``ratio``.
+        ``notes``: sentences.
     """
     shares = {
         name: {label: _compared(one) for label, one in of.items()}
@@ -159,6 +161,8 @@ def _output(one: "ComparedOutput") -> dict[str, Any]:
 
 def _compared(one: "Compared") -> dict[str, Any]:
     same = {"identical": True} if one.identical else {}
+    if one.no_row_changes_sides:
+        same = {"no_row_changes_sides": True}
     found = {"a": one.first.kind.entry(one.first), "b": one.second.kind.entry(one.second)}
     found["difference"] = json_form.numbers(one.difference) | same
     if one.ratio is not None:

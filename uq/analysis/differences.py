@@ -27,6 +27,8 @@ class Compared:
         The second less the first.
     identical : bool
         Whether the rows are paired and both rows of each pair agree: then there is no interval.
+    no_row_changes_sides : bool
+        Whether the rows are paired and differ, but none is a hit in one result alone.
     ratio : Estimate, optional
         The second over the first, for a scale.
     """
@@ -35,6 +37,7 @@ class Compared:
     second: Statistic
     difference: Estimate
     identical: bool = False
+    no_row_changes_sides: bool = False
     ratio: Estimate | None = None
 
 
@@ -69,7 +72,7 @@ def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, 
         occurs = name == REGIME or any(one.facts["count"] for one in both)
         if len(both) > 1 and occurs:
             samples = [one[label] for one in members]
-            yield label, _compared(pair, both, samples, samples)
+            yield label, _compared(pair, both, samples, pair.have_equal_outputs)
 
 
 def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:
@@ -92,22 +95,26 @@ def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> 
     estimator = both[0].estimator
     samples = [] if estimator is None else [estimator.sample(element) for element in elements]
     known = [one for one in samples if one is not None]
-    depends_on_hits = estimator is not None and estimator.counts_hits and len(known) == 2
-    rows = known if depends_on_hits else [estimators.whole(element) for element in elements]
-    return _compared(pair, [one.best for one in both], known, rows)
+    are_equal = pair.are_equal([estimators.whole(element) for element in elements])
+    return _compared(pair, [one.best for one in both], known, are_equal)
 
 
 def _compared(
-    pair: Pair, both: list[Statistic], samples: list[Sample], rows: list[Sample]
+    pair: Pair, both: list[Statistic], samples: list[Sample], are_equal: bool
 ) -> Compared:
-    """Compare two statistics; `rows` decide whether the pairs are identical."""
+    """Compare two statistics of paired rows that are equal in both results, or of others."""
     estimator = both[0].estimator
     is_scale = estimator is not None and estimator.is_scale
     known = [one.estimate.finite for one in both]
     if any(isnan(one.value) for one in known):
         return Compared(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
-    if pair.identical(rows):
-        return Compared(both[0], both[1], Estimate(0.0), True, Estimate(1.0) if is_scale else None)
+    if are_equal:
+        ratio = Estimate(1.0) if is_scale else None
+        return Compared(both[0], both[1], Estimate(0.0), identical=True, ratio=ratio)
+    if estimator is not None and estimator.counts_hits and pair.are_equal(samples):
+        most = pair.most_that_change_sides(samples[0])
+        found = Estimate(0.0, -most, most)
+        return Compared(both[0], both[1], found, no_row_changes_sides=True)
     if estimator is None or any(one.estimate.assumes for one in both):
         apart = two_samples.difference(known[0], known[1], pair.unpaired)
     else:

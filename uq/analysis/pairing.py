@@ -7,6 +7,7 @@ are conservative.
 """
 
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
@@ -16,6 +17,7 @@ from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
+from uq.exact_shares import exact_interval
 from uq.population.means import share_to_compare
 from uq.rows.elements import (
     Floats,
@@ -26,6 +28,7 @@ from uq.rows.elements import (
     study_file_of,
 )
 from uq.rows.nesting import is_nested
+from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights
 from uq.study.file import Tied
 
@@ -184,14 +187,35 @@ class Pair:
             return Estimate(found.value)  # equal in each pair, but for rounding
         return found
 
-    def identical(self, samples: list[Sample]) -> bool:
-        """Whether the rows are paired and both rows of each pair agree."""
-        if not self._paired:
+    def are_equal(self, samples: list[Sample]) -> bool:
+        """Whether the rows are paired and both rows of each pair have the same numbers."""
+        if not self._paired or len(samples) < 2:
             return False
         first, second = samples
         return np.array_equal(first.kept, second.kept) and np.array_equal(
             first.numbers, second.numbers, equal_nan=True
         )
+
+    @cached_property
+    def have_equal_outputs(self) -> bool:
+        """Whether the rows are paired and both rows of each pair agree in all outputs."""
+        first, second = self.rows
+        names = [name for name in outputs_of(first) if name in second]
+        return self._paired and first[names].drop_attrs().equals(second[names].drop_attrs())
+
+    def most_that_change_sides(self, sample: Sample) -> float:
+        """Return the largest share of rows that change sides where no row of a sample does.
+
+        A share that has no hit among all rows in 2.5 % of samples: the upper end of the exact 95 %
+        interval [1]_. Rows of a design that spreads evenly hit such a share more often.
+
+        References
+        ----------
+        .. [1] C. J. Clopper, E. S. Pearson, "The use of confidence or fiducial limits illustrated
+           in the case of the binomial", Biometrika 26, 404-413 (1934).
+        """
+        rows = int(np.count_nonzero(sample.kept))
+        return float(exact_interval(0.0, rows, intervals.CONFIDENCE)[1])
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""

@@ -12,7 +12,17 @@ from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.units import Unit, typical, unit_of
-from uq.wording import compared, counted, estimated, in_brackets, in_unit, interval, known, number
+from uq.wording import (
+    compared,
+    counted,
+    estimated,
+    in_brackets,
+    in_unit,
+    interval,
+    known,
+    number,
+    percent,
+)
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -84,19 +94,21 @@ def _lines(one: Compared, units: str, per: float, of: str) -> Iterator[Line]:
     asked = () if one.first.at is None else (one.first.at,)
     yield estimated(one.first.label, units, of, asked), *_cells(one, own)
     if one.ratio is not None and isfinite(one.ratio.value):
-        yield f"{one.first.label}, B over A", "", "", *_apart(one.ratio, one.identical, 1.0, 1.0)
+        yield f"{one.first.label}, B over A", "", "", *_apart(one, one.ratio, 1.0, 1.0)
 
 
 def _cells(one: Compared, per: float = 1.0) -> Line:
     both = (one.first.words(per), one.second.words(per))
-    return *both, *_apart(one.difference, one.identical, per)
+    return *both, *_apart(one, one.difference, per)
 
 
-def _apart(one: Estimate, identical: bool, per: float, nothing: float = 0.0) -> Line:
+def _apart(of: Compared, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
     """Return value and interval of a difference, and a mark where it excludes `nothing`."""
-    sure = one.low > nothing or one.high < nothing
-    ends = "identical rows" if identical else interval(one, per)
-    return known(one, per=per), ends, "*" if sure else ""
+    sure = apart.low > nothing or apart.high < nothing
+    ends = "identical rows" if of.identical else interval(apart, per)
+    if of.no_row_changes_sides:
+        ends = f"no row changes sides (at most {percent(apart.high)} do)"
+    return known(apart, per=per), ends, "*" if sure else ""
 
 
 def bought(found: Comparison) -> list[str]:
