@@ -47,35 +47,31 @@ def denied_event(rows, event, hits):
 
 
 def _denied_limit(event, x, hits):
-    """Count how often the unwanted side happens beyond a limit, and just before its band."""
+    """Count how often the unwanted side happens within a range where it is rare, and before it."""
     if event.limit is None or event.limit.why:
         return
-    share, side, at, *band = re.fullmatch(
-        r"Surely (?:fewer|more) than (\S+) % .* where .* is at (least|most) ([\d.e-]+)\D*?"
-        r"(?: \(the limit lies between ([\d.e-]+) and ([\d.e-]+)\D*\))?\.",
+    few, share, *place = re.fullmatch(
+        r"With 95 % confidence, (fewer|more) than (\S+) % .* where .* is"
+        r" (?:at (least|most) ([\d.e-]+)|between ([\d.e-]+) and ([\d.e-]+))\D*\.",
         event.limited,
     ).groups()
-    is_wanted = event.limited.startswith("Surely more")
-    unwanted = 1 - hits if is_wanted else hits
-    at, sign = float(at), 1 if side == "least" else -1
-    known = np.isfinite(hits)
-    beyond, before = known & (sign * (x - at) > 0), known & (sign * (x - at) < 0)
-    if share != ("95" if is_wanted else "5") or beyond.sum() < 30 or not before.any():
+    unwanted = 1 - hits if few == "more" else hits
+    known, at = np.isfinite(hits), event.limit.at
+    beyond = known & ((x > at) if event.limit.is_lower else (x < at))
+    if (
+        share != ("95" if few == "more" else "5")
+        or beyond.sum() < 30
+        or beyond.sum() == known.sum()
+    ):
         yield event.limited
         return
+    shown = [float(one) for one in place[1:] if one is not None]
+    if not any(abs(one - at / event.over_unit.per) <= 0.006 * abs(one) for one in shown):
+        yield event.limited
     if unwanted[beyond].mean() >= 0.05:
         yield event.limited
-    if unwanted[beyond].mean() >= unwanted[before].mean():
+    if unwanted[beyond].mean() >= unwanted[known & ~beyond].mean():
         yield event.limited
-    if band[0]:
-        low, high = map(float, band)
-        first = low if side == "least" else high
-        far = known & (sign * (x - first) < 0)
-        inside = known & (x > low) & (x < high)  # of a few parts of the curve
-        if at not in (low, high) or (far.sum() >= 30 and unwanted[far].mean() <= 0.05):
-            yield event.limited
-        if inside.sum() * len(event.curve.shares) > 4.5 * known.sum():
-            yield event.limited
 
 
 def denied_advice(ds, advice, found):

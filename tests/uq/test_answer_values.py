@@ -46,7 +46,9 @@ def test_the_probability_of_an_event_is_that_at_each_value(found):
     assert event.decided_by == (
         "Decided most by x2: from 0 % where it is below 0.25 to 100 % where it is above 0.25."
     )
-    assert event.limited == "Surely fewer than 5 % exceed 3 m where x2 is at most 0.25."
+    assert event.limited == (
+        "With 95 % confidence, fewer than 5 % exceed 3 m where x2 is at most 0.25."
+    )
 
 
 def valued(values, kind="value", samples=400, **asked):

@@ -175,7 +175,8 @@ def _keep(ds: xr.Dataset, found: Answer) -> Iterator[Advice]:
     if there.low > overall.high if more else there.high < overall.low:
         where, what = f"{event.part(place)}: {share_text(there)} do there", "decided_by"
         if event.limit is not None and not event.limit.why:
-            where, what = f"{event.limit.place}: surely {event.limit.few} there", "limit"
+            limit, what = event.limit, "limit"
+            where = f"{limit.place}: {limit.few} do there{limit.averaged}"
         yield Advice(
             "keep",
             f"So that {'more' if more else 'fewer'} {event.said}, keep {called(event.over)}"

@@ -42,7 +42,8 @@ def answer_json(found: Answer) -> dict[str, Any]:
         (``lower_is_row``), and the share of rows that have the last value, where that bounds
         nothing (``share_at_largest``). An event has its ``share``, what it is ``decided_by``, its
         probability in ``parts`` of the range of the input ``over``, and the ``limit`` of this
-        input, ``at`` which its unwanted side becomes rare, with that probability. A ranking has
+        input: from ``at`` to ``end`` its unwanted side is rare on average, with the probability in
+        the part next to ``at``. A ranking has
         ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the input,
         in a ``unit`` or, where that is "", in that of the output; and, of shares that inputs
         explain alone, what is ``unexplained`` by any single one, with the ``totals`` of an
@@ -200,7 +201,7 @@ def _event(one: Event) -> dict[str, Any]:
 
 
 def _limit(one: Limit) -> dict[str, Any]:
-    ends = {name: json_form.number(getattr(one, name)) for name in ("at", "until")}
+    ends = {name: json_form.number(getattr(one, name)) for name in ("at", "end")}
     return (
         {"sentence": one.sentence, "is_lower": one.is_lower} | ends | json_form.numbers(one.share)
     )

@@ -1,4 +1,4 @@
-"""From which value of the input that decides an event the unwanted side is rare."""
+"""In which range of the input that decides an event the unwanted side is rare on average."""
 
 from dataclasses import dataclass, field, replace
 from math import inf, nan
@@ -6,6 +6,7 @@ from math import inf, nan
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.words import Unit, called, sentence
 from uq.estimate import Estimate
+from uq.wording import percent_range
 
 RARE = 0.05
 """The unwanted side of an event is rare below this probability."""
@@ -13,24 +14,26 @@ RARE = 0.05
 
 @dataclass(frozen=True)
 class Limit:
-    """A limit of an input, beyond which an event is rare; or why there is none.
+    """A range of an input over which an event is rare on average; or why there is none.
 
     Attributes
     ----------
     over : str
         The input.
     said : str
-        What is rare beyond it: ``end within 60 s``; or what is then frequent.
+        What is rare in it: ``end within 60 s``; or what is then frequent.
     is_wanted : bool
         Whether that is wanted, so that it is the frequent side.
     at : float
-        Beyond this value it is rare; NaN where there is no limit.
-    until : float
-        Up to this value it is not; NaN where that is not known.
+        The limit, its inner end; NaN where there is none.
+    end : float
+        Its outer end, the last value in the rows; NaN where there is no limit.
     is_lower : bool
         Whether the input has to be larger than the limit.
+    of_values : bool
+        Whether the input has few values, so that nothing is averaged.
     share : Estimate
-        How probable it is in the part of the input next to the limit, or where it is least.
+        How probable it is in the part of the input next to the limit, or in the last part.
     unit : Unit
         Of the input.
     why : str
@@ -41,43 +44,49 @@ class Limit:
     said: str
     is_wanted: bool = False
     at: float = nan
-    until: float = nan
+    end: float = nan
     is_lower: bool = False
+    of_values: bool = False
     share: Estimate = field(default_factory=lambda: Estimate(nan))
     unit: Unit = field(default_factory=Unit)
     why: str = ""
 
     @property
     def sentence(self) -> str:
-        """The limit and what is known of its place, or why there is none."""
+        """The range, or why there is none."""
         if self.why:
             return sentence(self.why)
         where = f"where {called(self.over)} is {self.place}"
-        text = f"surely {self.few} {where}"
-        if self.until == self.until:
-            low, high = sorted((self.at, self.until))
-            ends = f"{self.unit.number(low, -inf)} and {self.unit.text(high, inf)}"
-            text += f" (the limit lies between {ends})"
-        return sentence(text)
+        return sentence(f"with 95 % confidence, {self.few} {self.said}{self.averaged} {where}")
 
     @property
     def place(self) -> str:
-        """Where it is rare: ``at least 2.16``."""
-        side, outwards = ("least", inf) if self.is_lower else ("most", -inf)
-        return f"at {side} {self.unit.text(self.at, outwards)}"
+        """Where it is rare: ``between 2.16 and 3.01``."""
+        if self.of_values:
+            side, inwards = ("least", inf) if self.is_lower else ("most", -inf)
+            return f"at {side} {self.unit.text(self.at, inwards)}"
+        low, high = sorted((self.at, self.end))
+        return f"between {self.unit.between(low, high, ' and ')}"
+
+    @property
+    def averaged(self) -> str:
+        """That the range is averaged over, as its rows are distributed; "" for single values."""
+        return "" if self.of_values else " on average"
 
     @property
     def few(self) -> str:
-        """How many there are beyond the limit."""
-        if self.is_wanted:
-            return f"more than {100 * (1 - RARE):g} % {self.said}"
-        return f"fewer than {100 * RARE:g} % {self.said}"
+        """How many there are in the range."""
+        return _few(self.is_wanted)
+
+
+def _few(is_wanted: bool) -> str:
+    return f"more than {100 * (1 - RARE):g} %" if is_wanted else f"fewer than {100 * RARE:g} %"
 
 
 def limit_of(
     curve: EventCurve, over: str, unit: Unit, said: str, is_unwanted: bool
 ) -> Limit | None:
-    """Return from which value of an input an event is rare, as far as its curve is settled.
+    """Return the range of an input over which an event is rare on average, as far as is settled.
 
     Parameters
     ----------
@@ -95,11 +104,17 @@ def limit_of(
     Returns
     -------
     Limit or None
-        None where it is rare everywhere. Where the probability falls steadily, it is smaller beyond
-        a part than the mean over this part, and larger before it: so the limit lies between the
-        first value before a part in which the mean is surely larger, and the last one behind a
-        part from which on it is surely smaller, each with the interval of its part. Where each part
-        is a value, it is that of the part itself.
+        None where it is rare in all parts. The range is that of the last parts, from the wanted end
+        of the input on, whose mean probabilities are all smaller with confidence, so that the mean
+        over the range is. Tested in this order until one fails, at least one of them is larger in
+        no more repetitions than a single one would be [1]_. Rows show means alone: within a part, a
+        single value may have any probability. Where each part is a value, it is that of the value.
+
+    References
+    ----------
+    .. [1] W. Maurer, L. A. Hothorn, W. Lehmacher, "Multiple comparisons in drug clinical trials and
+       preclinical assays: a-priori ordered hypotheses", in J. Vollmar (ed.), Biometrie in der
+       chemisch-pharmazeutischen Industrie 6, Fischer, 3-18 (1995).
     """
     shares = [one if is_unwanted else _opposite(one) for one in curve.shares]
     is_lower = shares[0].value > shares[-1].value
@@ -107,7 +122,15 @@ def limit_of(
     if not is_lower:  # from the unwanted to the wanted end
         shares, edges = shares[::-1], edges[::-1]
     best, names = shares[-1], called(over)
-    plain = Limit(over, said, not is_unwanted, is_lower=is_lower, share=best, unit=unit)
+    plain = Limit(
+        over,
+        said,
+        not is_unwanted,
+        is_lower=is_lower,
+        of_values=curve.of_values,
+        share=best,
+        unit=unit,
+    )
     if all(one.high < RARE for one in shares):
         return None
     if any(one.high < later.low for i, one in enumerate(shares) for later in shares[i + 1 :]):
@@ -116,17 +139,21 @@ def limit_of(
     rare = len(shares)
     while shares[rare - 1].high < RARE:
         rare -= 1
-    first = rare if curve.of_values else rare + 1
-    if first >= len(shares):
-        why = f"whether a value of {names} lets {plain.few} is not settled"
-        if best.low > RARE:
-            why = f"no value of {names} lets {plain.few}"
+    if rare < len(shares):
+        return replace(plain, at=edges[rare], end=edges[-1], share=shares[rare])
+    last = replace(plain, at=edges[-2], end=edges[-1])
+    if not best.has_interval:
+        why = f"whether {plain.few} {said} where {names} is {last.place} is not settled"
         return replace(plain, why=why)
-    frequent = max((i for i, one in enumerate(shares) if one.low > RARE), default=-1)
-    until = edges[frequent] if frequent > 0 else nan  # before the first part there are no rows
-    if curve.of_values:  # between two values there are no rows
-        until = nan
-    return replace(plain, at=edges[first], until=until, share=shares[rare])
+    shown = best if is_unwanted else _opposite(best)
+    many = f"{percent_range(shown.low, shown.high)} {said}"
+    ends = unit.between(*sorted(edges[-2:]))
+    why = f"averaged over the best of {len(shares)} parts of {names} ({ends}), {many}"
+    if curve.of_values:
+        why = f"where {names} is {last.place}, {many}"
+    if best.low <= RARE:
+        why += f"; whether {plain.few} do is not settled"
+    return replace(plain, why=why)
 
 
 def _opposite(one: Estimate) -> Estimate:

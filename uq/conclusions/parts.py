@@ -44,7 +44,7 @@ class Event:
     is_of_single : bool
         Whether what decides most among single inputs is not what decides most.
     limit : Limit or None
-        Of that input, beyond which its unwanted side is rare; None where no side is unwanted.
+        Of that input, where its unwanted side is rare on average; None where no side is unwanted.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Event:
 
     @property
     def with_cause(self) -> str:
-        """Its probability, what decides it, and from where on it is rare."""
+        """Its probability, what decides it, and where it is rare."""
         return " ".join(filter(None, (self.sentence, self.decided_by, self.limited)))
 
     @property
@@ -91,7 +91,7 @@ class Event:
 
     @property
     def limited(self) -> str:
-        """From which value of the input that decides it the unwanted side is rare."""
+        """In which range of the input that decides it the unwanted side is rare on average."""
         return "" if self.limit is None else self.limit.sentence
 
     def with_limit(self, more_is_better: bool) -> "Event":

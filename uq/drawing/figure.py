@@ -116,7 +116,7 @@ def write(figure: Figure, path: Path) -> list[Path]:
 def replaced(path: Path) -> Iterator[Path]:
     """Yield a temporary name; the figure written under it takes the place of `path` if complete."""
     file = file_behind(path)
-    part = file.with_name(f".{file.stem}.{os.getpid()}{file.suffix}")  # matplotlib reads the ending
+    part = file.with_name(f".{file.stem}.{os.getpid()}{path.suffix}")  # matplotlib reads the ending
     with undone(lambda: part.unlink(missing_ok=True)):
         yield part
         os.replace(part, file)
