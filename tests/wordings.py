@@ -207,7 +207,7 @@ STUDY_FAULTS = [
     ),
     (
         {"analysis": {"tolerance": {"coverage": 0.95, "confidence": 95}}},
-        "[analysis] tolerance.confidence = 95: must be less than 1",
+        "[analysis] tolerance.confidence = 95: must be at most 0.999999999",
     ),
     (
         {
@@ -226,7 +226,7 @@ STUDY_FAULTS = [
     (
         {"analysis": {"sensitivity": ["sobol"]}},
         "[analysis] sensitivity = \"sobol\": a 'monte-carlo' design cannot feed it,"
-        " method = 'saltelli' can; 'monte-carlo' feeds 'rbd-fast' or 'delta' or 'pawn'",
+        " method = 'saltelli' can; 'monte-carlo' feeds 'first-order' or 'rbd-fast' or 'delta'",
     ),
     (
         {"design": {"method": "saltelli"}, "analysis": {"sensitivity": ["delta"]}},

@@ -102,8 +102,8 @@ def test_nothing_is_reported_where_every_row_reaches_its_accuracy(capsys):
 
 
 def test_rows_that_never_end_or_are_censored_or_failed_have_no_accuracy():
-    values = [1.0, 1.0, np.inf, 1.0, np.nan, -1.0]
-    errors = [0.2, np.nan, np.nan, np.nan, np.nan, -0.05]
+    values = [1.0, 1.0, np.inf, 1.0, np.nan, 1.0]
+    errors = [0.2, np.nan, np.nan, np.nan, np.nan, 0.05]
     ds = with_errors(values, errors, kind="lifetime", censored=[0, 0, 0, 1, 0, 0])
     accuracy = accuracy_of(ds, "life")
     assert (accuracy["rows"], accuracy["missed"]) == (3, 2)

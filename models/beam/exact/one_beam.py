@@ -9,7 +9,7 @@ from models.beam.exact.events import (
     scratch,
     site_of,
 )
-from models.beam.exact.tip_bounds import tip_at
+from models.beam.exact.tip_bounds import tip_after
 from models.beam.exact.within_phase import join
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
@@ -26,18 +26,19 @@ def velocities(state: Array) -> Array:
 
 
 @kernel
-def _sample(phase, weight, power, theta, until, trace):
+def _sample(phase, weight, power, theta, until, trace, of_speeds):
     """Set the part of a period's trace after theta, up to `until`."""
     step = 2 * math.pi / len(trace)
     for k in range(len(trace)):
         at = min((k + 1) * step, 2 * math.pi)
         if theta < at <= until:
-            trace[k] = tip_at(phase, weight, at - theta, power)
+            tip = tip_after(phase, weight, len(phase.speed), at - theta, power)
+            trace[k] = tip.v if of_speeds else tip.x
 
 
 @kernel
-def advance_beam(free, contact, state, gaps, growth, record):
-    """Advance one beam over the periods of its record."""
+def advance_beam(free, contact, state, gaps, growth, record, of_speeds):
+    """Advance one beam over the periods of its record, whose trace is of the tip or its speed."""
     work, strobe, peak, trace = record
     y, owed = state[:CLOCK], state[OWED:]
     m = len(y) // 2
@@ -64,9 +65,8 @@ def advance_beam(free, contact, state, gaps, growth, record):
                 return
             until = theta + event.after if event.after < to_end else 2 * math.pi
             if steps:
-                _sample(
-                    phase, room.weight, room.power, theta, until, trace[period * steps :][:steps]
-                )
+                part = trace[period * steps :][:steps]
+                _sample(phase, room.weight, room.power, theta, until, part, of_speeds)
             join(phase, room.coefficient, event.after, room.power, y)
             theta, site = until, event.site
         strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()

@@ -38,13 +38,38 @@ def advance(
     `models.beam.exact.events.EVALUATIONS_PER_PERIOD`.
     """
     record = Record.empty(len(state), periods, system.steps if trace else 0)
+    _advance(system, state, gaps, growth, record, False)
+    return record
+
+
+def speeds(system: System, state: Array, gaps: Array, trace: Array) -> Array:
+    """Return the tip's dx/d(Omega t) at each sample of traces, shape (n, samples).
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 3)
+        At the start of the traces; not changed.
+    gaps : ndarray, shape (n, 2)
+        Constant.
+    trace : ndarray, shape (n, samples)
+        As recorded by `advance`.
+    """
+    record = Record.empty(len(state), trace.shape[1] // system.steps, system.steps)
+    _advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), record, True)
+    return record.trace
+
+
+def _advance(
+    system: System, state: Array, gaps: Array, growth: Array, record: Record, of_speeds: bool
+) -> None:
+    """Advance n beams over the periods of their record."""
     for i, (free, contact) in enumerate(system.phases):
         row = Record(*(a[i] for a in record))
         if system.beams.load[i]["power"] > 0:
-            _advance_random(system, i, state[i], gaps[i], growth[i], row)
+            _advance_random(system, i, state[i], gaps[i], growth[i], row, of_speeds)
         else:
-            advance_beam(free, contact, state[i], gaps[i], growth[i], row)
-    return record
+            advance_beam(free, contact, state[i], gaps[i], growth[i], row, of_speeds)
 
 
 def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
@@ -60,7 +85,13 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
 
 
 def _advance_random(
-    system: System, row: int, state: Array, gaps: Array, growth: Array, record: Record
+    system: System,
+    row: int,
+    state: Array,
+    gaps: Array,
+    growth: Array,
+    record: Record,
+    of_speeds: bool,
 ) -> None:
     """Advance one beam under a random load, whose phasors are reset in each period."""
     free, contact = system.phases[row]
@@ -88,4 +119,4 @@ def _advance_random(
             record.peak,
             record.trace[period * steps : (period + 1) * steps],
         )
-        advance_beam(free, contact, state, gaps, growth, one)
+        advance_beam(free, contact, state, gaps, growth, one, of_speeds)

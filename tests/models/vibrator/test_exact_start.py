@@ -279,4 +279,4 @@ def test_slow_rotors_and_short_starts():
     out, status = switched_on(p, settings=Settings(propagator="exact", run_up=1.0))
     assert status[0] == Status.OK
     assert 4 < out.speed[0] < 5
-    assert out.regime[0] in (LOCKED_0, LOCKED_PI)
+    assert out.regime[0] == ASYNCHRONOUS  # no orbit can be seen to be stable in so short a time
