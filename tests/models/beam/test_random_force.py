@@ -10,8 +10,7 @@ from scipy.stats import kstest
 from models.beam import exact, lanes
 from models.beam.parameters import Settings
 from models.beam.structure.modal import beams, free_reach
-from models.beam.structure.random_lines import COUNT, force
-from models.beam.structure.random_response import tip_deviation
+from models.beam.structure.random_response import RIGID, filtered, tip_deviation
 from models.numerics.blocks import LANES
 
 
@@ -20,7 +19,8 @@ def many_forces(n, seconds, rate, **values):
     b = beams(p, Settings(), np.arange(n, dtype=np.uint64))
     time = np.arange(0.0, seconds, 1 / rate)
     periods = time * p.forcing_frequency[0]
-    return np.array([p.initial_gap[0] * force(load, periods) for load in b.load])
+    forcing = b.forcing[0]
+    return np.array([p.initial_gap[0] * filtered(x, forcing, RIGID, periods) for x in b.load])
 
 
 @pytest.mark.slow
@@ -56,9 +56,9 @@ def test_the_force_is_gaussian_at_any_instant_and_rows_are_independent():
 def test_a_realisation_is_that_of_its_seed():
     p = nominal(3, **PURE)
     seeds = np.array([5, 2**64 - 1, 5], np.uint64)
-    loads = beams(p, Settings(), seeds).load
-    at = np.linspace(0.0, 1e6, 50)
-    first, other, again = (force(load, at) for load in loads)
+    b = beams(p, Settings(), seeds)
+    at = np.linspace(0.0, 1e4, 50)
+    first, other, again = (filtered(x, b.forcing[0], RIGID, at) for x in b.load)
     assert np.array_equal(first, again)
     assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.6
 
@@ -86,7 +86,7 @@ def test_without_contact_the_tip_varies_as_the_integral_of_the_spectrum_says(low
     p = nominal(n, mass_damping=20.0, random_force_low=low, **PURE)
     known = analytic_deviation(p)
     b, system = prepared(lanes, p)
-    sure = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
+    sure = tip_deviation(b.load, b.forcing, b.oscillators)
     assert sure == pytest.approx(np.full(n, known), rel=2e-3)
     assert (free_reach(b) == 9 * sure).all()
     state, gaps = started(lanes, system, p, 1e6)
@@ -107,7 +107,7 @@ def test_without_contact_lanes_and_exact_agree_from_epoch_to_epoch():
     for propagator in (lanes, exact):
         b, system = prepared(propagator, p, [7], steps_per_period=768)  # no mode is static
         state, gaps = started(propagator, system, p, 1e6)
-        periods = 2 * int(b.load["epoch"][0]) + 5
+        periods = 2 * int(b.load["stretch"][0]) + 5
         traces.append(
             propagator.advance(system, state, gaps, np.zeros((1, 2)), periods, trace=True).trace
         )
@@ -141,20 +141,20 @@ def test_exact_is_an_independent_integration_of_the_beam_under_the_same_force():
     )
     elements, periods = 2, 4
     b, system = prepared(exact, p, [11], elements=elements)
-    b.load["epoch"] = 3  # so that one ends on the way
-    system.beams.load["epoch"] = 3
     state, gaps = started(exact, system, p)
     record = exact.advance(system, state, gaps, np.zeros((1, 2)), periods)
     assert record.work.sum() > 1
     w, d, m = b.frequency[0], b.decay[0], b.mobility[0]
-    forcing, load = b.forcing[0], b.load[0]
+    forcing = b.forcing[0]
+    at = np.linspace(0.0, periods, 40_001)
+    force = filtered(b.load[0], forcing, RIGID, at)
 
     def motion(t, y):
         z, v = np.split(y, 2)
         x = z.sum()
         contact = b.stiffness[0] * (max(x - 1, 0.0) - max(-x - 1, 0.0))
         inside = np.clip(t * forcing / (2 * np.pi), begin, np.nextafter(begin + 1, 0))
-        tip = b.force[0] * np.cos(forcing * t) + force(load, np.array([inside]))[0] - contact
+        tip = b.force[0] * np.cos(forcing * t) + np.interp(inside, at, force) - contact
         return np.concatenate([v, m * tip - 2 * d * v - w**2 * z])
 
     y = np.zeros(2 * len(w))
@@ -173,7 +173,7 @@ def test_exact_is_an_independent_integration_of_the_beam_under_the_same_force():
 def test_a_random_run_in_parts_is_the_run_in_one_bit_for_bit(propagator):
     p = nominal(2, mass_damping=60.0, **PURE)
     b, system = prepared(propagator, p)
-    epoch = int(b.load["epoch"][0])
+    epoch = int(b.load["stretch"][0])
     growth = np.full((2, 2), 1e-4)
     state, gaps = started(propagator, system, p)
     whole = propagator.advance(system, state, gaps, growth, epoch + 9)
@@ -212,12 +212,3 @@ def test_a_load_too_fast_for_the_steps_is_refused_and_followed_with_more():
     assert not list(lanes.groups(beams(p, Settings()), Settings(steps_per_period=96)))
     _, system = prepared(lanes, p)
     assert system.steps >= 16 * 3000 / 57.1042
-
-
-def test_lines_are_many_where_the_beam_is_sharp():
-    p = nominal(**PURE)
-    b = beams(p, Settings(), np.zeros(1, np.uint64))
-    edges = b.load["edges"][0] * p.forcing_frequency[0]
-    assert len(edges) == COUNT + 1 and (np.diff(edges) >= 0).all()
-    for f in b.frequency[0, :2] / (2 * np.pi):
-        assert np.sum(np.abs(edges - f) < 0.5) >= 5
