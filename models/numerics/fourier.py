@@ -1,6 +1,6 @@
 """The discrete Fourier transform, with the same bits on every processor.
 
-Stockham's algorithm (Cochran et al. 1967), by fours: it sorts itself, and its inner loops vectorise.
+Stockham's algorithm (Cochran et al. 1967), by fours: it needs no sorting.
 """
 
 import numpy as np

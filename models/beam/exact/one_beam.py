@@ -90,7 +90,12 @@ def advance_beam(free, contact, samples, state, gaps, growth, record):
                 until = theta + event.after if event.after < to_end else end
                 if steps:
                     _sample(
-                        phase, room.weight, room.power, theta, until, trace[period * steps :][:steps]
+                        phase,
+                        room.weight,
+                        room.power,
+                        theta,
+                        until,
+                        trace[period * steps :][:steps],
                     )
                 join(phase, room.coefficient, event.after, room.power, y)
                 theta, site = until, event.site

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.structure.modal import Array, Beams
 from models.beam.structure.interpolation import COEFFICIENTS, REACH
+from models.beam.structure.modal import Array, Beams
 from models.beam.structure.random_load import FINER
 
 Complex = NDArray[np.complex128]

@@ -11,9 +11,9 @@ from models.beam.exact.one_beam import CLOCK, advance_beam
 from models.beam.exact.passage import passage
 from models.beam.exact.systems import System
 from models.beam.exact.tuning import Beam
+from models.beam.structure.interpolation import REACH
 from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Record
-from models.beam.structure.interpolation import REACH
 from models.beam.structure.random_load import FINER
 from models.beam.structure.random_response import (
     Workspace,

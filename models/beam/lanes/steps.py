@@ -2,8 +2,8 @@
 
 Each mode is propagated exactly under a contact force that is linear within a step; the harmonic
 force enters through the exact steady response, so modes carry only the effect of contact, and so
-does a random force, see `models.beam.lanes.random_motion`. A damped mode under a sampled force obeys a
-two-term recurrence, here in transposed direct form:
+does a random force, see `models.beam.lanes.random_motion`. A damped mode under a sampled force
+obeys a two-term recurrence, here in transposed direct form:
 
     y_i <- t_i y_i + r_i + alpha_i p,    r_i <- beta_i p - d_i y_i,
 

@@ -110,7 +110,11 @@ def random_load(p: Rows, slowest: Array, seed: NDArray[np.uint64]) -> NDArray[np
     lag = np.ceil(forcing * half).astype(np.int64) + _MARGIN
     drawn = np.zeros(len(rows), LOAD)
     drawn["power"] = 0.5 * p.random_force_level[rows] * forcing * rate / p.initial_gap[rows] ** 2
-    drawn["low"], drawn["high"], drawn["edge"] = low / forcing, high / forcing, _EDGE / half / forcing
+    drawn["low"], drawn["high"], drawn["edge"] = (
+        low / forcing,
+        high / forcing,
+        _EDGE / half / forcing,
+    )
     drawn["rate"], drawn["size"], drawn["lead"] = rate, size, lead
     drawn["stretch"] = size // rate - lead - lag
     drawn["seed"] = seed[rows]

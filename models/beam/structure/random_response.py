@@ -165,7 +165,10 @@ def _open(load, forcing, oscillators, work, gain, modes):
             continue
         c, s = cosine_sine(2 * np.pi * ((k * lead) % size / size))
         twice = gain[0, k] * (1.0 if k == 0 else 2.0)
-        u, v = twice * fma(parts[0, k], c, -parts[1, k] * s), twice * fma(parts[0, k], s, parts[1, k] * c)
+        u, v = (
+            twice * fma(parts[0, k], c, -parts[1, k] * s),
+            twice * fma(parts[0, k], s, parts[1, k] * c),
+        )
         w = k * step
         for i in range(oscillators.shape[1]):
             frequency, decay, mobility = oscillators[0, i], oscillators[1, i], oscillators[2, i]
@@ -249,7 +252,10 @@ def filtered(load: np.void, forcing: float, oscillators: Array, periods: Array) 
     """
     one = np.array([load], load.dtype)
     work = Workspace.of(one)
-    gain, samples = np.empty((2, work.parts.shape[1] // (2 * FINER))), np.empty((2, samples_per_stretch(load)))
+    gain, samples = (
+        np.empty((2, work.parts.shape[1] // (2 * FINER))),
+        np.empty((2, samples_per_stretch(load))),
+    )
     set_gain(load, forcing, oscillators, gain)
     per_period = FINER * load["rate"]
     whole = np.floor(periods).astype(np.int64)
