@@ -53,7 +53,8 @@ def _tip(phase, y, theta):
 def advance_beam(free, contact, samples, state, gaps, growth, record):
     """Advance one beam over the periods of its record.
 
-    `samples` are those of the response to a random load, as `set_stretches` sets them; empty without
+    `samples` are those of the response to a random load, as `set_stretches` sets them; empty
+    without
     one.
     """
     work, strobe, peak, trace = record

@@ -7,7 +7,8 @@ With y = [z, z'] of all modes and the time s since the phase began,
 where one term is the displacement due to the gap (rate 0), one the response to the force (rate i),
 and the others are the decaying modes of the phase, one for each conjugate pair. With a random
 force, y is the motion beyond the tip's response to it without contact; that is a sum of J harmonics
-between two of its samples, and in contact y responds to each of them by a term more. Damping is proportional in free flight but not in
+between two of its samples, and in contact y responds to each of them by a term more. Damping is
+proportional in free flight but not in
 contact, whose modes are complex. Time is the phase of the forcing, Omega t; lengths are in initial
 gaps. Complex arrays are split into real and imaginary parts, axis 0 or 1, so that the compiler can
 vectorise over the last axis.
@@ -35,7 +36,8 @@ class Phase(NamedTuple):
     speed : ndarray, shape (T,)
         Moduli of the rates.
     tip : ndarray, shape (2, T)
-        Sum of the displacements in `shape`, and 1 more for a harmonic, which the tip follows itself.
+        Sum of the displacements in `shape`, and 1 more for a harmonic, which the tip
+        follows itself.
     shape : ndarray, shape (T, 2, 2 m)
         Per unit gap, phasor of the force and of each harmonic, and coefficient of each mode.
     dual : ndarray, shape (2 m, 2, K)
@@ -87,7 +89,7 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
 
 
 def _harmonics(load: np.void) -> Array:
-    """Return the harmonics of the response to a random load between samples, in radians of the force."""
+    """Return the harmonics between samples of a random load, per radian of the force."""
     if load["power"] == 0:
         return np.empty(0)
     return FINER * load["rate"] / REACH * np.arange(len(COEFFICIENTS))

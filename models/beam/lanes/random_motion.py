@@ -131,7 +131,7 @@ def _weighted(taps, s, m, window, k, total):
 
 @kernel
 def add_motion(motion, state, first, period, drive):
-    """Add the response to the tip's motion without contact, at each step of a period of the call."""
+    """Add the response to the tip's motion without contact, at each step of a period."""
     _look_up(motion, state, first, period)
     taps, window = motion.taps, motion.window
     steps = taps.shape[0]

@@ -116,7 +116,8 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     gives way by no more than `COMPLIANCE` of its penetration, without residual flexibility; the
     error of a work-rate is then about 0.1 %. A turn of the random load's highest
     frequency takes at least `RESOLVED` steps. A row is in no group if contact is too stiff, or the
-    load too fast, for the last of the ladder or for the steps set; nor if, under a random load, whose averages are
+    load too fast, for the last of the ladder or for the steps set; nor if, under a random load,
+    whose averages are
     long, it takes more than `MOST_UNDER_RANDOM` steps and they are not set.
     """
     steps = np.full(len(beams.forcing), settings.steps_per_period)
