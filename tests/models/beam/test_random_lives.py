@@ -174,3 +174,12 @@ def test_a_beam_that_its_steps_throw_out_of_all_bounds_is_out_of_budget(monkeypa
     outputs, status = MODEL.batch(x, np.array([744, 0], np.uint64), Settings(depths=(1e-5,)))
     assert status.tolist() == [Status.OUT_OF_BUDGET, Status.OK]
     assert np.isnan(outputs["work_rate"][0]).all()
+
+
+@pytest.mark.slow
+def test_a_band_above_the_first_mode_gives_every_seed_the_same_work_rate():
+    x = rows(8, force_amplitude=0.0, random_force_level=0.2, random_force_low=50.0)
+    settings = Settings(depths=(1e-9,), accuracy=1.0, modes=6)
+    outputs, _ = MODEL.batch(x, np.arange(8, dtype=np.uint64), settings)
+    work = outputs["work_rate"].mean(axis=1)
+    assert work.std(ddof=1) < 0.15 * work.mean()
