@@ -135,6 +135,25 @@ def test_the_platform_depends_one_way():
     assert not guilty
 
 
+GIVEN_BY_USERS = {
+    "uq.exploring.grid",
+    "uq.exploring.row_again",
+    "uq.running.alone",
+    "uq.running.child",
+    "uq.running.loading",
+    "uq.running.probe",
+    "uq.study.definition",
+}
+"""Modules that load a model by what a user gave, or by a `Study` made from it."""
+
+
+def test_code_is_reached_by_what_a_user_gave_alone():
+    reach = {"uq.study.registry.model_at", "uq.outside.machine.machine_of"}
+    reach |= {"uq.outside.server.server_model", "uq.outside.program.program_of"}
+    importers = {name for name, names in edges("uq").items() if names & reach}
+    assert importers == GIVEN_BY_USERS | {"uq.study.registry", "uq.outside.machine"}
+
+
 def test_a_worker_imports_no_more_than_it_needs():
     heavy = "{'pydantic', 'scipy', 'xarray'}"
     program = f"import sys, uq.running.dask_task; print(*{heavy} & set(sys.modules))"

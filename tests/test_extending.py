@@ -125,8 +125,8 @@ def test_a_design_is_accepted_explained_and_documented(toy_design, uq, write_stu
     checked = uq("check", asking(write_study, "mirrored", "rbd-fast")).out
     assert "mirrored: pairs of opposite points" in " ".join(checked.split())
     refused = uq("check", asking(write_study, "mirrored", "sobol"))
-    assert "'mirrored' feeds 'rbd-fast' or" in refused.err
-    assert '| `"mirrored"` | pairs of opposite points | yes | rbd-fast' in generated.designs()
+    assert "'mirrored' feeds 'first-order' or" in refused.err
+    assert '| `"mirrored"` | pairs of opposite points | yes | first-order' in generated.designs()
     assert "`mirrored`" in generated.questions() and "`mirrored`" in generated.confidence()
 
 

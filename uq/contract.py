@@ -144,12 +144,17 @@ class Output:
         return self.is_lifetime and self.may_be_censored
 
     def is_absent(self, values: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return which values are missing, in the shape of `values`."""
+        """Return which values are missing or impossible, in the shape of `values`."""
         if self.is_category:
             return values < 0
         if self.is_lifetime:
-            return np.isnan(values) | np.isneginf(values)
+            return np.isnan(values) | (values < 0)
         return ~np.isfinite(values)
+
+    def absence(self, value: float) -> str:
+        """Return why a value is absent, as the predicate of a sentence."""
+        negative = self.is_lifetime and -np.inf < value < 0
+        return f"is {value}" + ": a life cannot be negative" * bool(negative)
 
     def for_thresholds(self, values: Floats) -> Floats:
         """Return the numbers compared with thresholds: the magnitude of an angle, else `values`."""

@@ -96,6 +96,11 @@ def plain(text: str) -> str:
     return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
+def without_control(text: str) -> str:
+    """Return a text from a file as in `plain`; tabs and line ends, which are harmless, stay."""
+    return re.sub(r"[^\t\r]+", lambda found: plain(found[0]), text)
+
+
 def plain_line(text: str) -> str:
     """Return a text as in `plain`, on one line."""
     return plain(text).replace("\n", "\\n")

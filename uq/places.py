@@ -2,6 +2,7 @@
 
 import os
 import stat
+from contextlib import suppress
 from errno import ENAMETOOLONG
 from pathlib import Path
 
@@ -61,6 +62,20 @@ def file_behind(path: Path, option: str = "-o") -> Path:
             raise InputError(f"{path}: is a folder; give the name of a file in it")
         case what:
             raise InputError(f"{path}: is {what}, not a file; choose another place with {option}")
+
+
+def cache_path(name: str) -> Path:
+    """Return the user's cache folder of a program; where there is none, a place never writable.
+
+    Without HOME and an entry among the users, the home folder is unknown, or a relative ``~``.
+    """
+    from platformdirs import user_cache_path
+
+    with suppress(RuntimeError):  # which versions of platformdirs raise without a home
+        path = user_cache_path(name, appauthor=False)
+        if path.is_absolute():
+            return path
+    return Path(os.devnull) / name
 
 
 def refuse_standard_output(path: Path) -> None:

@@ -12,6 +12,12 @@ _SECONDS = {"min": 60, "h": 3600, "d": 86400, "a": 31557600}
 _PREFIXES = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
 _BASES = {*PREFIXED, "Ω"}
 _OTHER_NAMES = {"second": "s", "seconds": "s", "Ω": "ohm", "ohms": "ohm"}
+_DECODED = {word: name for name, word in _TIMES.items()} | {
+    "seconds": "s",
+    "milliseconds": "ms",
+    "microseconds": "us",
+    "nanoseconds": "ns",
+}
 _DEGREES = ("°", "deg", "degree", "degrees")
 
 _NUMBER = r"[-+]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,3})?"
@@ -114,9 +120,8 @@ def misfit(text: str, of: str, units: str) -> str:
 
 def fault_of_unit(unit: str) -> str:
     """Return why a string cannot be the unit of a parameter or output; "" where it can."""
-    short = {word: name for name, word in _TIMES.items()} | {"seconds": "s"}
-    if unit in short:  # which xarray would turn into dates
-        return f"write it as '{short[unit]}'"
+    if meant := _DECODED.get(unit.lower()):  # which xarray would turn into time differences
+        return f"write it as '{meant}'"
     place = 0
     while found := _PART.match(unit, place):
         place = found.end()

@@ -23,6 +23,7 @@ CHAPTERS = {
     "Sobol' indices": (
         r"(Ishigami|Two regimes|G-function|Life that may never end), saltelli, .* groups"
     ),
+    "Shares that inputs explain alone": r"First-order",
     "Shapley effects": r"Ishigami, shapley",
     "Indices of all elements of an output": r"A front|Worn depth",
     "Shapley effects of dependent inputs": r"Dependent inputs",
@@ -36,7 +37,7 @@ CHAPTERS = {
     "Joint bounds": r"Joint",
     "Two fidelities": r".*cheap twin",
     "Runs that stop early": r"Runs that stop",
-    "Rare events": r"P = 1e-5|Subset simulation",
+    "Rare events": r"P = \d|Subset simulation",
     "Lives scaled by an input": r"Life scaled",
     "What-if": r"What if",
     "Fleets": r"Fleet",

@@ -2,6 +2,7 @@
 
 import numpy as np
 from scipy import stats
+from scipy.optimize import brentq
 
 from benchmarks.coverage.lives import FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
@@ -61,8 +62,7 @@ def bands(repetitions):
         for rows in (100, 500):
             how = f"{never:.0%} never end, " * bool(never)
             how += "others censored" if censored else "none censored"
-            reason = {"survival": HALF_SEEN} if never and not censored else None
-            tally = Tally(f"Weibull life, {how}, {rows} independent rows", reason)
+            tally = Tally(f"Weibull life, {how}, {rows} independent rows")
             rng = np.random.default_rng(rows)
             for _ in range(repetitions):
                 life = WEIBULL.rvs(rows, random_state=rng)
@@ -76,10 +76,66 @@ def bands(repetitions):
     return lines
 
 
-HALF_SEEN = (
-    "conservative: Kolmogorov's law describes the largest deviation over the entire distribution,"
-    " of which only 40 % is finite"
-)
+# Laws of the time at which rows leave; the scale gives the share of censored rows.
+LEAVING = {
+    "exponentially": stats.expon(),
+    "early": stats.weibull_min(0.5),
+    "uniformly": stats.uniform(),
+    "all at one time": stats.uniform(1.0, 1e-9),
+}
+CENSORED = (0.5, 0.8, 0.89, 0.95)
+
+
+def censored_bands(rows, repetitions):
+    """Count bands and pointwise intervals where most rows are censored."""
+    lines = []
+    for how, law in LEAVING.items():
+        for share in CENSORED:
+            name = f"Weibull life, {share:.0%} censored, leaving {how}, {rows} independent rows"
+            tally = Tally(name, {"survival": FEW_ENDS, "S(": FEW_AT_RISK})
+            rng = np.random.default_rng(rows)
+            scale = _scale(law, share)
+            times = _times_seen(law, scale)
+            for _ in range(repetitions):
+                life = WEIBULL.rvs(rows, random_state=rng)
+                left = scale * law.rvs(rows, random_state=rng)
+                curve = survival(with_life(np.minimum(life, left), left < life), "life")
+                if np.isfinite(curve["band_low"]).any():
+                    held = _holds(curve, WEIBULL.sf)
+                    tally.add("survival, whole curve", 1.0, 1.0, 2.0 if held else 0.0)
+                _count_at(tally, curve, times)
+            lines += tally.lines()
+    return lines
+
+
+def _scale(law, share):
+    """Return the scale of the times of leaving at which a share of rows is censored."""
+    left = law.ppf((np.arange(2000) + 0.5) / 2000)
+    return np.exp(brentq(lambda x: np.mean(WEIBULL.sf(np.exp(x) * left)) - share, -20, 20))
+
+
+def _times_seen(law, scale):
+    """Return times by which 30, 80 and 95 % of the ends that are seen have come."""
+    time = np.linspace(0, 4, 40_001)
+    seen = WEIBULL.pdf(time) * law.sf(time / scale)
+    ended = np.cumsum(seen) / seen.sum()
+    return {share: time[np.searchsorted(ended, share)] for share in (0.3, 0.8, 0.95)}
+
+
+def _count_at(tally, curve, times):
+    """Count pointwise intervals; before the first end there is none, and the last time is open."""
+    for share, time in times.items():
+        place = int(np.searchsorted(curve["time"].values, time, side="right")) - 1
+        if place == curve.sizes["time"] - 1:
+            continue
+        low, high = (float(curve[name][max(place, 0)]) for name in ("low", "high"))
+        held = place < 0 or np.isnan(low) or low <= WEIBULL.sf(time) <= high
+        what = f"S(t), {share:.0%} of ends seen by t, held or before the first end"
+        tally.add(what, 1.0, 1.0, 2.0 if held else 0.0)
+
+
+FEW_ENDS = "few ends: counts are discrete; without any, no band"
+FEW_AT_RISK = "few ends or few rows at risk: conservative beta products"
 
 
 def _holds(curve, truth):

@@ -38,6 +38,11 @@ REASONS = {
     "number ended": CAUTIOUS,
     "median of the first, ": BEYOND,
 }
+OF_COUNTS = {
+    f"{what}, {share} % of samples": "conservative where units are counted: whatever the law"
+    for what in ("median of the first", "number ended", "P(at most 1)", "P(at most 5)")
+    for share in (5, 95)
+}
 
 
 def given(time, z):
@@ -59,6 +64,41 @@ def weighted_normals(size, rng):
     """Return normals of a wider law, shifted, and their weights as standard ones."""
     z = SHIFTED + WIDER * rng.standard_normal(size)
     return z, smoothed((((z - SHIFTED) / WIDER) ** 2 - z**2) / 2).weights
+
+
+COUNTED_SAMPLES, COUNTED_UNITS, COUNTED_SIZE, BY = 150, 20, 5, 0.3
+LAWS = {
+    "gamma": stats.gamma(3, scale=0.5),
+    "Gumbel of the logarithm": stats.invweibull(1.5, scale=0.5),
+    "uniform": stats.uniform(0.3, 2.0),
+    "two values": stats.rv_discrete(values=([1, 3], [0.07, 0.93])),
+}
+"""Laws of a life's scale that units of a sample share; each has a Weibull life of shape 2."""
+
+
+def other_laws(name, repetitions):
+    """Count bands of counted units whose shared law is not lognormal."""
+    law = LAWS[name]
+    tally = Tally(f"fleet of {COUNTED_SIZE}, units counted, shared law: {name}", COUNTED)
+    shape = (COUNTED_SAMPLES, COUNTED_UNITS)
+    sample, unit = np.unravel_index(np.arange(shape[0] * shape[1]), shape)
+    place = Nesting(*shape, 1, sample, unit, 0 * unit, np.zeros(shape[0], np.int64))
+    rng = np.random.default_rng(11)
+    for _ in range(repetitions):
+        scale = law.rvs(size=(COUNTED_SAMPLES, 1), random_state=rng)
+        life = (scale * rng.weibull(2.0, shape)).ravel()
+        nothing = np.zeros(life.size, dtype=bool)
+        element = Element("life", "life", LIFE, {}, life, nothing, nothing)
+        units = Units(element, place, None, ("strength",))
+        failed = FleetNumbers(units, COUNTED_SIZE, 0, None, True).failed(BY)
+        for end, share in (("low", LOW), ("high", HIGH)):
+            truth = COUNTED_SIZE * -np.expm1(-((BY / law.ppf(1 - share)) ** 2))
+            what = f"number ended, {100 * share:g} % of samples"
+            tally.estimate(what, truth, getattr(failed, end))
+    return tally.lines()
+
+
+COUNTED = {"number ended": "conservative: what counts of units allow whatever the law over samples"}
 
 
 def drawn(units, integrated, weighted, rng):
@@ -104,7 +144,7 @@ def shared_scale(repetitions):
             return special.ndtr((np.log(time) + spread * z) / OWN)
 
         name = f"fleet of {size}, 100 samples of 10 units, a shared rate integrated"
-        tally = Tally(name + f" and {rest:g} beside it" * bool(rest), REASONS)
+        tally = Tally(name + f" and {rest:g} beside it" * bool(rest), REASONS | OF_COUNTS)
         rng = np.random.default_rng(3)
         for _ in range(repetitions):
             of = FleetNumbers(worlds_scaled(rest, rng), size, allow, None, True)
@@ -127,7 +167,7 @@ def fleets(name, repetitions):
     units, size, integrated, weighted = CASES[name]
     how = "depth integrated" if integrated else f"of {units} units"
     how += ", weighted" * weighted
-    tally = Tally(f"fleet of {size}, {SAMPLES} samples, {how}", REASONS)
+    tally = Tally(f"fleet of {size}, {SAMPLES} samples, {how}", REASONS | OF_COUNTS)
     middle = brentq(lambda x: first_by(np.exp(x), size) - 0.5, -8, 2)
     time, allow = np.exp(middle + 0.3), size // 10
     z = {share: stats.norm.ppf(share) for share in (LOW, HIGH)}

@@ -20,6 +20,8 @@ comparison.
 - **of**: number of intervals given, with a remark where some repetitions gave none. `make coverage`
   repeats 2,000 times; where this number is smaller, the share is known less precisely.
 - **width**: median width of the intervals given, in the unit of the estimate.
+- **bias**, **sd**: mean error of the estimate, and its standard deviation, where several estimators
+  are compared.
 
 Problems: *Ishigami's function*; a *function of two regimes* that jumps by 3 where x1 + x2 exceeds
 1.2, added to x1 + x3; a *life with a heavy tail*, whose P(T > t) falls as t^-3, so that it has a
@@ -115,11 +117,14 @@ def _table(lines):
     """Return a table, ours first and the others' below each."""
     order = list(dict.fromkeys(line.what for line in lines))
     ordered = sorted(lines, key=lambda one: (order.index(one.what), one.by != OURS))
-    head = ["| | by | covered | of | width | remark |", "| --- | --- | --- | --- | --- | --- |"]
-    return "\n".join([*head, *map(_row, ordered)])
+    columns = ["", "by", "covered", "of", "width", "remark"]
+    with_bias = any(math.isfinite(line.bias) for line in lines)
+    columns[5:5] = ["bias", "sd"] * with_bias
+    head = [f"| {' | '.join(columns)} |", f"| {' | '.join(['---'] * len(columns))} |"]
+    return "\n".join([*head, *(_row(line, with_bias) for line in ordered)])
 
 
-def _row(line):
+def _row(line, with_bias):
     value, low, high = line.coverage
     what, by = line.what.replace("|", "\\|"), line.by
     name = f"**{what}**" if by == OURS else what
@@ -129,7 +134,8 @@ def _row(line):
     remark = line.reason if told else ""
     if line.given < line.repetitions:
         remark = "; ".join(filter(None, [f"{line.repetitions - line.given} not given", remark]))
-    return f"| {name} | {by} | {covered} | {line.given} | {width} | {remark} |"
+    error = f" {line.bias:+.4f} | {line.scatter:.4f} |" if with_bias else ""
+    return f"| {name} | {by} | {covered} | {line.given} | {width} |{error} {remark} |"
 
 
 def shown(line: Line) -> str:

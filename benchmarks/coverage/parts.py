@@ -12,6 +12,7 @@ from benchmarks.coverage import (
     effects,
     few,
     fewer_rows,
+    first_order,
     fleets,
     indices,
     joint,
@@ -65,6 +66,10 @@ PARTS = {
     },
     "fit-wrong": Part(curves.wrong_fits, 1000),
     "bands": Part(curves.bands, 1000),
+    **{
+        f"bands-censored-{rows}": Part(partial(curves.censored_bands, rows), 1000)
+        for rows in (30, 60, 200, 1000)
+    },
     "sobol": Part(indices.sobol),
     "sobol-jump": Part(indices.sobol_of_jump),
     "sobol-others": Part(indices.sobol_of_others, 500),
@@ -83,6 +88,11 @@ PARTS = {
     **{f"levels-{name}": Part(partial(nested.effects, name)) for name in nested.EFFECTS},
     "levels-integrated": Part(nested.integrated),
     "levels-weighted": Part(nested.weighted),
+    **{
+        f"first-order-{rows}": Part(partial(first_order.rows, rows), 1000)
+        for rows in first_order.ROWS
+    },
+    "first-order-replicates": Part(first_order.replicates, 300),
     "morris": Part(indices.morris),
     **{
         f"null-{name}": Part(partial(indices.nulls, name), 1000 if name in HSIC else REPETITIONS)
@@ -106,9 +116,17 @@ PARTS = {
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),
     "importance": Part(fewer_rows.importance),
+    **{
+        f"hidden-{method}": Part(partial(fewer_rows.hidden, method), 400)
+        for method in ("subset", "importance")
+    },
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
     "fleet-shared": Part(fleets.shared_scale, 1000),
+    **{
+        f"fleet-law-{name.split()[0].lower()}": Part(partial(fleets.other_laws, name), 400)
+        for name in fleets.LAWS
+    },
     "basins": Part(basins.exponents, 1000),
 }

@@ -26,6 +26,8 @@ class Line(NamedTuple):
         Median of the widths of those given; NaN for bounds on one side.
     reason : str
         Why its coverage does not lie between 93 and 97 %, or "".
+    bias, scatter : float
+        Mean error of the estimate and its standard deviation; NaN where they were not counted.
     """
 
     problem: str
@@ -36,6 +38,8 @@ class Line(NamedTuple):
     held: int
     width: float
     reason: str
+    bias: float = np.nan
+    scatter: float = np.nan
 
     @property
     def coverage(self):
@@ -70,12 +74,15 @@ class Tally:
     def __init__(self, problem, reasons=None):
         self.problem, self.reasons = problem, reasons or {}
         self._held = {}
+        self._errors = {}
 
-    def add(self, what, truth, low, high, by=OURS):
-        """Count one interval; an end that is None or NaN is not given."""
+    def add(self, what, truth, low, high, by=OURS, value=None):
+        """Count one interval, an end of which may be None or NaN, and the error of a value."""
         known = all(end is not None and not np.isnan(end) for end in (low, high))
         held = (bool(low <= truth <= high), float(high) - float(low)) if known else None
         self._held.setdefault((what, by), []).append(held)
+        if value is not None:
+            self._errors.setdefault((what, by), []).append(value - truth)
 
     def entry(self, what, truth, entry, by=OURS):
         """Count the interval of an entry with ``low`` and ``high``; without one, none is given."""
@@ -102,7 +109,12 @@ class Tally:
             sum(one for one, _ in given),
             float(np.median(widths)) if widths else np.nan,
             self._reason(what) if by == OURS else "",
+            *self._error(what, by),
         )
+
+    def _error(self, what, by):
+        errors = self._errors.get((what, by))
+        return (float(np.mean(errors)), float(np.std(errors))) if errors else (np.nan, np.nan)
 
     def _reason(self, what):
         fitting = [start for start in self.reasons if what.startswith(start)]

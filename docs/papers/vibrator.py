@@ -24,9 +24,11 @@ ranges.
 
 Sections 4 and 5 have no legible figure. Of section 4, equations (9) to (11) of a motor set on
 elastic mounts are in `models.vibrator.paper.closed_forms`, and theory and simulation include the
-set on such mounts; individual mounts for each vibrator (4.1) are not modelled. Of section 5, theory
-and simulation include a feed that is thrown and lands without rebound
-(`studies/vibrator-feed.toml`).
+set on such mounts; individual mounts for each vibrator (4.1) are not modelled. In the paper, equal
+elasticity in two perpendicular directions (4.3) does not change the disphasing; in equation (9),
+equal mounts along psi and psi + pi/2 cancel exactly, but the simulated machine has a mount along
+one direction only, so no simulation confirms this. Of section 5, theory and simulation include a
+feed that is thrown and lands without rebound (`studies/vibrator-feed.toml`).
 In the paper, disphasing is largest near a throw coefficient of 1.75, small near 2.7 and zero at
 2.97. In ours it is largest at 1.71 for a constant weight of the feed and at 1.34 for a constant
 mass; at 2.7 it has fallen to 32 or 18 % of that; it changes sign at 2.97 to 2.98."""

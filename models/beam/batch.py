@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import Params, Rows, Settings
+from models.beam.response.further_starts import add_other_responses
 from models.beam.response.neighbouring_starts import add_neighbour_error
 from models.beam.response.response import Response
 from models.beam.response.settling import NINE_IN_TEN, settle
@@ -106,9 +107,10 @@ def _simulate_group(
     gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
     settled = settle(propagator, system, state, gaps)
-    work, error, regime = settled.work.copy(), settled.error.copy(), settled.regime.copy()
+    first = Response._make(field.copy() for field in settled)
     add_step_error(propagator, system, state, gaps, settled)
     add_neighbour_error(propagator, system, begin, gaps, settled)
+    add_other_responses(propagator, system, gaps, first, settled, settings.starts)
     share = wear_shares(p)
     growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     clock = np.asarray(settings.instants) * (p.forcing_frequency * wear_per_work(p))[:, None]
@@ -118,12 +120,12 @@ def _simulate_group(
         rows = np.flatnonzero(known & (system.beams.is_random == is_random))
         if not len(rows):
             continue
-        start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])
+        start = (propagator, system.take(rows), state[rows], gaps[rows], first.work[rows])
         wear = (share[rows], growths[rows], clock[rows], settings.accuracy)
         part = (
-            find_random_lives(*start, error[rows] / NINE_IN_TEN, *wear)
+            find_random_lives(*start, first.error[rows] / NINE_IN_TEN, *wear)
             if is_random
-            else find_lives(*start, regime[rows], *wear)
+            else find_lives(*start, first.regime[rows], *wear)
         )
         for field, some in zip(lives, part, strict=True):
             field[rows] = some

@@ -135,6 +135,15 @@ class Settings:
         float, Setting("target relative error of each lifetime", bounds=(1e-4, 1.0))
     ] = 0.02
 
+    starts: Annotated[
+        int,
+        Setting(
+            "further initial states from which each beam is settled, in search of coexisting "
+            "responses; work_rate_error then covers all that are reached",
+            bounds=(0, 1000),
+        ),
+    ] = 0
+
     def __post_init__(self):
         if self.residual_flexibility and self.propagator == "exact":
             raise ValueError("residual_flexibility needs propagator = 'fast'")
@@ -159,7 +168,8 @@ OUTPUTS: Mapping[str, Output] = {
     "work_rate": Output("W", "impact work-rate of each site at the initial gaps", dims=("site",)),
     "work_rate_error": Output(
         "W",
-        "numerical error of the work-rate: of the steps and of the time mean",
+        "numerical error of the work-rate in the response from this start: of the steps and of the"
+        " time mean; also the distance of other responses from further starts, if set",
         dims=("site",),
     ),
     "work_rate_heavy": Output("W", "the larger of the two sites' work-rates"),

@@ -33,11 +33,13 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     b = beams(p, settings, np.array([seed], np.uint64))
     propagator, system = one_system(b, settings)
     gaps, state = initial_gaps(p), initial_state(propagator, system, p)
+    begin = state.copy()
     record = propagator.advance(system, state, gaps, np.zeros_like(gaps), PERIODS, trace=True)
+    speed = propagator.speeds(system, begin, gaps, record.trace)[0] * system.beams.forcing[0]
     x = np.concatenate([p.initial_displacement / p.initial_gap, record.trace[0]])
     time = np.arange(len(x)) / (params.forcing_frequency * (len(x) - 1) / PERIODS)
     force = params.force_amplitude * np.cos(2 * np.pi * params.forcing_frequency * time)
-    velocity = params.initial_gap * np.gradient(x, time)
+    velocity = np.concatenate([p.initial_velocity, params.initial_gap * speed])
     right, left = (newton(params) * np.maximum(d, 0.0) for d in (x - gaps[0, 0], -x - gaps[0, 1]))
     quantities = {
         "displacement": ("m", "tip displacement", params.initial_gap * x),

@@ -16,7 +16,9 @@ import inspect
 import os
 import platform
 import re
+import stat
 import time
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
@@ -44,8 +46,9 @@ def folder_of(function: Callable[..., Any]) -> Path | None:
     Returns
     -------
     Path or None
-        It exists. None if a source was edited since this process first asked: modules imported
-        before and after the edit belong to different states of the sources.
+        It exists. None if there is no safe place, or if a source was edited since this process
+        first asked: modules imported before and after the edit belong to different states of the
+        sources.
     """
     roots = {_NUMERICS}.union(*(_roots(file) for file in _files(function, set())))
     whole = hashlib.sha256(repr(_versions()).encode())
@@ -56,10 +59,34 @@ def folder_of(function: Callable[..., Any]) -> Path | None:
         whole.update(found.digest)
     names = sorted(root.stem for root in roots - {_NUMERICS}) or [_NUMERICS.name]
     name = f"{names[0]}-{whole.hexdigest()[:16]}"
+    users = user_cache_path("vibrolife", appauthor=False) / "numba"
+    if users.is_absolute():  # else there is no home: the path begins with "~"
+        with suppress(OSError):
+            return _made(users, name)
     try:
-        return _made(user_cache_path("vibrolife", appauthor=False) / "numba", name)
+        return _made(_private_folder(), name)
     except OSError:
-        return _made(Path(gettempdir()) / f"vibrolife-numba-{os.getuid()}", name)
+        return None
+
+
+def _private_folder() -> Path:
+    """Make a folder for temporary files that nobody else can write in.
+
+    Compiled code is loaded by unpickling: who writes it has it run. Anyone may have made a folder
+    of this name before.
+
+    Raises
+    ------
+    PermissionError
+        When it is not ours alone.
+    """
+    folder = Path(gettempdir()) / f"vibrolife-numba-{os.getuid()}"
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    look = folder.lstat()
+    if not stat.S_ISDIR(look.st_mode) or look.st_uid != os.getuid() or look.st_mode & 0o077:
+        raise PermissionError(f"{folder} is not a folder of this user alone")
+    return folder
 
 
 def _files(value: Any, seen: set[int]) -> Iterator[Path]:
@@ -117,7 +144,7 @@ def _snapshot(root: Path) -> _Snapshot:
     whole, words, stamps = hashlib.sha256(), set[bytes](), {}
     for path in filter(Path.is_file, sorted(root.rglob("*.py")) if root.is_dir() else [root]):
         stamps[path] = _stamp(path)
-        source = path.read_bytes()
+        source = path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
         whole.update(b"%s %d\n" % (os.fsencode(path.relative_to(root.parent)), len(source)))
         whole.update(source)
         words.update(re.findall(rb"\w+", source))

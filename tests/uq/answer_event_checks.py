@@ -104,11 +104,11 @@ def denied_advice(ds, advice, found):
             yield f"before: {each.sentence}"
         yield from _denied_law(ds, each)
     told = (
-        [float(share) for share in re.findall(r"(\S+) %", advice.sure.promised)]
+        re.findall(r"The (\w+) end of the interval of the (\S+) % quantile", advice.sure.promised)
         if advice.sure
-        else []
+        else [("lower", "5")]
     )
-    if told and (told != [95, 95] or found.lead.promise.coverage != 0.95):
+    if told not in ([("lower", "5")], [("upper", "95")]) or found.lead.promise.coverage != 0.95:
         yield advice.sure.promised
     if one.harms or (one.wants_more is not None and one.rises != one.wants_more):
         yield one.sentence

@@ -55,6 +55,17 @@ def _oscillator(x, seed, settings):
     return {"excess": excess}, np.zeros(len(x), np.int8)
 
 
+def _cliff(x, seed, settings):
+    """Two causes of an event: a slope of x1, and a cliff of x2 without a slope towards it."""
+    a, b = np.ascontiguousarray(x.T)
+    return {"stress": np.where(b < -4.0, 10.0, a)}, np.zeros(len(x), np.int8)
+
+
+def _sphere(x, seed, settings):
+    """As far from the centre in every direction: no design point is alone."""
+    return {"square": (x**2).sum(axis=1)}, np.zeros(len(x), np.int8)
+
+
 def _model(name, parameters, batch, outputs):
     return Model(name, "a known probability", "1", parameters, Settings, outputs, batch, block=64)
 
@@ -73,6 +84,14 @@ BRANCHES = _model(
 OSCILLATOR = _model(
     "oscillator", Parts, _oscillator, {"excess": Output("1", "excess displacement")}
 )
+
+CLIFF = _model("cliff", Plane, _cliff, {"stress": Output("1", "stress")})
+Twenty = NamedTuple(
+    "Twenty", [(f"x{i}", Annotated[float, _any(f"x_{{{i}}}")]) for i in range(1, 21)]
+)
+Twenty._field_defaults = dict.fromkeys(Twenty._fields, 0.0)
+Twenty.__new__.__defaults__ = (0.0,) * 20
+SPHERE = _model("sphere", Twenty, _sphere, {"square": Output("1", "squared distance")})
 
 STANDARD = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 PLANE = dict.fromkeys(("x1", "x2"), STANDARD)

@@ -14,13 +14,9 @@ WEAR = {
 
 def study(model, inputs, **tables):
     names = {"branches": "limit_states:BRANCHES", "oscillator": "limit_states:OSCILLATOR"}
+    tables = {"design": {"method": "monte-carlo", "samples": 64, "seed": 3}} | tables
     return study_of(
-        {
-            "study": {"name": "rare", "model": "linear"},
-            "design": {"method": "monte-carlo", "samples": 64, "seed": 3},
-            "uncertain": inputs,
-            **tables,
-        },
+        {"study": {"name": "rare", "model": "linear"}, "uncertain": inputs, **tables},
         names.get(model, model),
     )
 

@@ -12,10 +12,11 @@ from computed import (
     with_output,
 )
 
-from uq.analysis import findings
 from uq.conclusions.answer import answer
 from uq.conclusions.contributions import Change
 from uq.estimate import Estimate
+from uq.rows import ranked
+from uq.rows.nesting import first_samples
 
 
 @pytest.fixture(scope="module")
@@ -47,9 +48,9 @@ def test_an_effect_without_a_direction_has_no_size():
 
 def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):
     ds = linear(samples=400)
-    monkeypatch.setattr(findings, "RANKED", 300)
+    monkeypatch.setattr(ranked, "RANKED", 300)
     few = answer(ds).lead.ranking
-    alone = answer(findings.first_samples(ds, 300)).lead.ranking
+    alone = answer(first_samples(ds, 300)).lead.ranking
     assert few.contributions == alone.contributions
     assert few.what == f"{alone.what}, by the first 300 rows"
 

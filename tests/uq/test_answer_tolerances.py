@@ -50,8 +50,7 @@ def test_tolerances_that_help_about_as_much_are_named_together():
     (then,) = numbers(r"x3 \(5 % quantile #\) would help about as much\.", one.also)
     assert then == pytest.approx(quantile(ALIKE | {"x3": 0.031}), abs=0.03)
     sure, studied = numbers(
-        "With 95 % confidence, at least 95 % would then stay above #; as studied, by the same"
-        r" estimate \(the interval of the quantile\), #\.",
+        "The lower end of the interval of the 5 % quantile would then be #; as studied, #.",
         one.sure.promised,
     )
     assert studied < now < sure <= low

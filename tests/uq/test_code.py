@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from uq.errors import InputError
-from uq.study.registry import code_of, find_model
+from uq.study.registry import code_of, model_at
 from uq.study.sources import fingerprint
 
 
@@ -144,7 +144,7 @@ def test_the_code_is_that_which_was_imported(folder, monkeypatch):
     monkeypatch.syspath_prepend(folder)
     text = "from models.analytic import LINEAR as MODEL\n"
     (folder / "edited_later.py").write_text(text)
-    find_model("edited_later:MODEL")
+    model_at("edited_later:MODEL")
     (folder / "edited_later.py").write_text(f"{text}# edited\n")
     imported = code_of("edited_later:MODEL")
     assert anew("edited_later:MODEL") != imported

@@ -7,7 +7,7 @@ import uq as package
 from uq.contract import Status
 from uq.outside.compiled import Compiled
 from uq.outside.row_by_row import RowByRow
-from uq.study.registry import find_model
+from uq.study.registry import model_at
 
 
 def test_a_compiled_function_returns_a_tuple(uq, write_function):
@@ -45,7 +45,7 @@ def wear(seed, load=1.0):
 
 @pytest.mark.slow
 def test_a_compiled_loop_over_rows_returns_what_each_row_returns(write_function):
-    batch = find_model(write_function(HARD)).batch
+    batch = model_at(write_function(HARD)).batch
     assert isinstance(batch, Compiled)
     chance = np.random.default_rng(1)
     x, seed = 2 * chance.random((500, 1)), chance.integers(0, 2**64 - 1, 500, dtype=np.uint64)

@@ -155,3 +155,10 @@ def test_of_chunks_that_follow_each_other_the_first_failure_is_kept():
     np.testing.assert_array_equal(
         whole.columns["y"], linear([0.1, 0.2, 0.1, 0.9, 0.1, 0.95], "raise").columns["y"]
     )
+
+
+def test_a_negative_life_fails_with_a_sentence_and_a_life_of_zero_is_a_life():
+    assert list(broken("life", 0.0).status) == [Status.OK, Status.OK]
+    chunk = broken("life", -0.5)
+    assert list(chunk.status) == [Status.OK, Status.NON_FINITE]
+    assert chunk.failures["non-finite"] == (1, "'life' is -0.5: a life cannot be negative")

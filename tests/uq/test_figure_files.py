@@ -108,7 +108,7 @@ def test_categories_alone_have_the_indices_of_each(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
     assert list(sensitivities(ds)["outputs"]) == ["P(regime=slow)", "P(regime=fast)"]
     stems = {path.stem for path in plots.save_all(ds, tmp_path)}
-    assert {"pairs", "rbd-fast-P_regime_slow", "rbd-fast-P_regime_fast"} <= stems == files(ds)
+    assert {"pairs", "first-order-P_regime_slow", "first-order-P_regime_fast"} <= stems == files(ds)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):

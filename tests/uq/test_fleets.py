@@ -78,6 +78,10 @@ def test_points_over_what_is_shared_state_what_they_assume():
     assert counted_units.first[0.5].high.assumes
     entry = fleet_json(counted_units)["by"]["500000.0"]["failed"]
     assert "about normal" in entry["band_low_assumes"] and "assumes" not in entry
+    table = api.fleet(fleet_result(units=4, samples=100, depth=LISTED), 4, by=5e5)
+    of_numbers = table["assumes"].loc[["failed", "at_most_allowed"]]
+    assert all("about normal" in text for text in of_numbers)
+    assert not any(api.fleet(fleet_result(), 4, by=5e5)["assumes"])
     known = fleet_of(fleet_result(), 4, [5e5])
     assert not any("assume" in note for note in known.notes)
 
@@ -191,6 +195,14 @@ def test_python_terminal_json_and_report_agree(uq, tmp_path):
     assert max(map(len, shown.splitlines())) <= 80
     assert uq("report", result, "-o", tmp_path / "page.html").code == 0
     assert "Fleets of 2 units" in (tmp_path / "page.html").read_text()
+
+
+@pytest.mark.parametrize("law", list(counted.LAWS))
+def test_bands_of_counted_units_hold_whatever_the_law_over_samples(law):
+    lines = counted.other_laws(law, 4)
+    ends = [line for line in lines if "of samples" in line.what]
+    assert len(ends) == 2
+    assert all(line.held >= 3 and line.given == 4 for line in ends)
 
 
 @pytest.mark.slow

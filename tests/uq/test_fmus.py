@@ -16,7 +16,7 @@ from uq.outside.fmu import reduced
 from uq.outside.fmu_file import FmuOutputTable
 from uq.outside.fmu_said import cf_unit
 from uq.outside.returned import Censored
-from uq.study.registry import find_model
+from uq.study.registry import model_at
 
 MACHINE = """
 [machine]
@@ -161,12 +161,12 @@ def test_another_fmu_is_noticed(uq, body, library):
 
 
 def test_an_fmu_that_changes_while_rows_are_computed_costs_them(body):
-    model = find_model("body.toml")
+    model = model_at("body.toml")
     Path("body.fmu").write_bytes(Path("body.fmu").read_bytes() + b"\n")
     x, seed = np.array([[0.5, 0.0]]), np.zeros(1, np.uint64)
     _, status, messages = model.batch(x, seed, model.settings())
     assert status == Status.RAISED and "changed after the run began" in messages[0]
-    assert find_model("body.toml").batch(x, seed, model.settings())[1] == Status.OK
+    assert model_at("body.toml").batch(x, seed, model.settings())[1] == Status.OK
 
 
 MISTAKES = {

@@ -15,7 +15,7 @@ from own_machines import PAD, PAD_PROGRAM, run_program
 from uq.contract import Status
 from uq.outside import descendants, folders, program
 from uq.outside.folders import Folders
-from uq.study.registry import find_model
+from uq.study.registry import model_at
 
 
 def running_in(folder):
@@ -59,7 +59,7 @@ def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypa
     monkeypatch.setattr(descendants, "_adopting", True)
     monkeypatch.setattr(descendants, "LARGEST", 100_000)
     monkeypatch.setattr(program, "end_descendants", lambda: None)  # those of this process
-    model = find_model("machine.toml")
+    model = model_at("machine.toml")
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     try:
         x, seed = np.array([[1.0, 3.0]]), np.zeros(1, np.uint64)
@@ -75,7 +75,7 @@ def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkey
     write_program(f"#!/bin/sh\n{many}\n")
     monkeypatch.setattr(descendants, "LARGEST", 1_000_000)
     monkeypatch.setattr(program, "_LOOK_SECONDS", 0.1)
-    model = find_model("machine.toml")
+    model = model_at("machine.toml")
     x, seed = np.array([[1.0, 3.0]]), np.zeros(1, np.uint64)
     _, status, messages = model.batch(x, seed, model.settings())
     assert status == Status.RAISED

@@ -13,7 +13,7 @@ from uq.indices.sensitivities import methods
 
 def test_method_is_the_studys_or_the_designs_own():
     assert methods(linear("saltelli")) == ("sobol",)
-    assert methods(linear("halton", 128)) == ("rbd-fast",)
+    assert methods(linear("halton", 128)) == ("first-order",)
     ds = linear(samples=128, analysis={"sensitivity": ["pawn", "delta"]})
     assert methods(ds) == ("pawn", "delta")
     assert sensitivities(ds)["method"] == "pawn"

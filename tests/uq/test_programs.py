@@ -69,6 +69,22 @@ def test_a_template_keeps_its_line_ends(uq, write_program, folder):
     assert "exit code 5" not in str(ds["status"].attrs)
 
 
+@pytest.mark.parametrize("name", ["machine.toml", "deck"])
+def test_a_byte_order_mark_changes_neither_rows_nor_what_they_are_of(
+    uq, write_program, folder, name
+):
+    write_program()
+    _, before = run_program(uq)
+    path = folder / name
+    text = path.read_bytes()
+    windows = text if name == "deck" else text.replace(b"\n", b"\r\n")
+    path.write_bytes(b"\xef\xbb\xbf" + windows)
+    ended, kept = run_program(uq)
+    assert "other code" not in ended.err
+    _, after = run_program(uq, "--fresh")
+    assert before.identical(kept) and before.identical(after)
+
+
 def test_a_template_that_is_no_text_is_one_line(uq, write_program, folder):
     write_program()
     (folder / "deck").write_bytes(b"load={load}\xff\xfe")

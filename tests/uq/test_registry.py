@@ -10,12 +10,12 @@ from models.analytic import LINEAR
 from uq.contract import Model, Output, Parameter
 from uq.errors import InputError
 from uq.study import registry
-from uq.study.registry import find_model, model_names
+from uq.study.registry import find_model, model_at, model_names
 
 
 def message(reference):
     with pytest.raises(InputError) as caught:
-        find_model(reference)
+        model_at(reference)
     (line,) = caught.value.lines
     return line
 
@@ -32,14 +32,14 @@ def test_a_wrong_name_gets_the_nearest_right_one():
 
 
 def test_a_model_is_found_where_it_lives():
-    assert find_model("models.analytic:LINEAR") is LINEAR
+    assert model_at("models.analytic:LINEAR") is LINEAR
 
 
 def test_a_model_in_the_working_folder_is_found(tmp_path, monkeypatch):
     (tmp_path / "toy_model.py").write_text("from models.analytic import LINEAR as TOY\n")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    assert find_model("toy_model:TOY") is LINEAR
+    assert model_at("toy_model:TOY") is LINEAR
 
 
 @pytest.mark.parametrize(
@@ -95,4 +95,4 @@ class NotADataclass:
 def test_a_model_that_is_not_declared_is_refused(monkeypatch, change, said):
     monkeypatch.setattr(analytic, "ODD", replace(LINEAR, **change), raising=False)
     with pytest.raises(InputError, match=said):
-        find_model("models.analytic:ODD")
+        model_at("models.analytic:ODD")

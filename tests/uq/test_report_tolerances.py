@@ -178,9 +178,9 @@ def test_the_page_says_what_could_then_be_promised(shown):
     known = what_if_json(found)["outputs"]["life"]["quantiles"]["0.05"]
     assert before == pytest.approx(now.quantiles[0].low, rel=1e-7)
     assert then == pytest.approx(known["low"], rel=1e-7)
-    shown_then = float(text.split("last longer than ")[1].split()[0])
+    shown_then = float(text.split("would then be ")[1].split()[0])
     assert shown_then <= then < shown_then * 1.01
-    assert text.startswith("With 95 % confidence, at least 95 % would then last longer than")
+    assert text.startswith("The lower end of the interval of the 5 % quantile would then be")
 
 
 @pytest.mark.parametrize("case", ["weighted", "integrated"])

@@ -36,7 +36,14 @@ FED = sorted({(design, method) for method, design in FIRST.items()}) + [
 ]
 """Each method with the first design that feeds it, and each other design with its own method."""
 
-ROWS = {"hdmr": 1024, "quantile": 512, "rbd-fast": 512, "shapley": 256, "fast": 257}
+ROWS = {
+    "hdmr": 1024,
+    "quantile": 512,
+    "first-order": 512,
+    "rbd-fast": 512,
+    "shapley": 256,
+    "fast": 257,
+}
 """Other methods have enough in 128 samples."""
 
 

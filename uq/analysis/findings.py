@@ -14,8 +14,6 @@ from uq.analysis.level_shares import ByLevel, by_level
 from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Summary, summarise
 from uq.contract import Floats
-from uq.designs.layouts import PLAIN
-from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import Sensitivities, TargetIndices, sensitivities
@@ -27,14 +25,11 @@ from uq.rows.elements import (
     output_names,
     shown_outputs,
 )
-from uq.rows.nesting import first_samples, nesting_of
+from uq.rows.nesting import nesting_of
+from uq.rows.ranked import ranked_rows
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-RANKED = 50_000
-"""Rows by which inputs are ranked where a design is larger: more hardly change their order."""
 
 
 class Findings:
@@ -58,15 +53,9 @@ class Findings:
 
     @cached_property
     def ranked(self) -> "Findings":
-        """What is known of the rows by which inputs are ranked: the first ones of a large design.
-
-        All of a design that compares rows, whose indices are cheap.
-        """
-        samples, rows = self.ds.attrs["samples"], self.ds.sizes["sample"]
-        if rows <= RANKED or DESIGNS[self.ds.attrs["design"]].layout is not PLAIN:
-            return self
-        # Loaded: they are few, and read once for each target.
-        return Findings(first_samples(self.ds, max(RANKED * samples // rows, 1)).load())
+        """What is known of the rows by which inputs are ranked (`uq.rows.ranked.ranked_rows`)."""
+        ranked = ranked_rows(self.ds)
+        return self if ranked is self.ds else Findings(ranked)
 
     @cached_property
     def absent(self) -> frozenset[str]:

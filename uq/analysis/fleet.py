@@ -126,8 +126,9 @@ def fleet(
         ``failed``, the number that has ended before the time ``at``; ``at_most_allowed``, the
         probability that at most `allow` have. Each has its ``value``, a mean over all samples, with
         its 95 % interval ``low``, ``high``; ``band_low`` and ``band_high``, the 5 and 95 % points
-        over what is shared of the same given that, each with its own interval; and ``reason``, why
-        one of them is missing. Where rows failed, ``failed_low`` and ``failed_high``.
+        over what is shared of the same given that, each with its own interval; ``reason``, why
+        one of them is missing; and ``assumes``, what the points assume. Where rows failed,
+        ``failed_low`` and ``failed_high``.
 
     Raises
     ------
@@ -163,6 +164,7 @@ def _line(quantity: str, at: float, one: Banded) -> dict[str, object]:
     if one.failed is not None:
         found |= {"failed_low": one.failed.low, "failed_high": one.failed.high}
     found["reason"] = "; ".join(reasons(one))
+    found["assumes"] = one.low.assumes or one.high.assumes
     return found
 
 

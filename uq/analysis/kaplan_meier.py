@@ -8,15 +8,10 @@ from uq.rows.elements import Floats, Mask
 
 
 class Outliving(NamedTuple):
-    """Share that outlives each time, and the variance of that estimate from independent rows.
-
-    Where never is known at once, also the share that ends and the estimate among those.
-    """
+    """Share that outlives each time, and the variance of that estimate from independent rows."""
 
     share: Floats
     variance: Floats
-    ending: float = 1.0
-    among: "Outliving | None" = None
 
 
 def outliving(values: Floats, censored: Mask, time: Floats, *, known_at_once: bool) -> Outliving:
@@ -53,7 +48,7 @@ def outliving(values: Floats, censored: Mask, time: Floats, *, known_at_once: bo
     of_ending = kaplan_meier(values[~never], censored[~never], time)
     share = 1 - p + p * of_ending.share
     spread = (1 - of_ending.share) ** 2 * p * (1 - p) / len(values)
-    return Outliving(share, spread + p**2 * of_ending.variance, float(p), of_ending)
+    return Outliving(share, spread + p**2 * of_ending.variance)
 
 
 def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Outliving:

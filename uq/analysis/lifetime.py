@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from uq.analysis.beta_products import BetaProducts
 from uq.analysis.failed_rows import outer, with_failed_at
 from uq.analysis.kaplan_meier import Outliving, outliving
 from uq.analysis.survival_band import simultaneous_band
 from uq.clusters import Clusters, dealt
-from uq.exact_shares import are_few, exact_interval
 from uq.intervals import (
     CONFIDENCE,
     Ends,
@@ -20,7 +20,7 @@ from uq.intervals import (
 from uq.population.functionals import Population
 from uq.population.scaling import population
 from uq.quantile_functions import normal
-from uq.rows.elements import Element, Floats, independent_rows, lifetimes, replicates_of
+from uq.rows.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
 
 
 def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
@@ -43,13 +43,14 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
         censored. ``survival``: the estimate of Kaplan and Meier. Where the output declares that a
         life that never ends is known at once, it is that of the rows that end, times their share,
         plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
-        independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
-        where unknown. Where rows are laws of lives (attribute ``integrated``), the mean of their
-        probabilities at up to 500 of these times, between which to interpolate; so where rows have
-        weights. ``band_low``,
-        ``band_high``: a simultaneous 95 % band, for independent rows only; see the attribute
-        ``band``. ``never``: the share of rows known never to end. Counts: ``rows``,
-        ``censored``, and ``undefined`` and ``failed``, which are excluded.
+        independent rows by the exponential Greenwood formula [1]_ or, with fewer than 5 ends so far
+        or 10 rows still at risk, by products of beta variables [2]_, which are conservative; else
+        from the replicates; NaN where unknown. Where rows are laws of lives (attribute
+        ``integrated``), the mean of their probabilities at up to 500 of these times, between which
+        to interpolate; so where rows have weights. ``band_low``, ``band_high``: a simultaneous 95 %
+        band, for independent rows only; see the attribute ``band``. ``never``: the share of rows
+        known never to end. Counts: ``rows``, ``censored``, and ``undefined`` and ``failed``, which
+        are excluded.
 
     Raises
     ------
@@ -60,6 +61,8 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
     ----------
     .. [1] S. Sawyer, "The Greenwood and exponential Greenwood confidence intervals in survival
        analysis" (2003).
+    .. [2] M. P. Fay, E. H. Brittain, M. A. Proschan, "Pointwise confidence intervals for a survival
+       distribution with small samples or heavy censoring", Biostatistics 14, 723-736 (2013).
 
     Examples
     --------
@@ -98,8 +101,8 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
 
 
 BAND = (
-    "covers the whole curve with 95 % confidence: Kolmogorov's without censored rows, else Hall and"
-    " Wellner's, which ends where fewer than 10 rows are at risk"
+    "covers the entire curve with 95 % confidence: beta quantiles with the same tail probability at"
+    " all times, exact without censored rows"
 )
 NO_BAND = "none: a simultaneous band needs independent rows"
 NO_WEIGHTED_BAND = "none: a simultaneous band needs rows of equal weight"
@@ -196,7 +199,8 @@ def curve(
     known_at_once = element.declared.never_known_at_once
     found = outliving(values, censored, time, known_at_once=known_at_once)
     if replicate is None:
-        return Curve(found.share, *_greenwood(found, confidence))
+        ends = _pointwise(values, censored, time, confidence, found, known_at_once)
+        return Curve(found.share, *ends)
     of = dealt(replicate[element.present])
     estimates = [
         outliving(values[of == r], censored[of == r], time, known_at_once=known_at_once).share
@@ -216,39 +220,37 @@ def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
     values, censored = element.at_least, element.censored[element.present]
     if len(values) == 0 or _why_no_band(element, replicate):
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
-    found = outliving(values, censored, time, known_at_once=element.declared.never_known_at_once)
-    among = found.among or found
-    at_risk = found.ending * len(values) - np.searchsorted(np.sort(values), time)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        deviation = np.sqrt(among.variance) / among.share
-    return simultaneous_band(
-        ending=found.ending,
-        among=among.share,
-        deviation=deviation,
-        at_risk=at_risk.astype(float),
-        rows=len(values),
-        ended=int((np.isfinite(values) & ~censored).sum()),
-        complete=not censored.any(),
-    )
+    known_at_once = element.declared.never_known_at_once
+    return simultaneous_band(values, censored, time, known_at_once=known_at_once)
 
 
-_FEW_ENDS = 4
+_FEW_ENDS = 5
+_FEW_AT_RISK = 10
 
 
-def _greenwood(estimate: Outliving, confidence: float) -> Ends:
+def _pointwise(
+    values: Floats,
+    censored: Mask,
+    time: Floats,
+    confidence: float,
+    estimate: Outliving,
+    known_at_once: bool,
+) -> Ends:
     """Return the interval that is symmetric about the logarithm of -log(share).
 
-    Where few rows have ended, or are left, it is replaced by the exact interval of a share known as
-    well: there it misses on one side in up to 13 % of samples.
+    Where few rows have ended, or are still at risk, it is that of `BetaProducts`, which is
+    conservative: there the other misses in up to 47 % of samples.
     """
     share, deviation = estimate.share, np.sqrt(estimate.variance)
     with np.errstate(divide="ignore", invalid="ignore"):
         middle = np.log(-np.log(share))
         half = normal(upper_probability(confidence)) * deviation / (share * -np.log(share))
         low, high = (np.exp(-np.exp(middle + side * half)) for side in (1, -1))
-        worth = share * (1 - share) / estimate.variance
-    known, few = (share > 0) & (share < 1), are_few(share, worth, _FEW_ENDS)
-    exact = exact_interval(share, worth, confidence)
-    ends = (np.where(few, *pair) for pair in zip(exact, (low, high), strict=True))
-    low, high = (np.where(known, end, np.nan) for end in ends)
-    return low, high
+    known = (share > 0) & (share < 1) & np.isfinite(deviation)
+    law = BetaProducts(values, censored, known_at_once=known_at_once)
+    ended, left = law.rows_ended_by(time), law.at_risk_after(time)
+    few = (ended < _FEW_ENDS) | (left < _FEW_AT_RISK)
+    upper = upper_probability(confidence)
+    low[few] = 1 - law.ended_after(time[few]).quantile(upper)
+    high[few] = 1 - law.ended_by(time[few]).quantile(1 - upper)
+    return np.where(known, low, np.nan), np.where(known, high, np.nan)

@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any, NoReturn
 
 from uq.cli import streams
-from uq.errors import InputError, RunError, nearest
+from uq.errors import InputError, RunError, described, nearest, one_line
 from uq.interrupts import undo_all
 from uq.running.environment import SINGLE_THREADED
 
@@ -50,9 +50,12 @@ def main() -> NoReturn:
     except (InputError, RunError) as error:
         streams.complain(*getattr(error, "lines", (str(error),)))
         code = 2 if isinstance(error, InputError) else 1
-    except OSError:
+    except OSError as error:
         if not streams.are_lost():
-            raise
+            streams.complain(_of_the_system(error))
+        code = 1
+    except Exception as error:
+        streams.complain(_unforeseen(error))
         code = 1
     sys.exit(streams.finish(code))
 
@@ -61,6 +64,29 @@ def say_when_interrupted(sentence: str) -> None:
     """Set the sentence that an interrupt prints from now on."""
     global _when_interrupted
     _when_interrupted = sentence
+
+
+def _of_the_system(error: OSError) -> str:
+    """Return the line of a failure that the operating system reports."""
+    place = f"{os.fsdecode(error.filename)}: " if isinstance(error.filename, str | bytes) else ""
+    return f"uq: {place}{error.strerror or one_line(error) or type(error).__name__}"
+
+
+def _unforeseen(error: Exception) -> str:
+    """Return the line of a mistake of this program; its traceback is kept in a private file."""
+    import tempfile
+    import traceback
+
+    try:
+        handle, name = tempfile.mkstemp(prefix="uq-", suffix=".txt")
+        with open(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+            traceback.print_exception(error, file=file)
+    except OSError:
+        name = "nowhere, as no temporary file can be written"
+    return (
+        f"uq: this input was not foreseen ({described(error)}); please report it with its"
+        f" traceback, kept in {name}"
+    )
 
 
 def _run(arguments: list[str]) -> int:

@@ -1,6 +1,7 @@
 """Text, numbers and tables on a terminal, and JSON."""
 
 import json
+import sys
 from collections.abc import Iterable, Sequence
 from math import isfinite
 from textwrap import wrap
@@ -34,8 +35,16 @@ console = _Terminal(markup=False, highlight=False, emoji=False)
 
 
 def print_json(value: Any) -> None:
-    """Print JSON, with null for a number that is not finite."""
-    print(plain(json.dumps(_finite(value), indent=2, allow_nan=False, ensure_ascii=False)))
+    """Print JSON, with null for a number that is not finite.
+
+    Characters that standard output cannot encode are escaped, so that readers get them back.
+    """
+    text = plain(json.dumps(_finite(value), indent=2, allow_nan=False, ensure_ascii=False))
+    try:
+        text.encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:
+        text = json.dumps(_finite(value), indent=2, allow_nan=False)
+    print(text)
 
 
 def _finite(value: Any) -> Any:

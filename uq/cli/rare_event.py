@@ -49,9 +49,21 @@ def as_json(ds: xr.Dataset) -> dict[str, Any]:
         "probability": {key: float(ds[name]) for key, name in names.items()},
         "estimates": ds["estimate"].values.tolist(),
         **{name: int(ds[name]) for name in ("rows", "failed", "undefined")},
+        "estimated_by": ds.attrs["estimated_by"],
+        **_unseen(ds),
         **_by_method(ds),
         "notes": ds.attrs["notes"].splitlines(),
     }
+
+
+def _unseen(ds: xr.Dataset) -> dict[str, Any]:
+    """Return what plain rows and rows drawn wide show of parts that the method missed."""
+    if "wide" not in ds:
+        return {}
+    names = {"value": "wide", "low": "wide_low", "high": "wide_high"}
+    wide: dict[str, Any] = {key: float(ds[name]) for key, name in names.items()}
+    counts = {key: int(ds[f"wide_{key}"]) for key in ("hits", "rows", "failed")}
+    return {"hidden_high": float(ds["hidden_high"]), "wide": wide | counts}
 
 
 def _by_method(ds: xr.Dataset) -> dict[str, Any]:
@@ -74,6 +86,16 @@ def _by_parameter(values: xr.DataArray) -> dict[str, float]:
     return {str(name): float(value) for name, value in values.to_series().items()}
 
 
+def _shown_unseen(ds: xr.Dataset) -> list[tuple[str, str]]:
+    if "wide" not in ds:
+        return []
+    hits, rows = int(ds["wide_hits"]), int(ds["wide_rows"])
+    return [
+        ("a hidden part", f"at most {float(ds['hidden_high']):.2g} (95 %)"),
+        ("rows drawn wide", f"{rows}, {hits} within the event"),
+    ]
+
+
 def _cell(value: float) -> str:
     return number(value if isfinite(value) else None)
 
@@ -82,12 +104,14 @@ def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
     output, sign = ds.attrs["output"], ">" if ds.attrs["side"] == "above" else "<"
     of = f"|{output}|" if model.outputs[output.partition("[")[0]].is_angle else output
     event = f"P({of} {sign} {threshold_in_words(threshold, ds.attrs['units'])})"
-    heading(event, f"by {ds.attrs['method']}")
+    by_wide = ", estimate by rows drawn wide" * (ds.attrs["estimated_by"] == "wide")
+    heading(event, f"by {ds.attrs['method']}{by_wide}")
     low, high, worst = (_cell(float(ds[name])) for name in ("low", "high", "failed_high"))
     grid(
         [
             ("probability", _cell(float(ds["probability"]))),
             ("95 % interval", f"{low} to {high}"),
+            *_shown_unseen(ds),
             *([("with failed rows inside", f"up to {worst}")] if worst != "-" else []),
             ("rows", str(int(ds["rows"]))),
             *((name, str(int(ds[name]))) for name in ("failed", "undefined") if ds[name] > 0),

@@ -13,6 +13,7 @@ from uq.exploring.row_again import RowAgain, row_again
 from uq.exploring.simulation import with_trajectory
 from uq.rows.results import open_result
 from uq.running.loading import load_model
+from uq.study.registry import find_model
 from uq.wording import capitalized, quantity
 
 
@@ -28,7 +29,7 @@ def row(
     """Show a row of a result, computed again; return the exit code."""
     ds = open_result(result)
     if plot:
-        check_files(load_model(model or ds.attrs["model"]), None, plot)
+        check_files(load_model(model) if model else find_model(ds.attrs["model"]), None, plot)
     with compilation(say_compiling):
         found = row_again(ds, number, lowest, near_quantile, model, str(result))
         if plot:

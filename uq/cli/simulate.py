@@ -83,12 +83,13 @@ def draw(ds: "xr.Dataset", plot: Path) -> None:
         As from `uq.simulate`.
     plot : Path
     """
-    from uq.drawing.figure import DOTS_PER_INCH
+    from uq.drawing.figure import DOTS_PER_INCH, replaced
     from uq.plots import motion
 
     try:
         file_behind(plot).parent.mkdir(parents=True, exist_ok=True)
-        motion(ds).savefig(plot, dpi=DOTS_PER_INCH)
+        with replaced(plot) as part:
+            motion(ds).savefig(part, dpi=DOTS_PER_INCH)
     except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
         raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, TextIO
 
+from uq.cli import readable
 from uq.literals import plain_line
 
 _PLACES = ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY))
@@ -40,7 +41,7 @@ class Watched(io.TextIOWrapper):
 
 
 def watch() -> None:
-    """Watch the standard streams, and replace closed ones.
+    """Watch the standard streams, replace closed ones, and let them write what they can encode.
 
     Otherwise the next file opened would take the place of one. Writing to standard output then
     fails; what goes to standard error is lost.
@@ -61,7 +62,7 @@ def watch() -> None:
 def _watched(stream: io.TextIOWrapper | None, number: int) -> Watched:
     if stream is None:
         return Watched(open(number, "wb", closefd=False), "utf-8")
-    how = (stream.encoding, stream.errors, None, stream.line_buffering, stream.write_through)
+    how = (stream.encoding, readable.HANDLER, None, stream.line_buffering, stream.write_through)
     return Watched(stream.detach(), *how)
 
 

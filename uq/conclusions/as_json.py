@@ -44,7 +44,9 @@ def answer_json(found: Answer) -> dict[str, Any]:
         probability in ``parts`` of the range of the input ``over``, and the ``limit`` of this
         input, ``at`` which its unwanted side becomes rare, with that probability. A ranking has
         ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the input,
-        in a ``unit`` or, where that is "", in that of the output. The earliest rows have ``lives``
+        in a ``unit`` or, where that is "", in that of the output; and, of shares that inputs
+        explain alone, what is ``unexplained`` by any single one, with the ``totals`` of an
+        expansion where interactions could change the order. The earliest rows have ``lives``
         (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of them.
     """
     return {
@@ -214,7 +216,7 @@ def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
 def _of_ranking(one: Ranking | None) -> dict[str, Any]:
     if one is None:
         return {}
-    found = {
+    found: dict[str, Any] = {
         "sentence": one.sentence,
         "target": one.target,
         "method": one.method,
@@ -223,6 +225,9 @@ def _of_ranking(one: Ranking | None) -> dict[str, Any]:
         "rows_factor": json_form.number(one.rows_factor),
         "contributions": [_contribution(each) for each in one.contributions],
     }
+    if not isnan(one.unexplained.value):
+        found["unexplained"] = json_form.numbers(one.unexplained)
+        found["totals"] = dict(one.totals)
     return {"ranking": found}
 
 

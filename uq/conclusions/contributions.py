@@ -1,6 +1,8 @@
 """What inputs contribute: shares, directions and sizes, and the sentences from them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isnan
 
 from uq.conclusions.words import Unit, called, called_together, joined, sentence
 from uq.estimate import NOTHING, Estimate
@@ -148,6 +150,15 @@ class Ranking:
         Inputs of which one would contribute most with another seed, with 95 %; none if not known.
     of : str
         Whose share an index is: ``its variance``; "" of another index, and of an event.
+    unexplained : Estimate
+        Share of the variance that no single input explains, where inputs are ranked by what each
+        explains alone.
+    runner_up : float
+        The largest index of the inputs that stand behind the first.
+    totals : dict of str to float
+        Input -> total index, the largest first, where an expansion of these rows gives it.
+    remedy : str
+        What shows interactions where `totals` are not known.
     """
 
     target: str
@@ -160,6 +171,10 @@ class Ranking:
     is_flat: bool = False
     rivals: tuple[str, ...] = ()
     of: str = ""
+    unexplained: Estimate = NOTHING
+    runner_up: float = 0.0
+    totals: Mapping[str, float] = field(default_factory=dict)
+    remedy: str = ""
 
     @property
     def leader(self) -> Contribution | None:
@@ -170,7 +185,27 @@ class Ranking:
     def leads(self) -> bool:
         """Whether what contributes most contributes much."""
         one = self.leader
-        return one is not None and not (one.share_of_variance and one.value < SMALL)
+        if one is None or (one.share_of_variance and one.value < SMALL):
+            return False
+        return self.of_event or not self.may_be_overturned
+
+    @property
+    def of_event(self) -> bool:
+        """Whether the target is an event."""
+        return self.target.startswith("P(")
+
+    @property
+    def may_be_overturned(self) -> bool:
+        """Whether another input may contribute more together with others than the first does.
+
+        A total index is at most the index alone and all that no single input explains.
+        """
+        if self.leader is None or isnan(self.unexplained.value):
+            return False
+        if self.totals:
+            return next(iter(self.totals)) not in self.leader.sure
+        most = self.unexplained.high if self.unexplained.has_interval else self.unexplained.value
+        return most > max(self.leader.value - self.runner_up, 0.0) and most > SMALL
 
     @property
     def denies_a_leader(self) -> bool:
@@ -185,12 +220,28 @@ class Ranking:
         leader = self.leader
         if leader is None:
             return ""
-        if not self.leads:
-            return f"No single input explains much: {leader.words} {leader.size}{self._of}."
+        if leader.share_of_variance and leader.value < SMALL:
+            text = f"No single input explains much: {leader.words} {leader.size}{self._of}."
+            return " ".join(filter(None, (text, self.beyond_single)))
         verb = "contribute" if len(leader.inputs) > 1 else "contributes"
         if leader.doubtful:
             verb = "may contribute"
-        return f"{capitalized(leader.words)} {verb} most: {leader.size}{self._of}."
+        alone = " alone" * self.may_be_overturned
+        text = f"{capitalized(leader.words)}{alone} {verb} most: {leader.size}{self._of}."
+        return " ".join(filter(None, (text, self.beyond_single)))
+
+    @property
+    def beyond_single(self) -> str:
+        """How much no single input explains, where that could change the order; else ""."""
+        if not self.may_be_overturned or self.of_event:
+            return ""
+        share = Contribution(("",), (self.unexplained,), True).size
+        text = f"No single input explains {share}"
+        if not self.totals:
+            return f"{text}: interactions could change the order; {self.remedy}."
+        first = [(name, one) for name, one in self.totals.items()][:2]
+        named = joined([f"{called(name)} {100 * min(one, 1.0):.0f} %" for name, one in first])
+        return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
 
     @property
     def _of(self) -> str:

@@ -152,7 +152,9 @@ def leader(one: Quantity) -> Markup:
         return Markup()
     if ranking.leader is None:
         return keyed(ranking.sentence, _key(one, "ranking", "rows_factor"))
-    known = [keyed(ranking.sentence, *_keys(one, 0, "inputs", ranking.leader))]
+    keys = _keys(one, 0, "inputs", ranking.leader)
+    keys += [_key(one, "ranking", "unexplained")] * bool(ranking.beyond_single)
+    known = [keyed(ranking.sentence, *keys)]
     if ranking.leads and ranking.leader.effect:
         text = sentence(ranking.leader.effect)
         known.append(keyed(text, *_keys(one, 0, "effects", ranking.leader)))

@@ -1,8 +1,8 @@
 """The index of each input, and what tells it from the others."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from math import isfinite, nan
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite, nan, sqrt
 
 import numpy as np
 import xarray as xr
@@ -25,6 +25,7 @@ from uq.rows.weights import has_weights
 
 _PARTS = 8
 _FEWEST_PARTS = 4
+_DOUBTFUL = 2.0  # times the error of an index that is too uncertain for an interval
 
 
 @dataclass(frozen=True)
@@ -40,29 +41,45 @@ class Measured:
         Half the width of its interval, or what tells it from another.
     counts : bool
         Whether it is larger than those of inputs without effect.
+    shared : dict of str to float
+        Other input -> covariance of the errors of both indices, in units of half-widths.
     """
 
     name: str
     index: Estimate
     half: float
     counts: bool
+    shared: Mapping[str, float] = field(default_factory=dict)
+
+    def apart(self, other: "Measured") -> float:
+        """Return the half-width of the interval of the difference from another index."""
+        return sqrt(max(self.half**2 + other.half**2 - 2 * self.shared.get(other.name, 0.0), 0.0))
 
 
 def method_for(ds: xr.Dataset, event: bool) -> str | None:
     """Return the method that ranks: the first that the study asks for, or that its design feeds.
 
     Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
-    probability of a rare one. None for rows with weights.
+    probability of a rare one. None for rows with weights. Of shares of the variance alone, the ones
+    with intervals where the design has such: a leader is not named without.
     """
     if has_weights(ds):
         return None
     fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
-    found = [name for name in (*methods(ds), *fed) if name in fed]
+    found = [_with_intervals(name, fed) for name in (*methods(ds), *fed) if name in fed]
     known = [name for name in found if not METHODS[name].conditional]
     if not event:
         return next((name for name in known if METHODS[name].takes_numbers), None)
     of_events = [name for name in known if METHODS[name].takes_events]
     return min(of_events, key=lambda name: not _has_scale(METHODS[name]), default=None)
+
+
+def _with_intervals(name: str, fed: Sequence[str]) -> str:
+    """Return a method, or one that estimates the same indices with intervals."""
+    if METHODS[name].intervals:
+        return name
+    same = (one for one in fed if METHODS[one].kinds == METHODS[name].kinds)
+    return next((one for one in same if METHODS[one].kinds and METHODS[one].intervals), name)
 
 
 def _has_scale(method: Method) -> bool:
@@ -77,8 +94,9 @@ def measured_inputs(
     values = {label: one for label, one in every.items() if label not in borrowed} or every
     null = found.indices.nulls.get(kind, Null(nan))
     limit = null.largest if isfinite(null.largest) else null.one
-    parts = {} if any(one.has_interval for one in values.values()) else _parts(ds, method, name)
-    scatter = parts.get(kind.key, {})
+    products = found.indices.half_products
+    has_errors = bool(products) or any(one.has_interval for one in values.values())
+    scatter = {} if has_errors else _parts(ds, method, name).get(kind.key, {})
     known = sorted(values, key=lambda label: -_size(values[label]))
     # Where no other input has an effect in any row, it is certain without an interval.
     alone = kind.unit == "variance" and all(values[label].value == 0 for label in known[1:])
@@ -87,14 +105,19 @@ def measured_inputs(
         if not isfinite(one.value):
             continue
         half = (one.high - one.low) / 2 if one.has_interval else null.one
-        if label in scatter:
+        if products and not one.has_interval:
+            half = _DOUBTFUL * sqrt(products[label, label])
+        if label in scatter:  # estimates from fewer rows, which may be biased: no interval
             low, high = scatter_interval(one.value, np.array(scatter[label]))
             half = (high - low) / 2
-            # Estimates from fewer rows may be biased, which only shares of the variance are not.
-            one = Estimate(one.value, low, high) if kind.unit == "variance" else one
-        counts = one.value > limit if isfinite(limit) else one.low > 0
+        counts = one.low > 0 if one.has_interval or not isfinite(limit) else one.value > limit
         counts |= alone and one.value > 0 and not one.has_interval
-        yield Measured(label, one, half, bool(counts and not one.low <= 0))
+        shared = {
+            other: product
+            for pair, product in products.items()
+            if label in pair and (other := pair[pair[0] == label]) != label
+        }
+        yield Measured(label, one, half, bool(counts and not one.low <= 0), shared)
 
 
 def _size(one: Estimate) -> float:

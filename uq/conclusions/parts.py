@@ -111,7 +111,7 @@ class Event:
         if leader is None:
             return self.ranking.sentence if self.ranking.reason else ""
         text = f"decided most by {leader.words}"
-        if self.is_of_single:
+        if self.is_of_single or self.ranking.may_be_overturned:
             text = f"of single inputs, decided most by {leader.words}"
         if leader.share_of_variance and len(leader.inputs) == 1 and leader.value < MINOR:
             text += f", though it alone explains only {leader.size}"

@@ -163,24 +163,31 @@ class Promise:
         return replace(self, upper=nan) if isfinite(self.lower) else None
 
     def would_be(self, quantile: Estimate, before: Estimate) -> str:
-        """Return what an end of the interval of the quantile would promise, beside the same now.
+        """Return what an end of the interval of the quantile would be, beside the same now.
 
-        "" without it, or where it promises no more than now: the rows may be too few. It is not
-        compared with the bound, of another estimator: of rows as computed.
+        "" without it, or where it is no better than now: the rows may be too few. It is called what
+        it is, and not a bound of its coverage: the tolerance bound, of another estimator, is.
         """
         is_upper = isfinite(self.upper)
         bound, now = ((one.low, one.high)[is_upper] for one in (quantile, before))
         if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
         then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
-        same = "as studied, by the same estimate (the interval of the quantile),"
-        return f"{self.opening('would then')} {then}; {same} {studied}."
+        return f"{self.end_of_quantile} {then}; as studied, {studied}."
 
-    def opening(self, then: str = "") -> str:
-        """Return what a single bound promises, up to the bound; `then` says when."""
+    @property
+    def end_of_quantile(self) -> str:
+        """What an end of the interval of the quantile that it bounds would be, up to the number."""
+        is_upper = isfinite(self.upper)
+        side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
+        of = " of magnitudes" if self.of_magnitude else ""
+        return f"The {side} end of the interval of the {100 * p:.3g} % quantile{of} would then be"
+
+    def opening(self) -> str:
+        """Return what a single bound promises, up to the bound."""
         side = self._side(isfinite(self.upper))
         share = f"at least {100 * self.coverage:g} %"
-        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, then, side)))}"
+        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
 
     @property
     def _sure(self) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import expm1, hypot, isfinite, log1p, nan
+from math import expm1, isfinite, log1p, nan
 
 import xarray as xr
 
@@ -12,15 +12,18 @@ from uq.conclusions.contributions import SMALL, Change, Contribution, Ranking
 from uq.conclusions.measured import Measured, measured_inputs
 from uq.conclusions.repeated import AGAIN
 from uq.conclusions.words import Unit, called, twin_of, unit_of_input
+from uq.designs.registry import DESIGNS
 from uq.errors import choices
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
-from uq.indices.independent_inputs import independent_inputs
+from uq.indices.independent_inputs import independent_inputs, why_dependent
+from uq.indices.sensitivities import TargetIndices
 from uq.indices.targets import FORMS, Target, split_name
-from uq.methods.indices import IndexKind
+from uq.methods.indices import S1, ST, IndexKind
+from uq.methods.registry import fed_by
 from uq.rows.elements import replicates_of, study_file_of
+from uq.rows.ranked import ranked_in_words
 from uq.study.file import Tied
-from uq.wording import rows_in_words
 
 GOAL = 0.1
 """Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
@@ -33,6 +36,8 @@ ALIKE = 0.5
 
 LEAST = 0.01
 """A smaller index is not listed."""
+
+_EXPANSION = "hdmr"  # the method that finds total indices in a plain sample
 
 _STEPS = (0.1, 0.01, 0.001)
 _WITHIN = 4.0  # standard deviations that a step may span
@@ -56,9 +61,9 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     Ranking
     """
     ranking = _ranking(findings.ranked, name, method, verbs)
-    if findings.ranked is findings:
+    by = ranked_in_words(findings.ranked.ds, findings.ds)
+    if not by:
         return ranking
-    by = f"by the first {rows_in_words(findings.ranked.ds.sizes['sample'])} rows"
     reason = f"{ranking.reason} ({by})" if ranking.reason else ""
     return replace(ranking, what=f"{ranking.what}, {by}", reason=reason, rows_factor=nan)
 
@@ -78,6 +83,9 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     what = f"{share}{kind.words}{'' if share else of}{by}"
     if not measured[0].counts:
         reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
+        needed = found.indices.rows_factors.get(measured[0].name, 1.0)
+        if needed > 1:
+            factor = max(factor, needed)
         return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
     # What does not exceed inputs without effect may yet contribute as much as the first.
     weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
@@ -86,7 +94,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
-        factor = (hypot(first.half, second.half) / apart) ** 2
+        factor = (first.apart(second) / apart) ** 2
         reason, is_flat = f"the order of {names} is not settled", False
         if factor <= 1:  # the rows tell apart what differs by more
             is_flat = kind.unit == "variance" and first.index.value < SMALL
@@ -100,7 +108,50 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
     of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
     rivals = _rivals(measured)
-    return Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+    ranking = Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+    if kind != S1 or len(kinds) > 1:
+        return ranking
+    behind = (one.index.value for one in measured if one not in groups[0])
+    ranking = replace(
+        ranking,
+        unexplained=unexplained(found),
+        runner_up=max(behind, default=0.0),
+        remedy="a 'saltelli' design shows them",
+    )
+    if ranking.may_be_overturned and not ranking.of_event:
+        ranking = replace(ranking, totals=_totals(findings, name))
+    return ranking
+
+
+def unexplained(found: TargetIndices) -> Estimate:
+    """Return the share of the variance that no single input explains.
+
+    Parameters
+    ----------
+    found : TargetIndices
+        With first-order indices.
+    """
+    indices = found.indices
+    value = 1 - sum(one.value for one in indices.values[S1].values())
+    lacking = any(not one.has_interval for one in indices.values[S1].values())
+    if lacking or not indices.half_products:
+        return Estimate(value)
+    square = sum(
+        product * (1 if first == second else 2)
+        for (first, second), product in indices.half_products.items()
+    )
+    half = max(square, 0.0) ** 0.5
+    return Estimate(value, value - half, value + half)
+
+
+def _totals(findings: Findings, name: str) -> dict[str, float]:
+    """Return the total indices, the largest first, of an expansion that represents the rows."""
+    dependent = bool(why_dependent(findings.ds))
+    if _EXPANSION not in fed_by(DESIGNS[findings.ds.attrs["design"]], dependent):
+        return {}
+    found = findings.indices(_EXPANSION, name)
+    values = {} if found.refused else found.indices.values[ST]
+    return {label: values[label].value for label in sorted(values, key=lambda x: -values[x].value)}
 
 
 def _scale(first: Measured, kind: IndexKind) -> float:
@@ -126,6 +177,8 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False
     goal = GOAL * _scale(first, kind)
+    if first.index.reason:
+        return f"{which}: {text}, and {first.index.reason}", (first.half / goal) ** 2, False
     if first.half > goal:
         ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
@@ -169,7 +222,7 @@ def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]
 
 def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
     """Return whether another input may have as large an index, errors multiplied by `times`."""
-    return first.index.value - other.index.value <= times * hypot(first.half, other.half)
+    return first.index.value - other.index.value <= times * first.apart(other)
 
 
 def _effects(

@@ -1,5 +1,6 @@
 """A figure: its layout and its files."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO
@@ -13,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
 from uq.drawing.style import styled
+from uq.interrupts import undone
 from uq.places import file_behind
 
 DOTS_PER_INCH = 200
@@ -100,9 +102,21 @@ def write(figure: Figure, path: Path) -> list[Path]:
     for file in files:
         file_behind(file)
     lay_out(figure)
-    FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
-    FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
+    with replaced(png) as part:
+        FigureCanvasAgg(figure).print_png(part, metadata={"Software": None})
+    with replaced(svg) as part:
+        FigureCanvasSVG(figure).print_svg(part, metadata={"Date": None, "Creator": None})
     no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
-    with _fonts_without_layout():
-        FigureCanvasPdf(figure).print_pdf(pdf, metadata=no_metadata)
+    with _fonts_without_layout(), replaced(pdf) as part:
+        FigureCanvasPdf(figure).print_pdf(part, metadata=no_metadata)
     return files
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Yield a temporary name; the figure written under it takes the place of `path` if complete."""
+    file = file_behind(path)
+    part = file.with_name(f".{file.stem}.{os.getpid()}{file.suffix}")  # matplotlib reads the ending
+    with undone(lambda: part.unlink(missing_ok=True)):
+        yield part
+        os.replace(part, file)

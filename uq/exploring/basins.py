@@ -17,6 +17,7 @@ from uq.errors import InputError
 from uq.exploring.attractors import STANDARD_ERRORS, Compared, attractors
 from uq.exploring.grid import Axis, Grid, grid_of
 from uq.inputs.values import unknown_name
+from uq.netcdf_files import refuse_tricks
 from uq.rows import results
 from uq.rows.sampling import Rows
 from uq.rows.variables import error_name, outputs_of
@@ -117,6 +118,7 @@ def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]
 
 def _found(path: Path, identity: str) -> xr.Dataset:
     try:
+        refuse_tricks(path)
         ds = xr.load_dataset(path, engine="netcdf4", decode_timedelta=False)
     except results.UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file; choose another output") from None

@@ -12,7 +12,7 @@ from uq.contract import Floats, Model
 from uq.errors import InputError
 from uq.inputs.values import fault_lines, parameter_problem, read_settings
 from uq.rows.sampling import Rows, row_seeds
-from uq.study.registry import find_model, model_names
+from uq.study.registry import find_model, model_at, model_names
 
 Axis = tuple[float, float, int]
 """First value, last value, number of values."""
@@ -104,7 +104,7 @@ def grid_of(
         Everything that is wrong, one line each.
     """
     if isinstance(model, str):
-        found, reference = find_model(model), model
+        found, reference = model_at(model), model
     else:
         installed = model.name in model_names() and find_model(model.name) is model
         found, reference = model, model.name if installed else ""

@@ -68,6 +68,8 @@ class LimitState:
     below : bool
         Whether the event lies below it.
     evaluator : Evaluator
+    first : int, optional
+        Number of the first row, which with the seed gives the random numbers of a row.
 
     Attributes
     ----------
@@ -85,13 +87,20 @@ class LimitState:
     """
 
     def __init__(
-        self, study: Study, name: str, threshold: float, below: bool, evaluator: Evaluator
+        self,
+        study: Study,
+        name: str,
+        threshold: float,
+        below: bool,
+        evaluator: Evaluator,
+        first: int = 0,
     ) -> None:
         self.study, self.threshold, self.below = study, threshold, below
         self.output, self._place = find_element(study, name)
         self.dimension = len(study.uncertain)
         self._column = name.partition("[")[0]
         self._evaluator = evaluator
+        self._first = first
         self.rows = self.failed = self.undefined = 0
         self.failures: dict[str, str] = {}
 
@@ -119,7 +128,7 @@ class LimitState:
             value, which counts as outside.
         """
         # Every row has its own random numbers, as in a study.
-        number = np.arange(len(u)) + self.rows
+        number = np.arange(len(u)) + self.rows + self._first
         chunk = self._evaluator(self.physical(u), row_seeds(self.study.design.seed, number))
         for label, (row, text) in chunk.failures.items():
             self.failures.setdefault(label, f"row {self.rows + row}: {text}")

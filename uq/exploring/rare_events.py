@@ -2,7 +2,7 @@
 
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,14 @@ from uq.contract import Floats
 from uq.errors import InputError, nearest
 from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.limit_state import LimitState, evaluator_of
-from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_interval, subset_simulation
+from uq.exploring.subset_simulation import (
+    LEVEL_SHARE,
+    SMALLEST,
+    disagreement,
+    subset_interval,
+    subset_simulation,
+)
+from uq.exploring.wide_search import WideSearch, wide_search
 from uq.intervals import Ends, binomial_interval, log_scatter_interval
 from uq.running.loading import load_study
 from uq.running.options import RunOptions
@@ -21,9 +28,35 @@ from uq.wording import counted
 
 _FEWEST = 100  # rows of a level: 10 chains
 _Generators = list[np.random.Generator]
-_Outcome = tuple[Floats, Ends, float, dict[str, Any]]
-"""Estimate of each replicate, their interval, its high end if the failed rows were within the
-event, and variables of the result that one method alone gives."""
+
+
+class _Outcome(NamedTuple):
+    """What a method found.
+
+    Attributes
+    ----------
+    estimates : ndarray, shape (R,)
+        Of each replicate.
+    interval : Ends
+    supported : float
+        Upper bound from the share of its independent plain rows within the event.
+    failed_high : float
+        The same if the failed rows were within the event.
+    plain : int
+        Number of these rows; 0 if the estimates are shares of them.
+    disagreement : float
+        See `uq.exploring.subset_simulation.disagreement`.
+    variables : dict
+        Of the result, which this method alone gives.
+    """
+
+    estimates: Floats
+    interval: Ends
+    supported: float
+    failed_high: float
+    plain: int
+    disagreement: float
+    variables: dict[str, Any]
 
 
 def rare_event(
@@ -50,7 +83,8 @@ def rare_event(
     below : bool
         Whether the event lies below the threshold instead of above.
     method : {"subset", "importance"}
-        Subset simulation searches everywhere and assumes nothing. Importance sampling around the
+        Subset simulation follows the output towards the event from every side. It assumes that the
+        output rises towards every part of the event, without a jump. Importance sampling around the
         design points of FORM takes far fewer rows if the output is smooth, and misses any part of
         the event away from the design points that were found.
     samples : int
@@ -64,12 +98,17 @@ def rare_event(
     -------
     xarray.Dataset
         ``probability`` with its 95 % interval ``low``, ``high``; ``estimate`` of each replicate;
-        ``rows`` computed, among them ``failed`` and ``undefined``, which count as outside the
-        event, and ``failed_high``, the high end if the failed rows were within it; subset:
+        ``rows`` computed by the method, among them ``failed`` and ``undefined``, which count as
+        outside the event, and ``failed_high``, the high end if the failed rows were within it;
+        ``hidden_high``, the probability above which plain rows exclude a part of the event that the
+        method cannot see (95 %, 3.0 over their number); ``wide``, ``wide_low``, ``wide_high``,
+        ``wide_hits``, ``wide_rows`` and ``wide_failed``, the same probability from rows drawn wide,
+        how many of these lie within the event, how many there are and how many failed; subset:
         ``levels`` of each replicate, why it ``ended`` (``event``, ``plateau`` or ``smallest``) and
         ``typical``, the median of each uncertain parameter given the event; importance:
         ``reliability_index``, ``first_order`` probability and ``location`` of each design point.
-        Attribute ``notes``: caveats.
+        Attributes: ``estimated_by`` (the method, or ``wide`` where rows drawn wide show that it
+        missed a part), and ``notes``: caveats.
 
     Raises
     ------
@@ -85,6 +124,11 @@ def rare_event(
     rows support (`uq.exploring.subset_simulation.subset_interval`): for 8000 independent rows
     without a hit, 4.6e-4.
 
+    Both methods can miss a part of the event, subset simulation one behind a jump of the output.
+    As many rows as a level has are therefore drawn wide (`uq.exploring.wide_search`). If their
+    interval lies above that of the method, it is shown instead. If replicates of subset simulation
+    scatter more than their chains explain, the high end is what the plain rows support.
+
     Examples
     --------
     >>> found = uq.rare_event("studies/exponential-wear.toml", "life", 1e5, below=True)
@@ -99,26 +143,31 @@ def rare_event(
             f"{study.path}: [design] method = 'imported': rare events draw rows from laws, and"
             " imported rows have none; use another method"
         )
-    generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
     options = RunOptions(workers, scheduler)
     with evaluator_of(study, output.partition("[")[0], options) as evaluator:
         margin = LimitState(study, output, threshold, below, evaluator)
-        estimates, interval, failed_high, variables = ESTIMATORS[method](
-            margin, samples, generators
-        )
-    low, high = map(float, interval)
+        outcome = ESTIMATORS[method](margin, samples, _generators(study, 1, replicates))
+        wide, lost = None, 0
+        if outcome.plain:
+            apart = LimitState(study, output, threshold, below, evaluator, first=margin.rows)
+            drawn = _generators(study, 2, replicates)
+            wide = wide_search(apart, margin.dimension, samples, drawn)
+            lost = apart.failed
+    by_wide = wide is not None and _is_missed(outcome, wide)
+    probability, (low, high) = estimate_of(outcome, wide)
     ds = xr.Dataset(
         {
-            "probability": ((), estimates.mean()),
+            "probability": ((), probability),
             "low": ((), low),
             "high": ((), high),
-            "failed_high": ((), max(failed_high, high) if margin.failed else np.nan),
+            "failed_high": ((), max(outcome.failed_high, high) if margin.failed else np.nan),
+            **_unseen(outcome, wide, samples * replicates, lost),
             "rows": ((), margin.rows),
             "failed": ((), margin.failed),
             "undefined": ((), margin.undefined),
-            "estimate": ("replicate", estimates),
+            "estimate": ("replicate", outcome.estimates),
         }
-        | variables,
+        | outcome.variables,
         {"parameter": list(study.uncertain)},
         {
             "output": output,
@@ -126,12 +175,65 @@ def rare_event(
             "side": "below" if below else "above",
             "units": margin.output.unit,
             "method": method,
+            "estimated_by": "wide" if by_wide else method,
             "samples": samples,
             "study": study.text,
             "study_identity": study.identity,
         },
     )
-    return ds.assign_attrs(notes="\n".join(_notes(ds, margin)))
+    return ds.assign_attrs(notes="\n".join(_notes(ds, margin, outcome.disagreement)))
+
+
+def _generators(study: Study, stream: int, count: int) -> _Generators:
+    return np.random.default_rng((study.design.seed, stream)).spawn(count)
+
+
+def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tuple[float, float]]:
+    """Return the probability and its interval, from rows drawn wide if a method missed a part.
+
+    Parameters
+    ----------
+    outcome : _Outcome
+        Of a method of `ESTIMATORS`.
+    wide : WideSearch or None
+        None where the estimates are shares of plain rows.
+
+    Returns
+    -------
+    probability : float
+    low, high : float
+    """
+    if wide is not None and _is_missed(outcome, wide):
+        low, high = map(float, wide.interval)
+        if np.isnan(high):
+            high = max(outcome.supported, wide.probability)
+        return wide.probability, (low, high)
+    low, high = map(float, outcome.interval)
+    if outcome.disagreement > 1:
+        high = max(high, outcome.supported)
+    return float(outcome.estimates.mean()), (low, high)
+
+
+def _is_missed(outcome: _Outcome, wide: WideSearch) -> bool:
+    """Return whether rows drawn wide show a part of the event that a method missed."""
+    reached = bool((outcome.estimates > 0).all())
+    return wide.interval[0] > outcome.interval[1] or (wide.is_enough and not reached)
+
+
+def _unseen(outcome: _Outcome, wide: WideSearch | None, rows: int, failed: int) -> dict[str, Any]:
+    """Return variables on what the method cannot see."""
+    if wide is None:
+        return {}
+    low, high = wide.interval
+    return {
+        "hidden_high": ((), wide.hidden_high(outcome.plain)),
+        "wide": ((), wide.probability),
+        "wide_low": ((), low),
+        "wide_high": ((), high),
+        "wide_hits": ((), len(wide.weights)),
+        "wide_rows": ((), rows),
+        "wide_failed": ((), failed),
+    }
 
 
 def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
@@ -152,8 +254,13 @@ def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outco
         "typical": ("parameter", np.median(inside, axis=0) if len(inside) else nothing),
     }
     estimates = np.array([one.probability for one in found])
-    failed_high = binomial_interval((hits + failed[0]) / rows, rows)[1]
-    return estimates, subset_interval(found, samples), float(failed_high), variables
+    supported, failed_high = (
+        float(binomial_interval(k / rows, rows)[1]) for k in (hits, hits + failed[0])
+    )
+    plain = 0 if all(one.levels == 1 and hits for one in found) else rows
+    scatter = disagreement(found, samples)
+    interval = subset_interval(found, samples)
+    return _Outcome(estimates, interval, supported, failed_high, plain, scatter, variables)
 
 
 def _importance(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
@@ -177,8 +284,9 @@ def _importance(margin: LimitState, samples: int, generators: _Generators) -> _O
         "location": (("design_point", "parameter"), margin.uncertain(points)),
     }
     interval = log_scatter_interval(estimates) if estimates.any() else first_rows
-    failed_high = binomial_interval((hits + failed) / samples, samples)[1]
-    return estimates, interval, float(failed_high), variables
+    failed_high = float(binomial_interval((hits + failed) / samples, samples)[1])
+    supported = float(first_rows[1])
+    return _Outcome(estimates, interval, supported, failed_high, samples, 1.0, variables)
 
 
 ESTIMATORS = {"subset": _subset, "importance": _importance}
@@ -210,14 +318,36 @@ def _where_it_ended(ds: xr.Dataset) -> str:
     )
 
 
-def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
+def _notes(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
     """Return caveats that the numbers do not show."""
     notes = []
     estimates, most = ds["estimate"].values, float(ds["high"])
     lost, count = int((estimates == 0).sum()), len(estimates)
+    by_wide = ds.attrs["estimated_by"] == "wide"
+    if by_wide:
+        notes.append(
+            f"method '{ds.attrs['method']}' missed a part of the event: it gives"
+            f" {float(estimates.mean()):.2g}, and {int(ds['wide_hits'])} of"
+            f" {int(ds['wide_rows'])} rows drawn wide lie within; their estimate is shown"
+        )
+    elif factor > 1:
+        notes.append(
+            f"replicates differ by a factor of {factor:.2g}, more than their chains explain: a part"
+            " of the event is entered by a jump; the high end is what plain rows support"
+        )
+    if "hidden_high" in ds:
+        notes.append(
+            f"a part of the event that no trend of the output leads to, and that no row met, is"
+            f" excluded only above {float(ds['hidden_high']):.2g} (95 %)"
+        )
+        if ds["wide_failed"] > 0:
+            notes.append(
+                f"{int(ds['wide_failed'])} of {int(ds['wide_rows'])} rows drawn wide failed: where"
+                " they lie, no missed part is looked for"
+            )
     if np.isnan(most):
         notes.append("no interval: a single replicate does not show the scatter of its estimate")
-    if lost:
+    if lost and not by_wide:
         seen = (
             "no row lies beyond the threshold"
             if lost == count
@@ -229,10 +359,10 @@ def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
         )
     elif ds.attrs["method"] == "subset" and ds["probability"] > LEVEL_SHARE:
         notes.append("not a rare event: 'uq run' with this threshold reports as much, and more")
-    if ds.attrs["method"] == "importance":
+    if ds.attrs["estimated_by"] == "importance":
         notes.append(
             "valid only if the event lies around the design points that were found; method"
-            " 'subset' searches everywhere"
+            " 'subset' does not need them"
         )
     if margin.failed:
         what = "".join(f"; {label}: {text}" for label, text in margin.failures.items())

@@ -17,7 +17,7 @@ from uq.rows.row_choice import Choice, lowest_row, near_quantile_row
 from uq.rows.stored_row import place_of, stored_row
 from uq.rows.weights import refuse_weights
 from uq.running.again import computed_again, differing, other_versions, settings_by_row, study_here
-from uq.study.registry import find_model
+from uq.study.registry import model_at
 
 PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
 """Variables that give the place of a row in its design."""
@@ -153,7 +153,7 @@ def _computed(
     ds: xr.Dataset, found: RowAgain, place: int, model: str | None, source: str
 ) -> RowAgain:
     attrs, status = ds.attrs, int(found.row.status[0])
-    if model is not None and (other := find_model(model).name) != attrs["model"]:
+    if model is not None and (other := model_at(model).name) != attrs["model"]:
         raise InputError(f"--model {model}: is '{other}'; the rows are of '{attrs['model']}'")
 
     def without(reason: str) -> RowAgain:

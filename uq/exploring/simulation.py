@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.contract import Model
 from uq.interrupts import in_background
+from uq.netcdf_files import refuse_tricks
 from uq.rows import results
 from uq.rows.one_row import Row, run_row
 from uq.running.alone import run_alone
@@ -78,6 +79,7 @@ def with_trajectory(ds: xr.Dataset, row: Row) -> xr.Dataset:
 def holds_trajectory(path: Path) -> bool:
     """Return whether a file is a netCDF file of what `simulate` returns with a trajectory."""
     try:
+        refuse_tricks(path)
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
             roles = [variable.attrs.get("role") for variable in ds.data_vars.values()]
             return "trajectory" in roles and "schema_version" in ds.attrs

@@ -25,6 +25,7 @@ SMALLEST = 1e-12
 
 _ACCEPTED = 0.44  # share of accepted moves at which chains mix fastest
 _FIRST_STEP = 0.6
+_CORRELATION = 3.0  # of the rows of a level: their number over that of independent ones, less 1
 
 
 class Found(NamedTuple):
@@ -137,6 +138,31 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
             step = min(1.0, step * np.exp((accepted.mean() - _ACCEPTED) / np.sqrt(k)))
         u, g = np.concatenate(chain), np.concatenate(margins)
         levels += 1
+
+
+def disagreement(found: list[Found], samples: int) -> float:
+    """Return the factor between the largest and smallest estimate where chains do not explain it.
+
+    Parameters
+    ----------
+    found : list of Found
+    samples : int
+        Rows of each level.
+
+    Returns
+    -------
+    float
+        1 where the scatter is at most twice as large as Au and Beck's for chains of correlated
+        rows, or some replicate did not reach the event. Larger, rows entered the event from far
+        outside: a part of it has no trend that leads there.
+    """
+    estimates = np.array([one.probability for one in found])
+    if len(found) < 2 or not (estimates > 0).all():
+        return 1.0
+    levels = np.mean([one.levels for one in found])
+    explained = levels * (1 / LEVEL_SHARE - 1) * (1 + _CORRELATION) / samples
+    scatter = np.log(estimates).var(ddof=1)
+    return float(estimates.max() / estimates.min()) if scatter > 4 * explained else 1.0
 
 
 def subset_interval(found: list[Found], samples: int) -> Ends:

@@ -18,7 +18,7 @@ from uq.errors import InputError
 from uq.indices.independent_inputs import correlated_inputs, independent_inputs
 from uq.indices.scores import with_scores
 from uq.methods.sample import Sample
-from uq.rows.elements import Floats, flags, study_file_of
+from uq.rows.elements import Floats, flags, has_independent_samples, study_file_of
 from uq.study.file import Tied
 
 
@@ -43,7 +43,8 @@ def sample_of(ds: xr.Dataset) -> Sample:
     nothing = np.full(ds.sizes["sample"], np.nan)
     sample = Sample.plain(nothing, independent_inputs(ds), random=bool(ds.attrs.get("random")))
     if layout is PLAIN:
-        return sample
+        independent = has_independent_samples(ds)
+        return replace(sample, replicate=None if independent else ds["replicate"].values)
     groups, blocks = _grouped_rows(ds)
     sample = replace(
         sample,

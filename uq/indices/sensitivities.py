@@ -24,6 +24,7 @@ from uq.methods.sample import Sample
 from uq.rows.elements import analysis_of
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, one_of_each_sample
+from uq.rows.ranked import ranked_in_words, ranked_rows
 from uq.rows.results import refuse_empty
 from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
@@ -139,10 +140,12 @@ def sensitivities(
         why = "within a regime the inputs depend on each other"
     else:
         why = why_dependent(ds)
-    nested, ds = is_nested(ds), one_of_each_sample(ds)
+    ranked = ranked_rows(ds)
+    by = ranked_in_words(ranked, ds)
+    nested, ds = is_nested(ds), one_of_each_sample(ranked)
     method = method or [*methods(ds, bool(why)), *fed_by(DESIGNS[ds.attrs["design"]])][0]
     _check_method(ds.attrs["design"], method, why, regime is not None)
-    sample, notes = sample_of(ds), tuple(notes_on_inputs(ds))
+    sample, notes = sample_of(ds), tuple(filter(None, (by, *notes_on_inputs(ds))))
     if nested:
         notes = (*notes, ONE_ROW)
     if sample.random and METHODS[method].noise:

@@ -19,6 +19,7 @@ from uq.designs.registry import IMPORTED
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.literals import key
+from uq.netcdf_files import refuse_tricks
 from uq.places import node
 from uq.wording import counted
 
@@ -199,10 +200,13 @@ def _read_netcdf(path: Path, column: str) -> Floats:
     import xarray as xr
 
     try:
+        refuse_tricks(path)
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
             wide = [str(name) for name in ds.variables if ds[name].ndim == 1]
             if column not in wide:
                 raise ValueError(_no_column(column, wide))
+            if ds[column].size > MAX_NUMBERS:
+                raise ValueError(f"has {ds[column].size} rows (allowed: 1 to {MAX_NUMBERS})")
             return np.asarray(ds[column].values, dtype=float)
     except (OSError, RuntimeError, TypeError):
         raise ValueError("not a netCDF file of numbers") from None

@@ -69,16 +69,17 @@ def beside_nulls(
                 shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
                 own, _ = measure(shuffled, sample)
                 reached = {kind: corrected(one, one) for kind, one in own.items()}
-                notes = (*notes, _own_null(name, reached))
+                notes = (*notes, _ownnull_of(name, reached))
             for kind, one in raw.items():
                 found[kind][name] = Estimate(float(corrected(one[i], own[kind])))
         reached = {kind: corrected(one, one) for kind, one in idle.items() if dummies}
-        return Indices(found, notes, {kind: _null(one, len(x)) for kind, one in reached.items()})
+        return Indices(found, notes, {kind: null_of(one, len(x)) for kind, one in reached.items()})
 
     return estimate
 
 
-def _null(reached: Floats, inputs: int) -> Null:
+def null_of(reached: Floats, inputs: int) -> Null:
+    """Return the limits for one input without effect, and for the largest of several."""
     return Null(float(reached.max()), largest_of(inputs, reached) if inputs > 1 else np.nan)
 
 
@@ -116,7 +117,7 @@ def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[st
     return reasons
 
 
-def _own_null(name: str, own: Mapping[IndexKind, Floats]) -> str:
+def _ownnull_of(name: str, own: Mapping[IndexKind, Floats]) -> str:
     known = {kind.key: one.max() for kind, one in own.items() if np.isfinite(one).all()}
     reached = ", ".join(f"{kind} = {one:.2g}" for kind, one in known.items())
     return (

@@ -89,6 +89,12 @@ class Indices:
     by_correlation : tuple of str
         Inputs that have an index but no effect of their own: it is that of inputs they are
         correlated with.
+    half_products : dict of (str, str) to float
+        Covariance of the errors of the indices of two inputs, the second not listed before the
+        first, times the square of the quantile that makes their 95 % intervals: of one input the
+        square of its half-width. Where one set of rows gives all indices.
+    rows_factors : dict of str to float
+        Input whose index lacks an interval -> how many times the rows would give one.
     """
 
     values: Mapping[IndexKind, Mapping[str, Estimate]]
@@ -96,6 +102,8 @@ class Indices:
     nulls: Mapping[IndexKind, Null] = field(default_factory=dict)
     noise: Estimate | None = None
     by_correlation: tuple[str, ...] = ()
+    half_products: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    rows_factors: Mapping[str, float] = field(default_factory=dict)
 
 
 BY_CORRELATION = "by correlation alone"

@@ -10,6 +10,7 @@ from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
 from uq.methods.fast import fast_indices
+from uq.methods.first_order import first_order_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import EXPLAINED, hdmr_indices
 from uq.methods.hsic import HSIC, MOST_ROWS, P, conditional_indices, target_indices
@@ -34,12 +35,21 @@ _of_plain_rows = partial(Method, layout=PLAIN, has_null=True, least=MIN_ROWS)
 _of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
 
 METHODS = {
-    "rbd-fast": _of_plain_rows(
+    "first-order": Method(
         "how much of the variance, alone",
+        PLAIN,
+        first_order_indices,
+        (S1,),
+        source="difference-based residual variance in the order of the input (Tong & Wang 2005)",
+        intervals="influence of each row; none where few rows decide",
+        least=MIN_ROWS,
+        aggregates=True,
+    ),
+    "rbd-fast": _of_plain_rows(
+        "how much of the variance, alone, in smooth functions",
         estimate=beside_nulls(one_kind(S1, first_order)),
         kinds=(S1,),
         source="random balance, bias corrected; correlation ratio of inputs with many equal values",
-        most_rows=200_000,
         aggregates=True,
     ),
     "delta": _of_any_inputs(
@@ -72,7 +82,6 @@ METHODS = {
         kinds=(),
         gives="share of a quantile's contrast that an input explains",
         source="Fort et al. (2016), corrected by inputs without effect",
-        most_rows=200_000,
         takes_events=False,
     ),
     "regional": _of_any_inputs(
@@ -189,10 +198,14 @@ def for_dependent_inputs() -> tuple[str, ...]:
 
 
 def kinds_with_intervals(design: Design) -> dict[str, tuple[IndexKind, str]]:
-    """Return the indices of single inputs that have intervals: key -> kind and method."""
+    """Return the indices of single inputs that groups of rows estimate: key -> kind and method.
+
+    Those of a plain sample are no means over groups, which a run with `until` could forecast.
+    """
     found: dict[str, tuple[IndexKind, str]] = {}
     for name in fed_by(design):
-        for kind in METHODS[name].kinds if METHODS[name].intervals else ():
+        method = METHODS[name]
+        for kind in method.kinds if method.intervals and method.layout is not PLAIN else ():
             if not kind.of_pairs:
                 found.setdefault(kind.key, (kind, name))
     return found

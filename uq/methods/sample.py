@@ -45,6 +45,8 @@ class Sample:
         Of intervals.
     nulls : bool
         Whether indices of inputs without effect are wanted for comparison.
+    replicate : ndarray of int, shape (n,), optional
+        Of a plain sample, the replicate of each row; None where rows are independent.
     difference : tuple of str, optional
         Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
     """
@@ -61,6 +63,7 @@ class Sample:
     quantiles: Mapping[str, float] = field(default_factory=dict)
     confidence: float = CONFIDENCE
     nulls: bool = True
+    replicate: NDArray[np.intp] | None = None
     difference: tuple[str, str] | None = None
 
     @classmethod
@@ -91,6 +94,7 @@ class Sample:
             values=self.values[kept],
             inputs={name: column[kept] for name, column in self.inputs.items()},
             groups=alone(len(kept)),
+            replicate=None if self.replicate is None else self.replicate[kept],
         )
 
 

@@ -25,7 +25,7 @@ from uq.outside.fmu_said import (
     variables_of,
 )
 from uq.outside.folders import Folders
-from uq.outside.machine_tables import refuse
+from uq.outside.machine_tables import content_of, refuse
 from uq.outside.returned import Censored, NonFiniteError, Returned, censored, checked
 from uq.outside.row_by_row import RowByRow, model_from
 
@@ -74,8 +74,9 @@ def code_of_fmu(path: Path) -> str:
     import fmpy
 
     whole = hashlib.sha256(fmpy.__version__.encode())
-    for one in dict.fromkeys((path, _fmu(path, _file(path)))):
-        whole.update(one.read_bytes())
+    if path.suffix == ".toml":
+        whole.update(content_of(path))
+    whole.update(_fmu(path, _file(path)).read_bytes())
     return whole.hexdigest()[:16]
 
 

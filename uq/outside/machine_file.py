@@ -10,12 +10,15 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from uq.errors import nearest
+from uq.errors import nearest, one_line
 from uq.inputs.faults import Fault
 from uq.outside.machine_tables import MachineName, Name, Table, read_as, refuse
 from uq.outside.row_by_row import SEED
+from uq.places import node
 
 _PLACE = r"\{(%s)(:[^{}]*)?\}"
+
+_LONGEST_TEMPLATE = 10_000_000  # bytes
 
 STDOUT = "stdout"
 
@@ -111,10 +114,18 @@ def template_of(machine: MachineTable, folder: Path) -> str:
     Raises
     ------
     OSError, UnicodeDecodeError
+        Also where it is a pipe or a device, or longer than any input.
     """
     if not machine.template:
         return ""
-    return (folder / machine.template).read_bytes().decode()
+    path = folder / machine.template
+    if what := node(path):
+        raise OSError(f"is {what}, not a file")
+    with path.open("rb") as file:
+        content = file.read(_LONGEST_TEMPLATE + 1)
+    if len(content) > _LONGEST_TEMPLATE:
+        raise OSError(f"is longer than {_LONGEST_TEMPLATE // 1_000_000} MB")
+    return content.decode("utf-8-sig")
 
 
 def code_files(machine: MachineTable, folder: Path) -> list[Path]:
@@ -137,8 +148,9 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
         problem = "is not a text in UTF-8; let the program read it from {machine_folder}"
         yield Fault(("machine", "template"), problem, machine.template)
         return
-    except OSError:
-        yield Fault(("machine", "template"), "no such file", machine.template)
+    except OSError as error:
+        problem = "no such file" if isinstance(error, FileNotFoundError) else one_line(error)
+        yield Fault(("machine", "template"), problem, machine.template)
         return
     if problem := _program_problem(machine.command[0], folder):
         yield Fault(("machine", "command"), problem)
@@ -220,6 +232,9 @@ def filled(text: str, values: Mapping[str, float | int | str]) -> str:
 
     def value(found: re.Match[str]) -> str:
         one = values[found[1]]
-        return format(one, found[2][1:] if found[2] else "")
+        how = found[2][1:] if found[2] else ""
+        if re.search(r"\d{4}", how):
+            raise ValueError(f"format '{how[:20]}' is wider than 999 characters")
+        return format(one, how)
 
     return re.sub(_PLACE % "|".join(map(re.escape, values)), value, text)

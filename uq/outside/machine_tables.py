@@ -1,5 +1,6 @@
 """Machine files in TOML: read, and checked against the tables that they may have."""
 
+from codecs import BOM_UTF8
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -53,12 +54,17 @@ def data_of(path: Path) -> dict[str, Any]:
     if path.stat().st_size > _LONGEST:
         raise InputError(f"{path}: larger than a machine file can be")
     try:
-        data = read_toml(path.read_text(encoding="utf-8"))
+        data = read_toml(path.read_text(encoding="utf-8-sig"))
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{path}: not valid TOML: {one_line(error)}") from None
     if "study" in data and "machine" not in data:
         raise InputError(f"{path}: is a study, not a machine file; it needs a table [machine]")
     return data
+
+
+def content_of(path: Path) -> bytes:
+    """Return a machine file as it is identified: without a byte-order mark, lines ended by LF."""
+    return path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
 
 
 def read_as(kind: type[T], path: Path) -> T:

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import time
+from codecs import BOM_UTF8
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -25,6 +26,7 @@ from uq.outside.machine_file import (
     read_machine,
     template_of,
 )
+from uq.outside.machine_tables import content_of
 from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
 from uq.outside.returned import Returned, checked
 from uq.outside.row_by_row import SEED, OverdueError, RowByRow, model_from
@@ -80,14 +82,14 @@ def program_of(path: Path) -> Model:
 def code_of_program(path: Path) -> str:
     """Return a hash of a machine file, its template, its program and the files named in it."""
     read, folder = read_machine(path), path.absolute().parent
-    whole = hashlib.sha256(path.read_bytes())
+    whole = hashlib.sha256(content_of(path))
     files = code_files(read.machine, folder)
     if program := _found(read.machine.command[0], folder):
         files.append(Path(program))
     for file in files:
         for one in sorted(file.rglob("*")) if file.is_dir() else [file]:
             if one.is_file():
-                content = one.read_bytes()
+                content = one.read_bytes().removeprefix(BOM_UTF8)
                 whole.update(b"%s %d\n" % (one.name.encode(), len(content)))
                 whole.update(content)
     return whole.hexdigest()[:16]

@@ -3,6 +3,10 @@
 import csv
 import json
 import re
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +14,14 @@ import numpy as np
 
 from uq.errors import one_line
 from uq.literals import read_number
+from uq.netcdf_files import refuse_tricks
 from uq.outside.machine_file import STDOUT, OutputTable
 from uq.outside.returned import WrongReturnError
 
 LONGEST = 100_000_000
 """Bytes of a text that is searched for a result."""
+
+_SEARCH_SECONDS = 10.0  # some patterns try more ways than there is time
 
 _SHOWN = 60  # characters of what is no number
 
@@ -97,16 +104,39 @@ def _in_csv(text: str, column: str) -> float:
 
 
 def _matched(text: str, pattern: str) -> float:
-    found = re.findall(pattern, text, re.MULTILINE)
+    with _stopped_after(_SEARCH_SECONDS, f"its pattern {pattern} takes too long to search for"):
+        found = re.findall(pattern, text, re.MULTILINE)
     if not found:
         raise ValueError(f"no match of its pattern {pattern}")
     return _real(found[-1])
 
 
+@contextmanager
+def _stopped_after(seconds: float, sentence: str) -> Iterator[None]:
+    """Raise a `ValueError` when a search takes longer; it can, in the main thread of a process."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: object) -> None:
+        raise ValueError(sentence)
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def _in_netcdf(path: Path, variable: str) -> Any:
     import netCDF4
 
+    refuse_tricks(path)
     with netCDF4.Dataset(path) as data:
         if variable not in data.variables:
             raise ValueError(f"no variable '{variable}'")
+        if data[variable].size * 8 > LONGEST:
+            raise ValueError(f"too large: {data[variable].size} numbers")
         return np.ma.filled(np.ma.asarray(data[variable][...], dtype=float), np.nan).tolist()

@@ -240,9 +240,10 @@ def checked(
                 f" in Python: returns={{'{name}': uq.Returned(life=True)}}, in a machine file:"
                 " life = true"
             )
-        absent = one.output(name).is_absent(numbers)
+        output = one.output(name)
+        absent = output.is_absent(numbers)
         if one.may_be_undefined:
             absent &= ~np.isnan(numbers)
         if absent.any():
-            raise NonFiniteError(f"'{name}' is {numbers[absent][0]}")
+            raise NonFiniteError(f"'{name}' {output.absence(numbers[absent][0])}")
         yield name, numbers, cut

@@ -8,14 +8,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import count
-from math import inf
+from math import inf, nan
 from typing import Any, Self
 
 from uq.contract import Model, Parameter, censored_name
 from uq.errors import InputError
 from uq.outside.returned import Censored, Returned, from_plain
 from uq.outside.row_by_row import RowByRow, model_from
-from uq.outside.um_bridge import DESCRIBED, VERSION, ServerError, call, split_address
+from uq.outside.um_bridge import DESCRIBED, NEVER, VERSION, ServerError, call, split_address
 
 _SOON = 5.0  # seconds for which a server is expected to start
 _LARGEST = 10_000_000  # numbers in an answer
@@ -66,7 +66,7 @@ def server_model(address: str) -> Model:
                     one["name"],
                     one["unit"],
                     one["meaning"],
-                    (float(one["bounds"][0]), float(one["bounds"][1])),
+                    _bounds(*one["bounds"]),
                     "assumed: of the server",
                 ),
                 float(one["nominal"]),
@@ -183,7 +183,7 @@ class _Evaluate:
         if not isinstance(output, list) or not all(isinstance(one, list) for one in output):
             raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")
         if self.outputs:
-            return self._named(output)
+            return self._named(_numbers(output, answer.get(NEVER)))
         names = _vectors(len(output))
         return {n: v[0] if len(v) == 1 else v for n, v in zip(names, output, strict=True)}
 
@@ -198,3 +198,17 @@ class _Evaluate:
             values = [Censored(value) if cut else value for value, cut in both]
             found[name] = values if one["shape"] else values[0]
         return found
+
+
+def _bounds(low: float | None, high: float | None) -> tuple[float, float]:
+    """Return bounds; JSON has null for an infinite one."""
+    return -inf if low is None else float(low), inf if high is None else float(high)
+
+
+def _numbers(output: list[list[float | None]], never: Any) -> list[list[float]]:
+    """Return vectors with infinity for their null numbers that are never reached, else NaN."""
+    places: Any = never if isinstance(never, list) else [()] * len(output)
+    return [
+        [(inf if i in at else nan) if value is None else value for i, value in enumerate(vector)]
+        for vector, at in zip(output, map(set, places), strict=True)
+    ]

@@ -1,18 +1,16 @@
 """A model offered to others by the protocol of UM-Bridge; see `uq.outside.um_bridge`."""
 
-import json
 import socket
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import ThreadingHTTPServer
 from threading import Lock
 from typing import Any
 
 import numpy as np
 
-from uq.contract import Model, Status
-from uq.outside.um_bridge import DESCRIBED, VERSION
+from uq.contract import Floats, Model, Status
+from uq.outside.json_requests import RequestError, finite, invalid, json_server
+from uq.outside.um_bridge import DESCRIBED, NEVER, VERSION
 from uq.wording import counted
-
-_LONGEST = 10_000_000  # bytes of a question
 
 
 def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> ThreadingHTTPServer:
@@ -35,11 +33,7 @@ def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> Thread
     """
     place: Any
     family, _, _, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-
-    class Server(ThreadingHTTPServer):
-        address_family = family
-
-    return Server(place, _handler(_Offered(model)))
+    return json_server(place, family, _Offered(model).answer)
 
 
 def address_of(host: str, port: int, name: str) -> str:
@@ -54,39 +48,64 @@ class _Offered:
         self._settings = model.settings()
         self.model = model.given(self._settings)
         self._one_at_a_time = Lock()
-        row = self._row([list(model.nominal.values())], {})
+        row = self._row(np.array(list(model.nominal.values()), float), 0)
         self._sizes = {name: values.size for name, values in row.items()}
 
-    def _row(self, vectors: Any, config: Any) -> dict[str, Any]:
-        x = np.array([np.concatenate([np.asarray(one, float) for one in vectors])])
-        if x.shape[1] != len(self.model.parameter_names):
-            given, expected = counted(x.shape[1], "input"), len(self.model.parameter_names)
-            raise ValueError(f"{given}, expected {expected}")
-        seed = np.array([int(config.get("seed", 0))], np.uint64)
+    def _row(self, x: Floats, seed: int) -> dict[str, Any]:
+        seeds = np.array([seed], np.uint64)
         with self._one_at_a_time, np.errstate(all="ignore"):
-            outputs, status, *said = self.model.batch(x, seed, self._settings)
+            outputs, status, *messages = self.model.batch(x[None], seeds, self._settings)
         code = Status(int(status[0]))
         if code not in (Status.OK, Status.OUT_OF_BUDGET):
-            raise ValueError(said[0].get(0, code.meaning) if said else code.meaning)
-        return {name: np.asarray(values)[0] for name, values in outputs.items()}
+            raise invalid(messages[0].get(0, code.meaning) if messages else code.meaning)
+        return {name: np.asarray(values, float)[0].ravel() for name, values in outputs.items()}
 
-    def answer(self, what: str, body: Any) -> Any:
-        """Return the answer to a question."""
+    def _inputs(self, vectors: Any) -> Floats:
+        """Return the inputs of a row, in declared order."""
+        names = self.model.parameter_names
+        try:
+            x = np.concatenate([np.asarray(vector, float).ravel() for vector in vectors])
+        except (ValueError, TypeError, OverflowError):
+            raise invalid("'input' is not a list of lists of numbers") from None
+        if len(x) != len(names):
+            raise invalid(f"{counted(len(x), 'input')}, expected {len(names)}")
+        for name, value in zip(names, x.tolist(), strict=True):
+            low, high = self.model.parameter(name).bounds
+            if not low <= value <= high:
+                raise invalid(f"{name} = {value} is not within {low} to {high}")
+        return x
+
+    def answer(self, path: str, body: dict[str, Any]) -> Any:
+        """Return the answer to a request.
+
+        Raises
+        ------
+        RequestError
+        """
         model = self.model
-        if what == "Info":
+        if path == "Info":
             return {"protocolVersion": VERSION, "models": [model.name]}
-        if body.get("name") != model.name:
-            raise LookupError(f"no such model: {body.get('name')} (there: {model.name})")
-        if what == "InputSizes":
+        if path not in {"InputSizes", "OutputSizes", "ModelInfo", "Evaluate"}:
+            raise RequestError(404, "ModelNotFound", f"no such request: {path[:80]}")
+        if (name := body.get("name")) != model.name:
+            message = f"no such model: {str(name)[:80]} (there: {model.name})"
+            raise RequestError(400, "ModelNotFound", message)
+        if path == "InputSizes":
             return {"inputSizes": [len(model.parameter_names)]}
-        if what == "OutputSizes":
+        if path == "OutputSizes":
             return {"outputSizes": list(self._sizes.values())}
-        if what == "ModelInfo":
+        if path == "ModelInfo":
             return {"support": {"Evaluate": True}, DESCRIBED: self._described()}
-        if what == "Evaluate":
-            row = self._row(body["input"], body.get("config") or {})
-            return {"output": [values.astype(float).ravel().tolist() for values in row.values()]}
-        raise LookupError(f"no such question: {what}")
+        return self._evaluated(body)
+
+    def _evaluated(self, body: dict[str, Any]) -> dict[str, Any]:
+        config = body.get("config") or {}
+        seed = config.get("seed", 0) if isinstance(config, dict) else None
+        if not isinstance(seed, int) or not 0 <= seed < 2**64:
+            raise invalid("'config' must be an object, its 'seed' an integer from 0 to 2^64 - 1")
+        row = self._row(self._inputs(body.get("input")), seed)
+        never = [np.flatnonzero(np.isposinf(values)).tolist() for values in row.values()]
+        return {"output": [finite(values.tolist()) for values in row.values()], NEVER: never}
 
     def _described(self) -> dict[str, Any]:
         model, axes = self.model, self.model.coordinates(self._settings)
@@ -100,7 +119,7 @@ class _Offered:
                     "name": name,
                     "nominal": model.nominal[name],
                     "unit": one.unit,
-                    "bounds": list(one.bounds),
+                    "bounds": finite(one.bounds),
                     "meaning": one.meaning,
                 }
                 for name, one in declared
@@ -117,47 +136,3 @@ class _Offered:
                 for name, one in model.outputs.items()
             },
         }
-
-
-def _handler(offered: _Offered) -> type[BaseHTTPRequestHandler]:
-    class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
-            self._answer({})
-
-        def do_POST(self) -> None:
-            length = int(self.headers.get("Content-Length") or 0)
-            if length > _LONGEST:
-                self._send(413, {"error": {"type": "InvalidInput", "message": "too long"}})
-                return
-            try:
-                body = json.loads(self.rfile.read(length) or b"{}")
-                if not isinstance(body, dict):
-                    raise ValueError("not an object")
-            except ValueError as error:
-                self._send(400, {"error": {"type": "InvalidInput", "message": str(error)}})
-                return
-            self._answer(body)
-
-        def _answer(self, body: Any) -> None:
-            try:
-                self._send(200, offered.answer(self.path.strip("/"), body))
-            except LookupError as error:
-                self._send(400, {"error": {"type": "ModelNotFound", "message": str(error)}})
-            except (ValueError, TypeError, OverflowError) as error:
-                self._send(400, {"error": {"type": "InvalidInput", "message": str(error)}})
-            except Exception as error:
-                message = f"{type(error).__name__}: {error}"
-                self._send(500, {"error": {"type": "InternalError", "message": message}})
-
-        def _send(self, code: int, answer: Any) -> None:
-            data = json.dumps(answer).encode()
-            self.send_response(code)
-            self.send_header("Content-Type", "application/json")
-            self.send_header("Content-Length", str(len(data)))
-            self.end_headers()
-            self.wfile.write(data)
-
-        def log_message(self, *arguments: Any) -> None:
-            pass
-
-    return Handler

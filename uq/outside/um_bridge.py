@@ -28,6 +28,9 @@ VERSION = 1.0
 DESCRIBED = "described"
 """Entry of a server's model information with names, units and bounds, which UM-Bridge lacks."""
 
+NEVER = "never"
+"""Entry of an answer beside ``output``: which numbers of each vector are null for infinity."""
+
 _LONGEST = 100_000_000  # bytes of an answer
 _PART = 1_000_000  # of it, read at once
 _PATIENCE = 60.0  # seconds for which a server that does not answer is asked again

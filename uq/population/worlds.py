@@ -11,6 +11,7 @@ from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import ROUNDING, Replicates, share_interval
 from uq.population.means import EXACT, weighted_share
+from uq.population.mixing_bounds import MixingBounds
 from uq.population.smoothing import effective_rows
 
 FEWEST_WORLDS = 20
@@ -25,7 +26,10 @@ _STEP = 1e-4
 _STEPS = 100
 _SETTLED = 1e-7
 
-ASSUMES = "that probits of the units' probability are about normal where noise hides their spread"
+ASSUMES = (
+    "that probits of the units' probability are about normal where noise hides their spread; their"
+    " intervals do not"
+)
 FEW = f"needs {FEWEST_WORLDS} samples for points over what is shared"
 FEW_ENDED = f"fewer than {FEWEST_WORLDS} units have ended, or not ended, by then"
 REPEATED = "samples share one of a few values, with no points between: study each of them alone"
@@ -106,7 +110,8 @@ class Noisy:
     Its law is normal on the scale of probits [1]_, fitted by maximum likelihood to the numbers of
     units that ended, as if these were binomial with as many units as give the scatter seen within
     worlds. The mean of the worlds' posteriors under this law replaces it [2]_: with little noise it
-    is that of the worlds, whatever their law.
+    is that of the worlds, whatever their law. The interval covers the error of the fit, and what
+    the counts allow whatever the law (`MixingBounds`).
 
     Parameters
     ----------
@@ -156,6 +161,10 @@ class Noisy:
         high = min(float(seen.max()) + _MARGIN, _FARTHEST) if mean.max() < 1 else _FARTHEST
         self._z = np.linspace(low, high, _CELLS)
         self._cell = self._z[1] - self._z[0]
+        is_counted = bool(np.isin(ended, (0.0, 1.0)).all(where=np.isfinite(ended)))
+        points = special.ndtr(self._z)
+        of_counts = units if is_counted else size
+        self._bounds = MixingBounds(points, mean, of_counts, weights, worth, self._part, is_counted)
         size = np.minimum(size, _NARROWEST / self._cell**2)
         counts = np.stack([(mean * size).ravel(), ((1 - mean) * size).ravel()], axis=1)
         counts, place = np.unique(counts, axis=0, return_inverse=True)
@@ -176,8 +185,11 @@ class Noisy:
         slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
         pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
         found = weighted_share(pulls, self._worth, self._part, hits=[])
-        found = replace(found, assumes=ASSUMES)
-        return found if isfinite(found.low) else replace(found, low=found.value, high=found.value)
+        if not isfinite(found.low):
+            found = replace(found, low=found.value, high=found.value)
+        least, most = self._bounds.exceeding(probability)
+        low, high = min(found.low, least), max(found.high, most)
+        return replace(found, low=low, high=high, assumes=ASSUMES)
 
     def _fit(self, parameters: Floats) -> None:
         """Fit the law, by steps from the scatter of the scores that never increase the loss."""

@@ -80,7 +80,7 @@ def promised(promise: Promise | None) -> Iterator[dict[str, Any]]:
                 "upper": upper,
                 "bound": one.upper if upper else one.lower,
                 "opening": plain(printed(one.opening())),
-                "then": plain(printed(one.opening("would then"))),
+                "then": plain(printed(one.end_of_quantile)),
             }
 
 

@@ -186,7 +186,7 @@ def _check_values(
         guilty = (status == Status.OK) & ~legal.all(axis=1)
         status[guilty] = Status.NON_FINITE
         for row in np.flatnonzero(guilty)[:1]:
-            messages[row] = f"'{name}' is {values[row][~legal[row]][0]}"
+            messages[row] = f"'{name}' {output.absence(values[row][~legal[row]][0])}"
 
 
 def _first_failures(

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model
 from uq.errors import InputError, choices, nearest
+from uq.literals import without_control
+from uq.netcdf_files import most_bytes, refuse_tricks
 from uq.places import node
 from uq.provenance import provenance
 from uq.rows.columns import failed_rows
@@ -47,7 +49,6 @@ UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, Ty
 """What netCDF4 and xarray raise for damaged files."""
 
 _IN_MEMORY_BYTES = 200_000_000
-_INFLATED_BYTES, _INFLATION = 100_000_000, 100  # no result claims more
 
 
 def build(
@@ -161,7 +162,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
     try:
-        ds = _opened(path)
+        ds = _legible(_opened(path))
         check(ds, path)
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
@@ -175,20 +176,39 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
 
 def _opened(path: Path) -> xr.Dataset:
     try:
+        refuse_tricks(path)
+    except ValueError as error:
+        raise InputError(f"{path}: not a sound result: {error}") from None
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or 'not a readable netCDF file'}") from None
+    try:
         # No cache: a large result, read on use, does not come to be in memory bit by bit.
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
-        if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
+        if ds.nbytes > most_bytes(path):
             ds.close()
-            raise InputError(
-                f"{path}: not a sound result: its {path.stat().st_size / 1e6:.3g} MB claim to be "
-                f"{ds.nbytes / 1e9:.3g} GB"
-            )
+            raise InputError(f"{path}: not a sound result: it claims {ds.nbytes / 1e9:.3g} GB")
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
         return ds
     except UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
+
+
+def _legible(ds: xr.Dataset) -> xr.Dataset:
+    """Return a Dataset of which no text can control a terminal."""
+    owners: list[Any] = [ds, *ds.variables.values()]
+    for owner in owners:
+        for name, value in owner.attrs.items():
+            if isinstance(value, str):
+                owner.attrs[name] = without_control(value)
+            elif isinstance(value, list):
+                owner.attrs[name] = [without_control(str(text)) for text in value]
+    for name, variable in ds.coords.items():
+        if variable.dtype.kind in "OU" and variable.ndim == 1:
+            labels = [without_control(str(label)) for label in variable.values]
+            ds = ds.assign_coords({name: (variable.dims, labels, variable.attrs)})
+    return ds
 
 
 def _others(path: Path) -> str:

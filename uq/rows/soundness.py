@@ -1,5 +1,6 @@
 """Whether a Dataset is a sound result: it may be damaged or come from an untrusted file."""
 
+import json
 from collections.abc import Iterator
 from typing import Any, get_args
 
@@ -8,6 +9,7 @@ import xarray as xr
 
 from uq.contract import Kind
 from uq.designs.registry import DESIGNS
+from uq.literals import read_toml
 from uq.rows.weights import WEIGHT, has_weights
 
 _TEXTS = ("title", "source", "study", "study_identity", "design")
@@ -35,7 +37,9 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
     for place in _PLACES:
         if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
             yield f"'{place}' is not one integer per row"
+    yield from _place_faults(ds)
     yield from _nesting_faults(ds)
+    yield from _study_faults(ds)
     if fault := _weight_fault(ds):
         yield fault
     for flag in ("block", "status"):
@@ -47,6 +51,9 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
             continue
         if role in ("input", "output", "censored") and variable.dims[:1] != ("sample",):
             yield f"'{name}' has no row dimension"
+        if (role == "input" and variable.ndim != 1) or (role == "fixed" and variable.ndim):
+            yield f"'{name}' is not one number{' per row' * (role == 'input')}"
+        yield from _attribute_faults(str(name), variable)
         if variable.dtype.kind not in "fiu":
             yield f"'{name}' is not numeric"
         texts = (
@@ -57,6 +64,57 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
                 yield f"'{name}' lacks the attribute '{attribute}'"
         if role == "output":
             yield from _output_faults(str(name), variable)
+
+
+def _place_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield what is wrong with the numbers of rows and their places in the design."""
+    numbers = ds["sample"].values
+    if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
+        yield "'sample' does not number the rows in order"
+    for place, most in (("replicate", ds.attrs["replicates"]), ("group", 2**53)):
+        if ((ds[place].values < 0) | (ds[place].values >= most)).any():
+            yield f"'{place}' is out of range"
+
+
+def _study_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield which inputs of the study are not in the result."""
+    try:
+        uncertain = read_toml(ds.attrs["study"]).get("uncertain", {})
+    except (ValueError, OverflowError, RecursionError):
+        return  # who needs the study says what is wrong with it
+    for name in uncertain if isinstance(uncertain, dict) else ():
+        if name not in ds.data_vars or ds[name].attrs.get("role") != "input":
+            yield f"its study varies '{name}', which it does not hold"
+
+
+def _attribute_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
+    """Yield which optional attributes of a variable are of a wrong type, shape or range."""
+    attrs = variable.attrs
+    admissible: Any = attrs.get("admissible", (-np.inf, np.inf))
+    if not _are_numbers(admissible, 2) or not admissible[0] <= admissible[1]:
+        yield f"attribute 'admissible' of '{name}' is not two numbers in order"
+    if not _are_numbers(attrs.get("accuracy", 1.0), 1):
+        yield f"attribute 'accuracy' of '{name}' is not a number"
+    for text in ("source", "symbol", "success", "level"):
+        if not isinstance(attrs.get(text, ""), str):
+            yield f"attribute '{text}' of '{name}' is not text"
+    if attrs.get("role") == "censored" and not np.isin(variable.values, (0, 1)).all():
+        yield f"'{name}' is neither 0 nor 1 throughout"
+    if "scales" in attrs and not _are_exponents(attrs["scales"]):
+        yield f"attribute 'scales' of '{name}' is not a table of exponents"
+
+
+def _are_numbers(value: Any, count: int) -> bool:
+    numbers = np.asarray(value)
+    return numbers.dtype.kind in "fiu" and numbers.size == count and not np.isnan(numbers).any()
+
+
+def _are_exponents(text: Any) -> bool:
+    try:
+        table = json.loads(text)
+    except (TypeError, ValueError, RecursionError):
+        return False
+    return isinstance(table, dict) and all(_are_numbers(power, 1) for power in table.values())
 
 
 def _nesting_faults(ds: xr.Dataset) -> Iterator[str]:
@@ -105,4 +163,6 @@ def _flag_fault(variable: xr.DataArray) -> str:
     labels = variable.attrs.get("flag_meanings")
     if codes is None or not isinstance(labels, str) or np.size(codes) != len(labels.split()):
         return f"'{variable.name}' lacks the meaning of its numbers"
+    if np.asarray(codes).dtype.kind not in "iu" or not np.isin(variable.values, codes).all():
+        return f"'{variable.name}' has numbers without a meaning"
     return ""

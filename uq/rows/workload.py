@@ -27,7 +27,7 @@ class Workload(NamedTuple):
     ----------
     model : Model
     model_reference : str
-        By which `uq.study.registry.find_model` finds the model in any process.
+        By which `uq.study.registry.model_at` finds the model in any process.
     settings : object
         An instance of ``model.settings``.
     total : int

@@ -18,7 +18,7 @@ from uq.running.loading import study_of_text
 from uq.store.merge import by_settings
 from uq.study.changes import what_changed
 from uq.study.definition import Study
-from uq.study.registry import made_here
+from uq.study.registry import find_model, made_here
 
 
 def study_here(
@@ -89,7 +89,9 @@ def other_versions(ds: xr.Dataset, model: str | None = None) -> dict[str, tuple[
 
     Compared are processor, Python, libraries and the code of the model.
     """
-    pairs = made_here(model or ds.attrs["model"]).items()
+    if model is None:
+        find_model(model := str(ds.attrs["model"]))  # refuses all but the name of an installed one
+    pairs = made_here(model).items()
     found = {name: (str(ds.attrs.get(name, "unknown")), here) for name, here in pairs}
     return {name: (made, here) for name, (made, here) in found.items() if made != here}
 

@@ -8,7 +8,7 @@ from uq.rows.one_row import Row, run_row
 from uq.running.child import Action, ModelSpec
 from uq.running.isolation import isolated
 from uq.running.loading import known_reference
-from uq.study.registry import code_of, find_model
+from uq.study.registry import code_of, model_at
 
 _STDERR = 2
 
@@ -25,14 +25,14 @@ def run_alone(
     Parameters
     ----------
     reference : str
-        As for `uq.study.registry.find_model`.
+        As for `uq.study.registry.model_at`.
     parameters, settings, seed
         As for `uq.simulate`.
     compiling : callable
         Called when another process starts to compile.
     """
     reference = known_reference(reference)
-    model = find_model(reference)
+    model = model_at(reference)
     if not isinstance(model.batch, RowByRow):
         return run_row(model, parameters, settings, seed)
     spec = ModelSpec(reference, model.version, (), code=code_of(reference))

@@ -20,7 +20,7 @@ from uq.errors import InputError
 from uq.outside.descendants import adopt, end_descendants
 from uq.outside.row_by_row import RowByRow
 from uq.rows.evaluate import evaluate
-from uq.study.registry import code_of, find_model
+from uq.study.registry import code_of, model_at
 
 
 class ModelSpec(NamedTuple):
@@ -29,7 +29,7 @@ class ModelSpec(NamedTuple):
     Attributes
     ----------
     model : str
-        Reference for `uq.study.registry.find_model`.
+        Reference for `uq.study.registry.model_at`.
     version : str
         Of the model that is wanted.
     settings : tuple of (str, object)
@@ -54,7 +54,7 @@ class ModelSpec(NamedTuple):
         InputError
             When this process has no such model, or a different one.
         """
-        model = find_model(self.model)
+        model = model_at(self.model)
         if model.version != self.version:
             raise InputError(
                 f"the process that computes rows has version {model.version} of model "

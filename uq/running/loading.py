@@ -19,10 +19,11 @@ from uq.errors import InputError
 from uq.outside.descendants import end_with_descendants
 from uq.outside.returned import Returned, as_plain, from_plain, joined
 from uq.outside.row_by_row import RowByRow
+from uq.places import cache_path
 from uq.running.child import FIRST_SECONDS, REFUSED, Action, answer_of
 from uq.running.environment import started
 from uq.running.options import Say, ignore
-from uq.study.registry import code_of, find_model, located, with_returns
+from uq.study.registry import code_of, located, model_at, with_returns
 from uq.study.sources import DISTRIBUTION
 from uq.wording import counted, duration
 
@@ -92,13 +93,13 @@ def study_of_text(text: str, source: str, model: str | None) -> "Study":
 
 def load_model(reference: str) -> Model:
     """Return a model; what a function returns that does not declare it, by its nominal row."""
-    return find_model(known_reference(reference))
+    return model_at(known_reference(reference))
 
 
 def known_reference(reference: str) -> str:
     """Return a reference that holds in any process, to a model of which the outputs are known."""
     reference = located(reference)
-    model = find_model(reference)
+    model = model_at(reference)
     if model.outputs:
         return reference
     nominal = list(model.nominal.values()), 0
@@ -125,14 +126,14 @@ def _found(
     reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
 ) -> dict[str, Returned]:
     """Return what a function returns, from the rows tried, the nominal one first."""
-    from platformdirs import user_cache_path
-
     from uq.provenance import __version__
 
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
     code = f"{__version__}\n{reference}\n{code_of(reference)}"
     key = hashlib.sha256(code.encode() + numbers).hexdigest()
-    kept = user_cache_path(DISTRIBUTION, appauthor=False) / "returns" / f"{key}.json"
+    kept = cache_path(DISTRIBUTION) / "returns" / f"{key}.json"
+    if not kept.is_absolute():  # there is no home: the path begins with "~"
+        return joined(list(_returned(reference, tried, say, limit)))
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()

@@ -8,7 +8,7 @@ from typing import Any
 from uq.errors import InputError, described
 from uq.outside.returned import WrongReturnError, as_plain, seen_in
 from uq.running.child import READY, REFUSED, end_with_parent, telling_of_compilation
-from uq.study.registry import find_model
+from uq.study.registry import model_at
 
 RETURNED, RAISED = "returned", "raised"
 """What a row did, with what it returned as plain data, or with a sentence."""
@@ -21,7 +21,7 @@ def main(handle: str) -> None:
     connection = Connection(int(handle))
     reference = connection.recv()
     try:
-        batch: Any = find_model(reference).batch
+        batch: Any = model_at(reference).batch
     except InputError as error:
         connection.send((REFUSED, error))
         return

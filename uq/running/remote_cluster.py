@@ -1,5 +1,6 @@
 """Dask workers of an existing cluster."""
 
+import re
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -37,10 +38,11 @@ def remote_workers(address: str) -> Iterator[Workers]:
     where = f"scheduler {address}"
     with ExitStack() as stack:
         stack.enter_context(quiet())
+        _check_address(where, address)
         _check_certificates(where, encrypted=address.startswith("tls:"))
         try:
             client = Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, TypeError, RuntimeError) as error:  # also of its addresses
             reason = one_line(error)
             raise InputError(
                 f"{where}: cannot connect: {reason}; is a dask scheduler running there?"
@@ -65,6 +67,14 @@ def remote_workers(address: str) -> Iterator[Workers]:
         finally:
             if client.status == "running":
                 client.run(end_children, on_error="ignore")
+
+
+def _check_address(where: str, address: str) -> None:
+    """Refuse what dask cannot connect to, before it tries and leaves its traceback."""
+    if not re.fullmatch(
+        r"((tcp|tls|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):\d{1,5}", address
+    ):
+        raise InputError(f"{where}: not an address such as tcp://host:8786")
 
 
 def _check_certificates(where: str, encrypted: bool) -> None:

@@ -17,6 +17,7 @@ from uq.contract import Floats, Mask, Model, Output, Status, censored_name
 from uq.errors import InputError
 from uq.inputs.conditioning import ppf_within
 from uq.outside.row_by_row import RowByRow
+from uq.places import cache_path
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import row_block
 from uq.rows.workload import workload_of
@@ -69,8 +70,9 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
     if faults:
         raise InputError(*(f"machine '{model.name}': {fault}" for fault in faults))
     with suppress(OSError):
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        kept.touch()
+        if kept.is_absolute():  # else there is no home: the path begins with "~"
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            kept.touch()
 
 
 def _at_ends(study: "Study", row: Floats) -> Floats:
@@ -142,9 +144,7 @@ def _differ(lives: Floats, cut: Mask, expected: Floats, only_more: Mask) -> Mask
 
 def _kept(study: "Study", x: Floats, seed: NDArray[np.uint64]) -> Path:
     """Return the file that exists once these rows have scaled as declared."""
-    from platformdirs import user_cache_path
-
     numbers = x.tobytes() + seed.tobytes()
     reference = study.model_reference
     key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()
-    return user_cache_path(DISTRIBUTION, appauthor=False) / "scales" / key
+    return cache_path(DISTRIBUTION) / "scales" / key

@@ -5,7 +5,9 @@ into, it would load stale code. Here the name of the folder is a hash of all sou
 function can depend.
 """
 
+import atexit
 import os
+import shutil
 import sys
 import tempfile
 from collections.abc import Callable
@@ -48,6 +50,14 @@ def _install() -> None:
     places.insert(0, SourcesLocator)
 
 
+@cache
+def _fresh_folder() -> Path:
+    """Make a folder for this process alone: numba unpickles what lies there."""
+    folder = tempfile.mkdtemp(prefix=f"{DISTRIBUTION}-numba-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
+
+
 class SourcesLocator:
     """The place of the compiled code of one function, as numba asks for it.
 
@@ -62,8 +72,10 @@ class SourcesLocator:
         import numba
 
         config: Any = numba.config
-        base = config.CACHE_DIR or str(user_cache_path(DISTRIBUTION, appauthor=False) / "numba")
-        self._path = Path(base) / key_of(module) / module
+        users = user_cache_path(DISTRIBUTION, appauthor=False) / "numba"
+        if not (config.CACHE_DIR or users.is_absolute()):  # no home: it begins with "~"
+            users = _fresh_folder()
+        self._path = Path(config.CACHE_DIR or users) / key_of(module) / module
         self._line = str(function.__code__.co_firstlineno)
 
     @classmethod
@@ -81,8 +93,7 @@ class SourcesLocator:
         try:
             found.ensure_cache_path()
         except OSError:
-            name = f"{DISTRIBUTION}-numba-{os.getuid()}"
-            found._path = Path(tempfile.gettempdir(), name, *found._path.parts[-2:])
+            found._path = _fresh_folder().joinpath(*found._path.parts[-2:])
             found.ensure_cache_path()
         return found
 

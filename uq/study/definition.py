@@ -19,7 +19,7 @@ from uq.study.checks import design_faults, model_faults
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
 from uq.study.reading import parse, shape_faults, sound_entries
-from uq.study.registry import find_model
+from uq.study.registry import find_model, model_at
 from uq.wording import counted
 
 _LONGEST = 1_000_000  # bytes of a study file
@@ -34,7 +34,7 @@ class Study:
     name : str
     model : Model
     model_reference : str
-        By which `uq.study.registry.find_model` finds the model, in another process too.
+        By which `uq.study.registry.model_at` finds the model, in another process too.
     description : str
     design : DesignTable
         method, samples, replicates, units, repeats, second_order, seed, until.
@@ -200,7 +200,7 @@ def study_from_text(
     found = None
     if reference is not None:
         try:
-            found = find_model(reference)
+            found = find_model(reference) if model is None else model_at(model)
         except InputError as error:
             if model is not None:
                 lines += error.lines

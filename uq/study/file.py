@@ -34,6 +34,8 @@ from uq.literals import shown
 from uq.methods.registry import METHODS
 from uq.written import EXAMPLE, SHAPE, Written, read_quantity
 
+_MOST_LISTED = 200  # each is a row of every table
+
 
 def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
     def check(name: str) -> str:
@@ -63,6 +65,8 @@ def _quantity(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
 
 
 def _distinct(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    if len(values) > _MOST_LISTED:
+        raise ValueError(f"has {len(values)} entries (allowed: at most {_MOST_LISTED})")
     for value in values:
         if values.count(value) > 1:
             raise ValueError(f"{shown(value)} is listed twice")
@@ -290,14 +294,17 @@ class DependenceTable(_Table):
     source: str = Field("", description="where the numbers come from")
 
 
+_NearlyAll = Annotated[float, Field(gt=0, le=0.999999999)]  # more needs over 10^9 rows
+
+
 class Tolerance(NamedTuple):
     """A bound that covers a share of all values, with a confidence."""
 
-    coverage: Share
-    confidence: Share
+    coverage: _NearlyAll
+    confidence: _NearlyAll
 
 
-_SHARE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+_SURE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "maximum": 0.999999999}
 
 
 class AnalysisTable(_Table):
@@ -318,7 +325,7 @@ class AnalysisTable(_Table):
         WithJsonSchema(
             {
                 "type": "object",
-                "properties": {"coverage": _SHARE_SCHEMA, "confidence": _SHARE_SCHEMA},
+                "properties": {"coverage": _SURE_SCHEMA, "confidence": _SURE_SCHEMA},
                 "required": ["coverage", "confidence"],
                 "additionalProperties": False,
             }

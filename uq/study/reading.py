@@ -9,8 +9,11 @@ from uq.errors import InputError, nearest, one_line
 from uq.inputs.faults import MISSING, Fault, fault_of, unknown
 from uq.inputs.law import Law
 from uq.inputs.registry import LAWS
+from uq.literals import key as written_key
 from uq.literals import read_toml
 from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
+
+_MOST_ENTRIES = 2_000  # of a table; the time for its faults grows with their square
 
 
 def read_study_text(text: str, source: str = "study") -> StudyFile:
@@ -41,9 +44,15 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
 def parse(text: str, source: str) -> dict[str, Any]:
     """Read TOML; raise `InputError` with the line where it goes wrong."""
     try:
-        return read_toml(text)
+        data = read_toml(text)
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{source}: not valid TOML: {one_line(error)}") from error
+    for name, table in (("", data), *data.items()):
+        if isinstance(table, dict) and len(table) > _MOST_ENTRIES:
+            where = f"[{written_key(name)}]" if name else "it"
+            problem = f"has {len(table)} entries (allowed: at most {_MOST_ENTRIES})"
+            raise InputError(f"{source}: {where} {problem}")
+    return data
 
 
 def shape_faults(data: dict[str, Any]) -> list[Fault]:

@@ -40,8 +40,34 @@ def model_names() -> tuple[str, ...]:
     return tuple(sorted(_entry_points()))
 
 
-def find_model(reference: str) -> Model:
-    """Return a model by its name or, while it is being written, by its place in a package.
+def find_model(name: str) -> Model:
+    """Return an installed model by its name.
+
+    The name may come from a file that somebody sent: nothing but an installed model is ever
+    imported for it, no file read and no address called.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InputError
+        No model of this name is installed, or its package cannot be imported. A broken model does
+        not affect the others.
+    """
+    return _load(_installed(name), f"model '{name}'", None)
+
+
+def model_at(reference: str) -> Model:
+    """Return a model by the reference that a user gave: ``--model``, or an argument in Python.
+
+    It may run code. `tests/test_architecture.py` lists the modules that may import it: those that
+    pass on what a user gave. A name in a file goes to `find_model`.
 
     Parameters
     ----------
@@ -58,8 +84,7 @@ def find_model(reference: str) -> Model:
     Raises
     ------
     InputError
-        There is no such model, or its package cannot be imported. A broken model does not affect
-        the others.
+        There is no such model, or its package cannot be imported.
     """
     if reference.endswith(_MACHINES):
         from uq.outside.machine import machine_of
@@ -93,7 +118,7 @@ def located(reference: str) -> str:
 
 
 def module_of(reference: str) -> str:
-    """Return the full name of the module of a model; see `find_model`."""
+    """Return the full name of the module of a model; see `model_at`."""
     return _point(reference).value.partition(":")[0]
 
 
@@ -108,14 +133,19 @@ def _point(reference: str) -> EntryPoint:
         if os.getcwd() not in sys.path:
             sys.path.append(os.getcwd())
         return EntryPoint(reference, reference, GROUP)
+    return _installed(reference)
+
+
+def _installed(name: str) -> EntryPoint:
+    """Return the place of an installed model."""
     installed = _entry_points()
-    if reference not in installed:
+    if name not in installed:
         names = ", ".join(sorted(installed)) or "none"
         raise InputError(
-            f"no such model '{reference}'{nearest(reference, installed)} (installed: {names};"
+            f"no such model '{name}'{nearest(name, installed)} (installed: {names};"
             " a model of your own is named by its file, for a study with --model FILE)"
         )
-    return installed[reference]
+    return installed[name]
 
 
 def _module_in(file: Path) -> str:
@@ -211,7 +241,7 @@ def made_here(reference: str) -> dict[str, str]:
     Parameters
     ----------
     reference : str
-        As for `find_model`.
+        As for `model_at`.
     """
     return provenance() | {"code": code_of(reference)}
 
@@ -238,7 +268,7 @@ def code_of(reference: str) -> str:
     Parameters
     ----------
     reference : str
-        As for `find_model`.
+        As for `model_at`.
 
     Returns
     -------

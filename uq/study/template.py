@@ -79,7 +79,7 @@ def template(model: Model, reference: str = "") -> str:
                     "outputs": list(outputs),
                     "tolerance": {"coverage": 0.95, "confidence": 0.95},
                     "thresholds": {numbers[0]: 1.0},
-                    "sensitivity": ["rbd-fast"],
+                    "sensitivity": ["first-order"],
                 },
             ),
             "",

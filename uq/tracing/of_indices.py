@@ -14,6 +14,7 @@ from uq.keys import Json, Options, Path
 from uq.methods.registry import METHODS
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import one_of_each_sample
+from uq.rows.ranked import ranked_rows
 from uq.tracing.citations import Citation, cited
 from uq.tracing.origin import Origin
 
@@ -29,7 +30,7 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     """Return where an index comes from."""
     if regime := options.get("regime"):
         ds = within_regime(ds, regime)
-    rows = one_of_each_sample(ds)
+    rows = one_of_each_sample(ranked_rows(ds))
     by = (estimator_of(said["method"], *path[2:3]),)
     if path[0] != "outputs":
         return Origin(by, rows)

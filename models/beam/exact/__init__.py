@@ -14,7 +14,7 @@ Reading order; a module imports only those above it:
 """
 
 from models.beam.exact.one_beam import CLOCK
-from models.beam.exact.propagator import advance, monodromy, start
+from models.beam.exact.propagator import advance, monodromy, speeds, start
 from models.beam.exact.systems import finer, groups
 
-__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "start"]
+__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "speeds", "start"]

@@ -9,7 +9,7 @@ from models.beam.exact.events import (
     scratch,
     site_of,
 )
-from models.beam.exact.tip_bounds import tip_at
+from models.beam.exact.tip_bounds import tip_after
 from models.beam.exact.within_phase import join
 from models.beam.structure.interpolation import COEFFICIENTS, REACH, set_phasors
 from models.beam.structure.modal import Array
@@ -27,13 +27,14 @@ def velocities(state: Array) -> Array:
 
 
 @kernel
-def _sample(phase, weight, power, theta, until, trace):
+def _sample(phase, weight, power, theta, until, trace, of_speeds):
     """Set the part of a period's trace after theta, up to `until`."""
     step = 2 * math.pi / len(trace)
     for k in range(len(trace)):
         at = min((k + 1) * step, 2 * math.pi)
         if theta < at <= until:
-            trace[k] = tip_at(phase, weight, at - theta, power)
+            tip = tip_after(phase, weight, len(phase.speed), at - theta, power)
+            trace[k] = tip.v if of_speeds else tip.x
 
 
 @kernel
@@ -50,12 +51,11 @@ def _tip(phase, y, theta):
 
 
 @kernel
-def advance_beam(free, contact, samples, state, gaps, growth, record):
-    """Advance one beam over the periods of its record.
+def advance_beam(free, contact, samples, state, gaps, growth, record, of_speeds):
+    """Advance one beam over the periods of its record, whose trace is of the tip or its speed.
 
     `samples` are those of the response to a random load, as `set_stretches` sets them; empty
-    without
-    one.
+    without one.
     """
     work, strobe, peak, trace = record
     y, owed = state[:CLOCK], state[OWED:]
@@ -90,14 +90,8 @@ def advance_beam(free, contact, samples, state, gaps, growth, record):
                     return
                 until = theta + event.after if event.after < to_end else end
                 if steps:
-                    _sample(
-                        phase,
-                        room.weight,
-                        room.power,
-                        theta,
-                        until,
-                        trace[period * steps :][:steps],
-                    )
+                    part = trace[period * steps :][:steps]
+                    _sample(phase, room.weight, room.power, theta, until, part, of_speeds)
                 join(phase, room.coefficient, event.after, room.power, y)
                 theta, site = until, event.site
         strobe[period] = _tip(free, y, 2 * math.pi)

@@ -51,13 +51,38 @@ def advance(
     `models.beam.exact.events.EVALUATIONS_PER_PERIOD`.
     """
     record = Record.empty(len(state), periods, system.steps if trace else 0)
+    _advance(system, state, gaps, growth, record, False)
+    return record
+
+
+def speeds(system: System, state: Array, gaps: Array, trace: Array) -> Array:
+    """Return the tip's dx/d(Omega t) at each sample of traces, shape (n, samples).
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 3)
+        At the start of the traces; not changed.
+    gaps : ndarray, shape (n, 2)
+        Constant.
+    trace : ndarray, shape (n, samples)
+        As recorded by `advance`.
+    """
+    record = Record.empty(len(state), trace.shape[1] // system.steps, system.steps)
+    _advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), record, True)
+    return record.trace
+
+
+def _advance(
+    system: System, state: Array, gaps: Array, growth: Array, record: Record, of_speeds: bool
+) -> None:
+    """Advance n beams over the periods of their record."""
     for i, (free, contact) in enumerate(system.phases):
         row = Record(*(a[i] for a in record))
         if system.beams.load[i]["power"] > 0:
-            _advance_random(system, i, state[i], gaps[i], growth[i], row)
+            _advance_random(system, i, state[i], gaps[i], growth[i], row, of_speeds)
         else:
-            advance_beam(free, contact, np.empty(0), state[i], gaps[i], growth[i], row)
-    return record
+            advance_beam(free, contact, np.empty(0), state[i], gaps[i], growth[i], row, of_speeds)
 
 
 def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
@@ -73,7 +98,13 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
 
 
 def _advance_random(
-    system: System, row: int, state: Array, gaps: Array, growth: Array, record: Record
+    system: System,
+    row: int,
+    state: Array,
+    gaps: Array,
+    growth: Array,
+    record: Record,
+    of_speeds: bool,
 ) -> None:
     """Advance one beam under a random load, from one stretch of it to the next."""
     b, load = system.beams, system.beams.load[row]
@@ -102,6 +133,6 @@ def _advance_random(
             record.peak,
             record.trace[done * steps : until * steps],
         )
-        free, contact = system.phases[row]
-        advance_beam(free, contact, samples[stretch % 2, first:last], state, gaps, growth, part)
+        here = samples[stretch % 2, first:last]
+        advance_beam(*system.phases[row], here, state, gaps, growth, part, of_speeds)
         done = until

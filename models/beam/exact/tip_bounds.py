@@ -79,12 +79,6 @@ def tip_after(phase, weight, live, s, power):
 
 
 @kernel
-def tip_at(phase, weight, s, power):
-    """Return the tip's displacement after the time s."""
-    return tip_after(phase, weight, len(phase.speed), s, power).x
-
-
-@kernel
 def parabola(distance, closing, bound):
     """Return the first time h at which distance - closing h - bound h^2/2 is zero."""
     square = closing * closing + 2 * bound * distance

@@ -60,7 +60,7 @@ def bifurcation_diagram(
     gaps = initial_gaps(p)
     work, regime, period = blank(len(frequency))
     impacts: list[Array] = [np.empty(0)] * len(frequency)
-    for rows, settled, record in settled_rows(p, gaps, settings, sweep, periods):
+    for rows, settled, record, _ in settled_rows(p, gaps, settings, sweep, periods):
         work[rows], regime[rows], period[rows] = settled.work, settled.regime, settled.period
         steps = record.trace.shape[1] // periods
         for row, trace in zip(rows, record.trace, strict=True):

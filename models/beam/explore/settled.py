@@ -42,7 +42,7 @@ def work_rate_against_gap(
     apart = _gaps(gaps)
     p = equal_rows(params, len(apart))
     work, regime, period = blank(len(apart))
-    for rows, settled, _ in settled_rows(p, apart / params.initial_gap, settings, sweep, 0):
+    for rows, settled, *_ in settled_rows(p, apart / params.initial_gap, settings, sweep, 0):
         work[rows], regime[rows], period[rows] = settled.work, settled.regime, settled.period
     w0 = beams(equal_rows(params, 1), settings).frequency[0, 0]
     return dataset(
@@ -96,13 +96,12 @@ def phase_portrait(
     p = equal_rows(params, len(apart))
     _, regime, _ = blank(len(apart))
     x, v = np.empty((2, len(apart), 0))
-    for rows, settled, record in settled_rows(p, apart / x0, settings, sweep, periods + 2):
-        steps = record.trace.shape[1] // (periods + 2)
+    for rows, settled, record, speed in settled_rows(p, apart / x0, settings, sweep, periods + 1):
+        steps = record.trace.shape[1] // (periods + 1)
         if not x.size:
             x, v = np.full((2, len(apart), periods * steps), np.nan)
-        # The periods at both ends are only for the differences.
-        kept = slice(steps - 1, -steps - 1)
-        rate = np.gradient(record.trace, 1 / (params.forcing_frequency * steps), axis=1)
+        kept = slice(steps - 1, -1)  # from phase 0
+        rate = 2 * np.pi * params.forcing_frequency * speed
         x[rows], v[rows] = x0 * record.trace[:, kept], x0 * rate[:, kept]
         regime[rows] = settled.regime
     return dataset(

@@ -16,7 +16,7 @@ from models.beam.structure.modal import Array, beams
 from models.beam.structure.propagation import Record
 
 Sweep = Literal["none", "up", "down"]
-Settled = tuple[NDArray[np.intp], Response, Record]
+Settled = tuple[NDArray[np.intp], Response, Record, Array]
 
 
 def settled_rows(
@@ -31,6 +31,8 @@ def settled_rows(
     settled : Response
     record : Record
         Of the further periods.
+    speed : ndarray
+        The tip's dx/d(Omega t) along its trace.
 
     Raises
     ------
@@ -44,10 +46,11 @@ def settled_rows(
     b = beams(p, settings)
     propagator = PROPAGATORS[settings.propagator] if sweep == "none" else exact
 
-    def look(system: Any, state: Array, at: Array) -> tuple[Response, Record]:
+    def look(system: Any, state: Array, at: Array) -> tuple[Response, Record, Array]:
         settled = settle(propagator, system, state, at)
-        still = np.zeros_like(at)
-        return settled, propagator.advance(system, state, at.copy(), still, periods, trace=True)
+        begin, still = state.copy(), np.zeros_like(at)
+        record = propagator.advance(system, state, at.copy(), still, periods, trace=True)
+        return settled, record, propagator.speeds(system, begin, at, record.trace)
 
     for rows, system in propagator.groups(b, settings):
         state = initial_state(propagator, system, Params._make(field[rows] for field in p))

@@ -10,11 +10,13 @@ Reading order; a module imports only those above it:
     steps         the hot loop: modes, contact force, impact work
     tangents      the tangent flow along a known trajectory
     propagator    many beams over whole forcing periods
+    speeds        the velocity along a known trajectory
 """
 
 from models.beam.lanes.layout import CLOCK
 from models.beam.lanes.propagator import advance, monodromy
+from models.beam.lanes.speeds import speeds
 from models.beam.lanes.states import finer, start
 from models.beam.lanes.systems import groups
 
-__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "start"]
+__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "speeds", "start"]

@@ -8,4 +8,5 @@ Reading order; a module imports only those above it:
     settling               from a start to the settled response
     step_error             the error of the fast propagator's steps
     neighbouring_starts    the error of aperiodic responses, from neighbouring starts
+    further_starts         coexisting responses, from starts anywhere
 """

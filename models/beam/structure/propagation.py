@@ -142,5 +142,19 @@ class Propagator(propagator.Propagator, Protocol):
         Record
         """
 
+    def speeds(self, system: Any, state: Array, gaps: Array, trace: Array, /) -> Array:
+        """Return the tip's dx/d(Omega t) at each sample of traces, shape (n, samples).
+
+        Parameters
+        ----------
+        system : System
+        state : ndarray, shape (n, k)
+            At the start of the traces, at phase 0 of the force; not changed.
+        gaps : ndarray, shape (n, 2)
+            Constant.
+        trace : ndarray, shape (n, samples)
+            As recorded by `advance`.
+        """
+
     def monodromy(self, system: Any, state: Array, gaps: Array, periods: int, /) -> Array:
         """Return the derivative of the state, shape (n, k, k), from phase 0 at constant gaps."""

@@ -49,14 +49,21 @@ def flow(i, life, out, now, grown, nearing, regime, spacing):
 
 @inlined
 def _end_block(i, life):
-    """Add the error of a block: as of a step over which the rate jumps."""
+    """Add the error of a block: as of a step over which the rate jumps.
+
+    A site that is not touched waits for the other: its clock has the other's error.
+    """
     time = life.block[i, 2]
     for s in range(2):
         grown = life.block[i, s]
         inverse = time / grown if grown > 0 else 0.0
+        life.error[i, s] = 0.0
         if inverse > 0 and life.block_inverse[i, s] > 0:
-            error = min(time, grown * abs(inverse - life.block_inverse[i, s]) / 2)
-            life.flow_error[i, s] += error**2
+            life.error[i, s] = min(time, grown * abs(inverse - life.block_inverse[i, s]) / 2)
         life.block_inverse[i, s] = inverse
+    for s in range(2):
+        waits = life.block[i, s] <= 0
+        error = life.error[i, 1 - s] if waits else life.error[i, s]
+        life.flow_error[i, s] += error**2
     for k in range(4):
         life.block[i, k] = 0.0

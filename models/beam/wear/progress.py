@@ -15,6 +15,7 @@ STEP_FACTOR, FLOW_FACTOR = 3.0, 11.0  # half-width of the 90 % interval over the
 STEPPING, HOLDING, FLOWING, OVER = range(4)
 ONWARD, KEEP, BACK = range(3)  # verdicts, see `models.beam.wear.rounds.judge`
 FIRST_STEP, SMALLEST_STEP = 0.14, 1e-3  # relative growth of a gap
+_PART = 0.25  # of a gap that grows until the other stop is met
 
 
 class Progress(NamedTuple):
@@ -188,10 +189,11 @@ class Worn(NamedTuple):
 @inlined
 def wear_on(i, life, out, time, growth, rate, spacing):
     """Let a time pass in which the gaps of beam i grow to a given rate of wear."""
+    unit = scale(i, life, out)
     for depth in range(life.growths.shape[1]):
         _note_crossings(i, life, out, depth, time, growth, rate)
     note_depths(i, life, out, time, growth, rate)
-    extent = np.log1p(max(growth[0], growth[1], 0.0) / scale(i, life))
+    extent = np.log1p(max(growth[0], growth[1], 0.0) / unit)
     first = int(life.distance[i] / spacing)
     for look in range(first, out.history.regime.shape[1]):
         part = ((look + 1) * spacing - life.distance[i]) / extent if extent > 0 else np.inf
@@ -205,17 +207,31 @@ def wear_on(i, life, out, time, growth, rate, spacing):
 
 
 @inlined
-def scale(i, life):
-    """Return the growth that counts as a relative growth of one."""
-    return max(life.grown[i, 0], life.grown[i, 1]) + life.growths[i, 0] / 2
+def scale(i, life, out):
+    """Return the growth that counts as a relative growth of one.
+
+    While a stop that is not met waits for the other, which has reached the last growth, it is at
+    least a part of the other's gap: it may be far more than its growth so far.
+    """
+    size = max(life.grown[i, 0], life.grown[i, 1]) + life.growths[i, 0] / 2
+    site = control(i, life, out)
+    if out.reached[i, site, -1]:
+        size = max(size, _PART * (life.initial[i, site] + life.grown[i, site]))
+    return size
 
 
 @inlined
 def control(i, life, out):
-    """Return the site that wears fastest among those that have not reached the last growth."""
+    """Return the site that wears fastest among those that have not reached the last growth.
+
+    If none of these wears, it is the other one: only as its gap widens can it be seen whether they
+    ever will.
+    """
     last = life.growths.shape[1] - 1
     right = 0.0 if out.reached[i, 0, last] else life.rate[i, 0]
     left = 0.0 if out.reached[i, 1, last] else life.rate[i, 1]
+    if right <= 0.0 and left <= 0.0:
+        right, left = life.rate[i, 0], life.rate[i, 1]
     return 0 if right >= left else 1
 
 

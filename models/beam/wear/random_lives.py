@@ -89,12 +89,14 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
 
     The faster of the unfinished sites advances to its next grid point; the grid is finer at small
     growth. A finished site may be very much faster still: its growth, plus the last depth, at most
-    doubles.
+    doubles. It advances itself where the unfinished one is not touched.
     """
     head_start = growths[:, :1] / 2
     whole = log1p(growths[:, -1:] / head_start)
     unfinished = grown < growths[:, -1:] * (1 - 1e-9)
     control = np.where(unfinished, rate, 0.0)
+    waiting = unfinished.any(axis=1) & ~(control > 0).any(axis=1)
+    control[waiting] = rate[waiting]
     fast = control.argmax(axis=1)[:, None]
     here, top = (np.take_along_axis(a, fast, axis=1) for a in (grown, control))
     point = log1p(here / head_start) / whole * INCREMENTS

@@ -63,12 +63,12 @@ def plan(left, life, out, here, state, kept, before, clock, pace, growth):
         site = control(i, life, out)
         fastest = max(rate[0], rate[1])
         wide = np.expm1(life.step[i]) if life.mode[i] == STEPPING else pace
-        wide *= scale(i, life)
+        wide *= scale(i, life, out)
         if life.mode[i] == STEPPING:
             # A change of branch ahead is approached by halves.
             wide = min(wide, (life.change_at[i] - life.grown[i, site]) / 2)
-            wide = max(wide, SMALLEST_STEP * scale(i, life))
-            state[j, FIRST_MODE] += _PUSH * min(1.0, wide / (FIRST_STEP * scale(i, life)))
+            wide = max(wide, SMALLEST_STEP * scale(i, life, out))
+            state[j, FIRST_MODE] += _PUSH * min(1.0, wide / (FIRST_STEP * scale(i, life, out)))
         time = min(wide / rate[site], _WIDEST * wide / fastest) if rate[site] > 0 else 0.0
         if life.mode[i] != HOLDING:
             life.span[i] = time

@@ -65,7 +65,7 @@ def hold(i, life, out, now, grown, period, nearing, regime, accuracy, largest, s
     smooth = orbital and regime == life.regime[i] and _is_even(i, life, out, now, grown)
     error = _step_error(i, life, out, now, grown, _SMOOTH if smooth else 1.0)
     planned = life.rate[i, site] * life.span[i]
-    divisible = planned > 1.5 * SMALLEST_STEP * scale(i, life) and not was_last(
+    divisible = planned > 1.5 * SMALLEST_STEP * scale(i, life, out) and not was_last(
         i, life, out, now, grown
     )
     if error > _TIGHT * accuracy and divisible and settled:
@@ -111,16 +111,38 @@ def _expected(i, life, site, grown):
 
 
 @inlined
+def _counts(i, life, out, site):
+    """Return whether a life still to be found depends on the rate of a site."""
+    return not out.reached[i, site, -1] or site == control(i, life, out)
+
+
+@inlined
+def _is_met(i, life, out, site, now):
+    """Return whether a site whose life is still to be found is first touched in a step."""
+    return life.rate[i, site] <= 0 and now[site] > 0 and not out.reached[i, site, -1]
+
+
+@inlined
 def _is_even(i, life, out, now, grown):
     """Return whether no rate has changed so much that it may have jumped."""
     even = True
     for s in range(2):
-        if grown[s] > 0 and life.rate[i, s] > 0 and not out.reached[i, s, -1]:
+        if grown[s] > 0 and life.rate[i, s] > 0 and _counts(i, life, out, s):
             change = abs(
                 life.rate[i, s] * _expected(i, life, s, grown[s]) - life.rate[i, s] / now[s]
             )
             even &= change <= _JUMP
+        even &= not _is_met(i, life, out, s, now)
     return even
+
+
+@inlined
+def _goal(i, life, out, site):
+    """Return the first growth that a site has not reached, or the first if there is none."""
+    for depth in range(life.growths.shape[1]):
+        if not out.reached[i, site, depth]:
+            return life.growths[i, depth]
+    return life.growths[i, 0]
 
 
 @inlined
@@ -129,26 +151,33 @@ def _step_error(i, life, out, now, grown, factor):
 
     If the rate jumps somewhere on the way, the error of the trapezoidal rule is up to half the
     difference of the inverse rates times the step. Where the rate is smooth, its deviation from the
-    extrapolated one takes the place of the difference, and the error is a fraction of this.
+    extrapolated one takes the place of the difference, and the error is a fraction of this. A site
+    that is not touched waits for the other: its clock has the other's error. If it is first touched
+    in this step, it may be so anywhere on the way.
     """
     largest = 0.0
     for s in range(2):
         rate = life.rate[i, s]
         life.error[i, s] = 0.0
-        if grown[s] <= 0 or rate <= 0 or out.reached[i, s, -1]:
+        if grown[s] <= 0 or rate <= 0 or not _counts(i, life, out, s):
             continue
         expected = _expected(i, life, s, grown[s])
-        goal = life.growths[i, 0]
-        for depth in range(life.growths.shape[1]):
-            if not out.reached[i, s, depth]:
-                goal = life.growths[i, depth]
-                break
+        goal = _goal(i, life, out, s)
         whole = life.clock[i] + max(grown[s], goal - life.grown[i, s]) / rate
         error = whole
         if now[s] > 0:
             error = min(whole, factor * grown[s] * abs(1 / now[s] - expected) / 2)
         life.error[i, s] = error
-        largest = max(largest, error / whole)
+        if not out.reached[i, s, -1]:
+            largest = max(largest, error / whole)
+    for s in range(2):
+        if life.rate[i, s] <= 0 and not out.reached[i, s, -1]:
+            life.error[i, s] = life.error[i, 1 - s]
+        if _is_met(i, life, out, s, now):
+            missing = _goal(i, life, out, s) - life.grown[i, s]
+            whole = life.clock[i] + life.span[i] + missing / now[s]
+            life.error[i, s] += life.span[i] / 2
+            largest = max(largest, life.error[i, s] / whole)
     return largest
 
 

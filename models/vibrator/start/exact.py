@@ -41,7 +41,8 @@ _LOOKING = 10  # overhead of a look, in steps
 _NEAR = 0.03  # of the orbit's disphasing angle: certain to stay there [rad]
 _ALIKE = 0.01  # of the orbit's speed, likewise
 _STEADY = 0.02  # range of the disphasing angle in a look below which a search is worth while [rad]
-_LOCKED = 0.2  # range in the last second below which motors are locked [rad]
+_LOCKED = 0.2  # range in the last second below which an orbit is searched for [rad]
+_UNSURE = 1e-6  # error of a multiplier by central differences
 
 
 def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
@@ -120,7 +121,7 @@ def _search(
     slowest = CAPTURED_BELOW * max(m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2)
     for near in (guess, anchored(machine, state, tolerance)):
         orbit = None if near is None else find_orbit(machine, near, tolerance)
-        if orbit and orbit.multiplier < 1 and 2 * np.pi / orbit.period >= slowest:
+        if orbit and orbit.multiplier < 1 - _UNSURE and 2 * np.pi / orbit.period >= slowest:
             return orbit
     return None
 
@@ -189,18 +190,14 @@ def _describe(seen: Measures, track: Track, out: Outcome) -> None:
 
 
 def _describe_last_second(m: System, track: Track, out: Outcome) -> bool:
-    """Set the outcome of a machine on no orbit; return whether its motors are locked."""
+    """Set the outcome of a machine on no orbit; return whether its motors may have locked."""
     states = track.last()
     seen = measure(m, states, track.interval)
     _describe(seen, track, out)
     top_1, top_2 = m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2
     w_1, w_2, top_1, top_2 = np.array([[seen.speed_1], [seen.speed_2], [top_1], [top_2]])
     out.regime[:] = unlocked_regime(w_1, w_2, top_1, top_2)
-    locked = out.regime[0] == ASYNCHRONOUS and np.ptp(_by_turns(states)) < _LOCKED
-    if locked:
-        out.disphasing[:] = wrapped(np.array([seen.disphasing]))
-        out.regime[:] = locked_regime(out.disphasing)
-    return bool(locked)
+    return bool(out.regime[0] == ASYNCHRONOUS and np.ptp(_by_turns(states)) < _LOCKED)
 
 
 def _describe_end(
@@ -218,15 +215,18 @@ def _describe_end(
         return
     if orbit is None or not _approaches(orbit, track):
         orbit = _search(machine, None, state, tolerance)
+    states = track.last()
+    mean = wrapped(np.mean(states[:, 3] - states[:, 4], keepdims=True))
     if orbit is not None and (
-        _approaches(orbit, track)
-        or abs(wrapped(out.disphasing - orbit.measures.disphasing)[0]) < _NEAR
+        _approaches(orbit, track) or abs(wrapped(mean - orbit.measures.disphasing)[0]) < _NEAR
     ):
         _describe_orbit(orbit, track, out)
         return
-    came = track.last_time_off(out.disphasing[0])
-    if came < track.time - LAST:
-        out.synchronisation_time[:] = came
+    # A feed in flight need not repeat every turn: the angle must then have stayed for half the run.
+    came = track.last_time_off(mean[0])
+    if machine.system.feed_mass and came < track.time / 2:
+        out.disphasing[:], out.synchronisation_time[:] = mean, came
+        out.regime[:] = locked_regime(mean)
 
 
 def _describe_unfinished(m: System, track: Track, out: Outcome) -> Status:

@@ -37,7 +37,7 @@ LAST = 1.0  # [s]
 STEPS = 12  # per turn at synchronous speed, unless the machine is stiff
 _CLOSELY = 48  # per turn in the last second, whose extremes are those of the steps
 NEAR = 0.03  # of the expected disphasing angle: the same motion [rad]
-_LOCKED = 0.2  # range of the disphasing angle below which motors are locked [rad]
+_LOCKED = 0.2  # range of the disphasing angle below which an orbit is searched for [rad]
 _LONGEST = 1 << 20  # steps
 
 
@@ -100,7 +100,8 @@ def run_last_second(
         Updated in place.
     settings : Settings
     final : bool
-        Whether this is the last run: locked machines are then recorded as they are.
+        Whether this is the last run: where a machine then locks elsewhere than expected, it is not
+        known when.
 
     Returns
     -------
@@ -130,10 +131,10 @@ def run_last_second(
         low, high = notes[:, ANGLE_LOW], notes[:, ANGLE_HIGH]
         fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
         locked = np.flatnonzero(fast & (high - low < _LOCKED))
+        new = learn(some.take(locked), here[locked], these[locked], known, settings)
         if not final:
-            part_of, at = some.take(locked), these[locked]
-            again[i[locked]] = learn(part_of, here[locked], at, known, settings)
-        locked = locked[~again[i[locked]]]
+            again[i[locked]] = new
+            locked, new = locked[~new], new[~new]
         where, mean = these[locked], wrapped(notes[locked, ANGLE])
         target = known.disphasing[where]
         with np.errstate(invalid="ignore"):
@@ -143,16 +144,13 @@ def run_last_second(
             ]
             near = np.abs(wrapped(mean - target)) < NEAR
             coming = known.found[where] & ~near & (off[1] < off[0])
-        there = near | coming | final
-        # Locked, but on no orbit found: use the means of the last second.
-        known.found[where[~there]] = False
-        known.disphasing[where[~there]] = mean[~there]
-        again[i[locked[~there]]] = True
-        out.disphasing[where[there]] = mean[there]
-        out.regime[where[there]] = locked_regime(mean[there])
+        # On its way to no stable orbit: a slow slip, or a synchronous motion that is unstable.
+        there = known.found[where] & (near | coming)
+        out.regime[where[there]] = locked_regime(known.disphasing[where[there]])
         late = time[i[locked]] + LAST
-        out.synchronisation_time[where[there]] = np.where(coming, late, inside[locked])[there]
-        out.censored[where[coming]] = True
+        unknown = coming | new
+        out.synchronisation_time[where[there]] = np.where(unknown, late, inside[locked])[there]
+        out.censored[where[there & unknown]] = True
         describe(some.take(locked[there]), known.take(where[there]), out, where[there])
     return again
 

@@ -20,6 +20,8 @@ from models.vibrator.theory import averaged
 STEPS = 24  # of the orbit, unless the machine is stiff
 LADDER = tuple(base << k for k in range(7) for base in (24, 36))
 ACCURATE = 3e-7  # estimated error of the angle above which steps are halved [rad]
+_CLOSE_TO_1 = 2e-3  # multipliers that the length of the steps may carry across 1
+_ROUNDING = 1e-8  # of a multiplier
 _FINE = 16  # points per step among which extremes are sought
 
 
@@ -108,7 +110,26 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
         rows = rows[inaccurate & (steps == 0) & (2 * rung[rows] <= LADDER[-1])]
         state[rows], period[rows] = known.orbits.state[rows], known.orbits.period[rows]
         rung[rows] *= 2
+    _confirm(machines, known, np.flatnonzero(wanted))
     return known
+
+
+def _confirm(machines: Machines, known: Known, rows: NDArray[np.intp]) -> None:
+    """Decide by twice as many steps whether orbits with a multiplier close to 1 are stable.
+
+    The difference of the two multipliers bounds the error of the later one.
+    """
+    orbits = known.orbits
+    with np.errstate(invalid="ignore"):
+        rows = rows[orbits.found[rows] & (np.abs(orbits.multiplier[rows] - 1) < _CLOSE_TO_1)]
+    for count in np.unique(known.steps[rows]).tolist():
+        close = rows[known.steps[rows] == count]
+        fine = _search(machines, close, orbits.state, orbits.period, 2 * count)
+        error = np.abs(fine.orbits.multiplier - orbits.multiplier[close])
+        sure = fine.found & (fine.orbits.multiplier + np.maximum(error, _ROUNDING) < 1)
+        new = sure & ~known.found[close]
+        known.learn(close[new], fine.take(new))
+        known.found[close[~sure]], known.disphasing[close[~sure]] = False, np.nan
 
 
 def _search(

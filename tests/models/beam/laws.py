@@ -46,9 +46,9 @@ def system(n):
     return SimpleNamespace(free_reach=np.full(n, 1.5), beams=beams, take=lambda rows: system(n))
 
 
-def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1, instants=None):
+def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1, instants=None, initial=(1.0, 1.0)):
     """Return the lives of n beams that have settled to the law's work at their initial gaps."""
-    gaps = np.ones((n, 2))
+    gaps = np.tile(initial, (n, 1))
     return wear_down(
         law,
         system(n),

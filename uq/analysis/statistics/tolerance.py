@@ -5,6 +5,8 @@ from dataclasses import replace
 from math import isnan
 from typing import Any
 
+import numpy as np
+
 from uq import json_form
 from uq.analysis.life_quantiles import whenever_censored_rows_end
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
@@ -21,7 +23,10 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 
 
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield both one-sided bounds and the rows they need; failed rows count as the worst."""
+    """Yield both one-sided bounds and the rows they need; failed rows count as the worst.
+
+    Of an angle, whose sign is only a direction, also the upper bound of the magnitude.
+    """
     asked = context.analysis.tolerance
     if asked is None or context.replicate is not None or context.weights is not None:
         return
@@ -34,11 +39,15 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     coverage, confidence = (f"{100 * share:g}" for share in asked)
     listing = Listing(
         f"Tolerance bounds: with {confidence} % confidence each, {coverage} % of all lie above the"
-        f" lower, and {coverage} % below the upper",
+        f" lower, and {coverage} % below the upper" + ", or the magnitude's" * element.is_angle,
         keeps_empty=True,
     )
     bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
-    for name, found in (("lower", lower), ("upper", upper)):
+    bounds = {"lower": lower, "upper": upper}
+    if element.is_angle:
+        largest = tolerance_bounds(np.abs(element.at_most), failed, *asked)[1]
+        bounds["magnitude"] = Estimate(largest)
+    for name, found in bounds.items():
         yield Statistic(
             ("tolerance", name),
             f"tolerance, {name}",

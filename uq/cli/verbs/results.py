@@ -109,6 +109,7 @@ def summary(
     from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
+    from uq.cli.altered import warn_if_altered
     from uq.cli.printing import print_json
     from uq.conclusions.answer import conclude
     from uq.conclusions.as_json import answer_json
@@ -119,15 +120,18 @@ def summary(
     answered = regime is None and not plain  # the answer is that of all rows
     if answered and not (fits or json):
         tables.show_findings(findings)
+        warn_if_altered(result)
         return
     asked = regime is not None or fits or plain
     found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
     if not json:
         tables.show_summary(ds, found)
+        warn_if_altered(result)
         return
     answer = {"answer": answer_json(conclude(findings))} if answered else {}
     between = boundary_json(findings.boundary) if answered else {}
     print_json(summary_json(found) | between | answer)
+    warn_if_altered(result)
 
 
 def sensitivity(
@@ -271,11 +275,13 @@ def report(
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one self-contained page with everything."""
+    from uq.cli.altered import warn_if_altered
     from uq.report import page, write_report
     from uq.report.dossier import dossier as in_order
 
     path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
     write_report(result, path, in_order if dossier else page)
+    warn_if_altered(result)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
         print("no browser found; open this file yourself", file=sys.stderr)

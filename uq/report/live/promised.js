@@ -19,7 +19,7 @@ function promisedOf(rows) {
       const bound = yield* endOf(reweighting, column, one), before = known.get(one);
       const why = column.states.includes(FAILED) ? "too many rows failed, or" : "";
       sentences.push(...(isFinite(bound) && !(column.life && bound <= 0)
-        ? [`${one.then} `, said(column, one, bound), "; as studied, by the same estimate, ", said(column, one, before), "."]
+        ? [`${one.then} `, said(column, one, bound), "; as studied, ", said(column, one, before), "."]
         : [["What could then be promised is not known:", why, "too few rows carry it."].filter(Boolean).join(" ")]));
     }
     element.replaceChildren(...sentences);

@@ -1,0 +1,147 @@
+"""Shares that inputs explain alone, of plain samples: no bias, and intervals that cover."""
+
+import re
+
+import numpy as np
+import pytest
+from answered import numbers_in
+from computed import asking, linear, with_output
+from scipy import special
+from scipy.stats import qmc
+
+from uq.conclusions.answer import answer
+from uq.conclusions.as_json import answer_json
+from uq.designs.registry import DESIGNS
+from uq.indices.sensitivities import methods
+from uq.methods.indices import S1
+from uq.methods.registry import METHODS, fed_by
+from uq.methods.sample import Sample
+
+REPETITIONS = 40
+
+
+def shares_of(y, replicate=None, **inputs):
+    """Return the indices by the method that a plain sample feeds by default."""
+    more = {} if replicate is None else {"replicate": replicate}
+    sample = Sample.plain(np.asarray(y, float), inputs, **more)
+    return METHODS[fed_by(DESIGNS["monte-carlo"])[0]].indices(sample)
+
+
+def wear(u):
+    return -0.5 * special.ndtri(u[:, 0]) + 0.1 * special.ndtri(u[:, 1]), 25 / 26
+
+
+def defect(u):
+    """In 3 % of the rows something breaks that explains 60 % of the variance."""
+    size = np.sqrt(0.09 * 1.5 / (0.03 * 0.97))
+    y = -size * (u[:, 0] < 0.03) + 0.3 * special.ndtri(u[:, 1])
+    return y, 0.6
+
+
+def hump(u):
+    a, b = special.ndtri(u[:, 0]), special.ndtri(u[:, 1])
+    return -(a**2) + 0.6 * b, 2 / 2.36
+
+
+def step(u):
+    return (u[:, 0] > 0.1) + u[:, 1], 0.09 / (0.09 + 1 / 12)
+
+
+@pytest.mark.parametrize(
+    ("function", "within"), [(wear, 0.002), (defect, 0.04), (hump, 0.02), (step, 0.02)]
+)
+def test_a_share_is_without_bias_and_its_interval_covers(function, within):
+    """Random balance gives 0.948, 0.31, 0.73 and 0.46 instead of 0.962, 0.6, 0.85 and 0.52."""
+    found, held = [], []
+    for seed in range(REPETITIONS):
+        u = np.random.default_rng(seed).random((1000, 2))
+        y, truth = function(u)
+        one = shares_of(y, a=u[:, 0], b=u[:, 1]).values[S1]["a"]
+        found.append(one.value)
+        held += [one.low <= truth <= one.high] if one.has_interval else []
+    assert np.mean(found) == pytest.approx(truth, abs=within)
+    assert len(held) >= REPETITIONS // 2 and np.mean(held) > 0.85
+
+
+def test_values_that_rows_share_show_the_variance_that_is_left_exactly():
+    rng = np.random.default_rng(0)
+    x, y = rng.integers(0, 4, 400).astype(float), rng.normal(size=400)
+    y += np.array([3.0, 0.0, 1.0, 7.0])[x.astype(int)]
+    from uq.methods.residual_variance import residual_variance
+
+    within = sum((x == k).mean() * y[x == k].var(ddof=1) for k in range(4))
+    shuffled = rng.permutation(400)
+    for order in (np.arange(400), shuffled):
+        left = residual_variance(x[order], y[order, None]).variance
+        assert left == pytest.approx(within, rel=1e-12)
+
+
+def test_an_index_that_rests_on_few_rows_has_no_interval_and_leads_nothing():
+    rng = np.random.default_rng(3)
+    broken, b = rng.permutation(300) < 5, rng.normal(size=300)
+    a = np.where(broken, 0.01 * rng.random(300), 0.05 + rng.random(300))
+    ds = linear(samples=300)
+    ds = ds.assign(
+        {name: ("sample", column, ds[name].attrs) for name, column in (("x1", a), ("x2", b))}
+    )
+    ds = asking(with_output(ds, "y", np.exp(0.2 * b - 1.0 * broken), "lifetime"), outputs=["y"])
+    ranking = answer(ds).lead.ranking
+    assert ranking.leader is None and ranking.rows_factor > 1
+    assert re.search(r"its error rests on about \d rows; 20 are needed", ranking.sentence)
+
+
+def test_rows_of_a_sequence_are_compared_between_replicates():
+    """Neighbours in one Sobol' sequence differ more than independent rows: 0.06 too low."""
+    found = []
+    for seed in range(12):
+        u = np.vstack([qmc.Sobol(4, seed=8 * seed + k).random(64) for k in range(8)])
+        y, part = u @ np.array([1.0, 2.0, 3.0, 4.0]), np.repeat(np.arange(8), 64)
+        one = shares_of(y, part, a=u[:, 0], d=u[:, 3]).values[S1]["d"]
+        assert one.low < 16 / 30 < one.high
+        found.append(one.value)
+    assert np.mean(found) == pytest.approx(16 / 30, abs=0.02)
+
+
+def test_one_replicate_has_no_interval():
+    ds = linear("sobol", samples=128)
+    found = shares_of(ds["y"].values, ds["replicate"].values, x4=ds["x4"].values)
+    assert not found.values[S1]["x4"].has_interval and found.nulls
+    assert found.notes[0].startswith("the rows of one replicate depend on each other")
+
+
+def product(of_pair):
+    """Return log life = a b + 0.3 c + 0.05 e of normal inputs: ST of a and b is 0.92."""
+    a, b, c, e = np.random.default_rng(5).normal(size=(4, 3000))
+    ds = linear(samples=3000)
+    columns = zip(("x1", "x2", "x3", "x4"), (a, b, c, e), strict=True)
+    ds = ds.assign({name: ("sample", column, ds[name].attrs) for name, column in columns})
+    ds = with_output(ds, "life", np.exp(of_pair(a * b) + 0.3 * c + 0.05 * e), "lifetime")
+    return asking(ds, outputs=["life"])
+
+
+@pytest.mark.parametrize("of_pair", [np.array, np.sign])
+def test_what_leads_alone_is_called_so_and_what_is_beyond_single_inputs_stated(of_pair):
+    """Polynomials do not represent the sign of a product: the design that shows it is named."""
+    found = answer(product(of_pair))
+    ranking = found.lead.ranking
+    assert ranking.sentence.startswith("x3 alone contributes most: ")
+    assert ranking.contributions[0].inputs == ("x3",) and ranking.may_be_overturned
+    said = answer_json(found)["quantities"]["life"]["ranking"]
+    assert said["unexplained"]["value"] == pytest.approx(0.91, abs=0.06)
+    *_, text = ranking.sentence.split("No single input explains ")
+    assert numbers_in(text)[0] == round(100 * said["unexplained"]["value"])
+    if of_pair is np.sign:
+        assert "interactions could change the order; a 'saltelli' design shows them." in text
+    else:
+        assert list(said["totals"])[:2] in (["x1", "x2"], ["x2", "x1"])
+        assert said["totals"]["x1"] == pytest.approx(0.92, abs=0.06)
+    assert not any(one.rule in ("measure", "source") for one in found.advice)
+
+
+def test_random_balance_is_a_method_by_name_and_ranks_nothing():
+    ds = linear(samples=400)
+    assert methods(ds) == ("first-order",)
+    asked = asking(ds, outputs=["y"], sensitivity=["rbd-fast"])
+    assert methods(asked) == ("rbd-fast",)
+    assert answer(asked).lead.ranking.method == "first-order"
+    assert answer(asked).lead.ranking.contributions == answer(ds).lead.ranking.contributions

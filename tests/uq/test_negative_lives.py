@@ -1,0 +1,49 @@
+"""A negative life is none: its row fails with a sentence. A life of zero is one."""
+
+import numpy as np
+import pytest
+from own_machines import PAD, opened, run_program
+from own_study import own_study
+
+from uq.contract import Status
+
+LATE = """
+import uq
+
+@uq.machine(returns={"life": uq.Returned("s", life=True)})
+def late(stop: float = 5.0):
+    return {"life": %s}
+"""
+STUDY = own_study("late", "stop", lower=1.5, upper=10.0, samples=200)
+
+
+def run(uq, write_function, life):
+    name = write_function(LATE % life, STUDY)
+    ended = uq("run", "own.toml", "--model", name, "-o", "own.nc", "--quiet")
+    return ended, opened()
+
+
+@pytest.mark.parametrize("life", ["stop - 2.0", "uq.censored(stop - 2.0)"])
+def test_a_negative_life_is_a_failed_row(uq, write_function, life):
+    _, ds = run(uq, write_function, life)
+    negative = ds["stop"].values < 2.0
+    assert negative.any()
+    assert (ds["status"].values == np.where(negative, Status.NON_FINITE, Status.OK)).all()
+    assert np.isnan(ds["life"].values[negative]).all()
+    assert "a life cannot be negative" in ds["status"].attrs["example_non_finite"]
+
+
+def test_zero_is_a_life(uq, write_function):
+    _, ds = run(uq, write_function, "max(stop - 2.0, 0.0)")
+    assert (ds["status"] == Status.OK).all() and (ds["life"] == 0).any()
+    for verb in ("summary", "sensitivity", "report"):
+        ended = uq(verb, "own.nc")
+        assert ended.code == 0 and "nan" not in ended.out
+
+
+def test_a_negative_life_of_a_program_is_a_failed_row(uq, write_program):
+    script = "#!/bin/sh\necho 'life = -0.5'\n"
+    text = PAD[: PAD.index("[outputs.pair]")]
+    write_program(script, text)
+    _, ds = run_program(uq)
+    assert "a life cannot be negative" in ds["status"].attrs["example_non_finite"]

@@ -1,0 +1,21 @@
+"""A warning where a result has changed since it was written."""
+
+from pathlib import Path
+
+from uq.cli import streams
+from uq.rows.results import UNREADABLE
+from uq.store.seal import is_intact
+
+_LARGEST = 20_000_000  # bytes: their checksum takes a small part of the time of a summary
+
+
+def warn_if_altered(path: Path) -> None:
+    """Print a line if the checksum of a result is wrong; larger ones are left to `uq verify`."""
+    if path.stat().st_size > _LARGEST:
+        return
+    try:
+        altered = is_intact(path) is False
+    except UNREADABLE:
+        altered = True
+    if altered:
+        streams.complain(f"{path}: has changed since it was written: its checksum is wrong")

@@ -1,0 +1,233 @@
+"""The variance that remains when one input is known, from rows in the order of that input."""
+
+from functools import lru_cache
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Mask
+
+LEAST_LAGS = 8
+"""Fewer lags than this leave the intercept of a parabola too noisy."""
+
+_MOST_LAGS = 100
+_FEWEST_LAGS = 4
+_LEAST_PAIRED = 0.1  # share of the pairs of rows some places apart that are of two replicates
+_FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
+_MOST_NEIGHBOURS = 30
+_JUMP = 16.0  # a squared residual from one side this many times that from the other side
+
+Part = NDArray[np.integer] | None
+"""Independent replicate of each row; None where rows are independent."""
+
+
+class Residual(NamedTuple):
+    """The residual variance, and what its error is estimated from.
+
+    Attributes
+    ----------
+    variance : float
+        Mean of Var(y | x), summed over elements.
+    squares : ndarray, shape (n,)
+        Squared residual of each row, weighted as in the estimate.
+    noise : float
+        n times the variance that pairing rows adds to the mean of these squares.
+    excess : float
+        n times the variance by which smoothing inflates the scatter of the difference between a
+        squared residual and the squared deviation from the mean.
+    """
+
+    variance: float
+    squares: Floats
+    noise: float
+    excess: float
+
+
+def variance(y: Floats, part: Part = None) -> float:
+    """Return the unbiased variance, summed over elements.
+
+    Parameters
+    ----------
+    y : ndarray, shape (n, e)
+    part : ndarray of int, shape (n,), optional
+        Only rows of different replicates are compared: those of one replicate may depend on
+        each other.
+    """
+    pairs, total = float(len(y)) ** 2, _pair_sum(y)
+    if part is None:
+        return total / (pairs - len(y))
+    for number in np.unique(part):
+        own = y[part == number]
+        pairs, total = pairs - float(len(own)) ** 2, total - _pair_sum(own)
+    return total / pairs if pairs > 0 else np.nan
+
+
+def _pair_sum(y: Floats) -> float:
+    """Return half the sum of squared differences over all ordered pairs of rows."""
+    return float(len(y) * np.sum((y - y.mean(axis=0)) ** 2))
+
+
+def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
+    """Estimate the variance of an output that is left when an input is known.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+    y : ndarray, shape (n, e)
+    part : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    Residual
+        Values of the input that at least five rows share contribute the variance of these rows,
+        which is exact for discrete inputs. Of all other rows, half the mean squared difference
+        of rows that are l places apart in the order of the input exceeds the residual variance
+        by what the conditional mean changes over l places: in proportion to l where it jumps,
+        to l^2 where it is smooth. The intercept of a parabola in l has neither error [1]_,
+        [2]_. The first and last l rows, which have one partner instead of two, count twice.
+
+    Notes
+    -----
+    More lags reduce the noise but widen the range in which the mean must be a few jumps or a
+    parabola: their number grows with n, and with the ratio of the variance left to that explained.
+
+    References
+    ----------
+    .. [1] T. Tong, Y. Wang, "Estimating residual variance in nonparametric regression using least
+       squares", Biometrika 92, 821-830 (2005).
+    .. [2] P. Hall, J. W. Kay, D. M. Titterington, "Asymptotically optimal difference-based
+       estimation of variance in nonparametric regression", Biometrika 77, 521-528 (1990).
+    """
+    order = np.argsort(x, kind="stable")
+    starts = np.flatnonzero(np.append(True, np.diff(x[order]) != 0))
+    counts = np.diff(np.append(starts, len(order)))
+    shared = counts >= _FEWEST_EQUAL
+    alike = [order[i : i + k] for i, k in zip(starts[shared], counts[shared], strict=True)]
+    rest = order[np.repeat(~shared, counts)]
+    if len(rest) <= 2 * LEAST_LAGS:  # too few for lags: one group, whatever their values
+        alike, rest = [*alike, rest], rest[:0]
+    found = [(rows, _of_equal(y[rows], _of(part, rows))) for rows in alike]
+    if len(rest):
+        found.append((rest, _of_neighbours(y[rest], _of(part, rest))))
+    found = [(rows, one) for rows, one in found if np.isfinite(one.variance)]
+    kept = sum(len(rows) for rows, _ in found)
+    squares = np.zeros(len(y))
+    if not found:  # no two rows of one value are of different replicates
+        return Residual(np.nan, squares, 0.0, 0.0)
+    for rows, one in found:
+        squares[rows] = one.squares
+    parts = np.array([(one.variance, one.noise, one.excess) for _, one in found])
+    shares = np.array([len(rows) / kept for rows, _ in found])
+    total, noise, excess = (shares @ parts).tolist()
+    return Residual(total, squares, noise, excess)
+
+
+def _of(part: Part, rows: NDArray[np.intp]) -> Part:
+    return None if part is None else part[rows]
+
+
+def _of_equal(y: Floats, part: Part) -> Residual:
+    """Return the residual variance of rows with one value of the input."""
+    n = len(y)
+    if n < 2:
+        return Residual(np.nan, np.zeros(n), 0.0, 0.0)
+    squares = np.sum((y - y.mean(axis=0)) ** 2, axis=1) * (n / (n - 1))
+    level = float(squares.mean())
+    return Residual(variance(y, part), squares, 2 * level**2 / (n - 1), 4 * level**2 / n)
+
+
+def _of_neighbours(y: Floats, part: Part) -> Residual:
+    """Return the residual variance of rows in the order of the input."""
+    number = _number_of_lags(y, part)
+    lags = _lags(number, len(y), part)
+    left = _intercept(y, part, lags)
+    squares, local, smoothed = _squared_residuals(y, number, left)
+    diagonal, noise = np.ones(len(y)), 0.0
+    for lag, weight in zip(lags, _weights(lags), strict=True):
+        # Near the ends of the order rows count a quarter less, and those they meet a quarter more.
+        diagonal[:lag] -= weight / 4
+        diagonal[lag : 2 * lag] += weight / 4
+        diagonal[-lag:] -= weight / 4
+        diagonal[-2 * lag : -lag] += weight / 4
+        used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
+        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag])) / used
+    excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
+    return Residual(left, squares * diagonal, noise, excess)
+
+
+def _lags(number: int, rows: int, part: Part) -> tuple[int, ...]:
+    """Return the first lags at which enough rows are of different replicates."""
+    if part is None:
+        return tuple(range(1, number + 1))
+    lags = range(1, min(3 * number, rows // 3) + 1)
+    usable = (lag for lag in lags if np.mean(part[lag:] != part[:-lag]) >= _LEAST_PAIRED)
+    return tuple(islice(usable, number))
+
+
+@lru_cache(256)
+def _weights(lags: tuple[int, ...]) -> tuple[float, ...]:
+    """Return the weight of each lag in the intercept of a parabola fitted by least squares."""
+    lag = np.array(lags, float)
+    fitted = np.linalg.pinv(np.column_stack([np.ones(len(lags)), lag, lag**2]))
+    return tuple(fitted[0].tolist())
+
+
+def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
+    if len(lags) < _FEWEST_LAGS:
+        return np.nan
+    weights = zip(lags, _weights(lags), strict=True)
+    return float(sum(weight * _half_square(y, part, lag) for lag, weight in weights))
+
+
+def _half_square(y: Floats, part: Part, lag: int) -> float:
+    """Return half the mean squared difference of rows some places apart."""
+    squares = np.sum((y[lag:] - y[:-lag]) ** 2, axis=1) / 2
+    counts = np.ones(len(squares))
+    counts[:lag] += 0.5
+    counts[-lag:] += 0.5
+    if part is not None:
+        counts *= part[lag:] != part[:-lag]
+    return float(counts @ squares / counts.sum())
+
+
+def _number_of_lags(y: Floats, part: Part) -> int:
+    n = len(y)
+    most = int(max(min(n // 8, 1.2 * n**0.55, _MOST_LAGS), LEAST_LAGS))
+    every = variance(y, part)
+    if not every > 0:
+        return LEAST_LAGS
+    pilot = min(12, most)
+    left = max(_intercept(y, part, _lags(pilot, n, part)) / every, 1e-6)
+    if np.isnan(left):
+        return LEAST_LAGS
+    explained = max(1 - left, 3 * max(left, 1e-3) / np.sqrt(n * pilot))
+    return int(np.clip(0.4 * n**0.6 * (left / explained) ** 0.4, LEAST_LAGS, most))
+
+
+def _squared_residuals(y: Floats, lags: int, left: float) -> tuple[Floats, Floats, Floats]:
+    """Return squared residuals from the mean of neighbours, their local mean, and of how many.
+
+    Across a jump the mean of both sides is far off: the side that fits counts there, and the
+    scatter of the differences over the jump as the geometric mean of both.
+    """
+    n, reach = len(y), int(np.clip(lags // 4, 2, _MOST_NEIGHBOURS))
+    row = np.arange(n)
+    low, high = np.maximum(row - reach, 0), np.minimum(row + reach + 1, n)
+
+    def mean_square(sums: Floats, count: NDArray[np.intp]) -> Floats:
+        means = sums / np.maximum(count, 1)[:, None]
+        return np.asarray(np.sum((y - means) ** 2, axis=1) * count / (count + 1))
+
+    until = np.vstack([np.zeros(y.shape[1]), np.cumsum(y, axis=0)])
+    before, after = until[row] - until[low], until[high] - until[row + 1]
+    both = mean_square(before + after, high - low - 1)
+    sides = np.array([mean_square(before, row - low), mean_square(after, high - row - 1)])
+    least = np.maximum(sides.min(axis=0), max(left, 0.0))
+    inner: Mask = (row > low) & (high > row + 1)
+    jumps = inner & (sides.max(axis=0) > _JUMP * least)
+    squares = np.where(jumps, np.minimum(both, 2 * np.sqrt(both * least)), both)
+    total = np.append(0.0, np.cumsum(squares))
+    count = high - low - 1
+    return squares, (total[high] - total[low] - squares) / count, count
