@@ -16,7 +16,8 @@ from models.numerics.batch_means import mean_and_bound
 SHORTEST = 1024  # periods
 MEMORIES = 20
 NINE_IN_TEN = 1.645  # standard errors in the half-width of a 90 % interval
-_PIECE = 32  # periods per call, and of the shortest batch
+_PIECE = 32  # periods of the shortest batch
+_ROWS = 64  # followed at a time, which limits the memory for the work of all their periods
 _BATCHES = 24  # of the part that is kept
 
 
@@ -75,18 +76,20 @@ def time_mean(
         field[wanted > longest] = np.nan
     total = SHORTEST // _PIECE
     while len(left):
-        now, here, some = state[left], gaps[left], system.take(left)
         settled = max(done, SHORTEST // _PIECE // 4)
-        for begin, end in ((done, settled), (settled, total)):
-            if begin == end:
-                continue
-            periods = (end - begin) * _PIECE
-            record = propagator.advance(some, now, here, np.zeros_like(here), periods)
-            works = record.work.reshape(len(left), end - begin, _PIECE, 2)
-            pieces[left, begin:end] = works.mean(axis=2)
-            if begin >= settled:
-                out.peak[left] = np.maximum(out.peak[left], record.peak)
-        state[left] = now
+        for first in range(0, len(left), _ROWS):
+            rows = left[first : first + _ROWS]
+            now, here, some = state[rows], gaps[rows], system.take(rows)
+            for begin, end in ((done, settled), (settled, total)):
+                if begin == end:
+                    continue
+                periods = (end - begin) * _PIECE
+                record = propagator.advance(some, now, here, np.zeros_like(here), periods)
+                works = record.work.reshape(len(rows), end - begin, _PIECE, 2)
+                pieces[rows, begin:end] = works.mean(axis=2)
+                if begin >= settled:
+                    out.peak[rows] = np.maximum(out.peak[rows], record.peak)
+            state[rows] = now
         kept = pieces[left, total // 4 : total]
         batches = kept.reshape(len(left), _BATCHES, -1, 2).mean(axis=2)
         out.work[left], bound = mean_and_bound(batches)

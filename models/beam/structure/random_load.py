@@ -49,7 +49,7 @@ seed
 """
 FINER = 2  # samples of the response per sample of the noise
 _RATES = np.array([base << k for k in range(15) for base in (2, 3)]) // 2
-_BAND_PASS = 4.0  # half-length of the band-pass, in decay times of the slowest mode
+_BAND_PASS = 16.0  # half-length of the band-pass, in decay times of the slowest mode
 _PER_BAND = 20.0  # and at least this over the bandwidth
 _EDGE = 0.5  # edge times half-length: the band-pass has then decayed to 1e-4
 _TAIL = 10.0  # decay times after which the beam has forgotten the force
