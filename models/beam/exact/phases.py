@@ -71,11 +71,16 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
     response = b / (w**2 - 1 + 2j * d)
     flexibility = b / w**2
     speed = _harmonics(beams.load[row])[:, None]
-    per_line = b / (w**2 - speed**2 + 2j * d * speed)
+    per_line: Complex = b / (w**2 - speed**2 + 2j * d * speed)
     held = 1 + stiffness * per_line.sum(axis=1, keepdims=True)
     phasor = np.zeros((2, len(speed)))
     free = _phase(
-        *_free_modes(w, d), np.zeros_like(b), force * response, phasor, speed, 0 * per_line
+        *_free_modes(w, d),
+        np.zeros_like(b),
+        force * response,
+        phasor,
+        speed,
+        np.zeros_like(per_line),
     )
     contact = _phase(
         *_contact_modes(w, d, b, stiffness),

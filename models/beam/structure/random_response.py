@@ -254,7 +254,7 @@ def filtered(load: np.void, forcing: float, oscillators: Array, periods: Array) 
     work = Workspace.of(one)
     gain, samples = (
         np.empty((2, work.parts.shape[1] // (2 * FINER))),
-        np.empty((2, samples_per_stretch(load))),
+        np.empty((2, int(samples_per_stretch(one)[0]))),
     )
     set_gain(load, forcing, oscillators, gain)
     per_period = FINER * load["rate"]
