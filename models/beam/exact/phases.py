@@ -71,7 +71,7 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
     response = b / (w**2 - 1 + 2j * d)
     flexibility = b / w**2
     speed = _harmonics(beams.load[row])[:, None]
-    per_line: Complex = b / (w**2 - speed**2 + 2j * d * speed)
+    per_line = b / (w**2 - speed**2 + 2j * d * speed)
     held = 1 + stiffness * per_line.sum(axis=1, keepdims=True)
     phasor = np.zeros((2, len(speed)))
     free = _phase(
@@ -80,7 +80,7 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
         force * response,
         phasor,
         speed,
-        np.zeros_like(per_line),
+        np.zeros(per_line.shape, complex),
     )
     contact = _phase(
         *_contact_modes(w, d, b, stiffness),
