@@ -5,8 +5,8 @@ import numpy as np
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.start import initial_gaps, initial_state, one_system
 from models.beam.structure.modal import beams
-from models.beam.structure.random_lines import force as random_force
 from models.beam.structure.random_load import has_band
+from models.beam.structure.random_response import RIGID, filtered
 from models.beam.units import newton
 from uq.contract import Trajectory
 
@@ -49,7 +49,8 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "force": ("N", "harmonic force at the tip", force),
     }
     if params.random_force_level > 0:
-        random = params.initial_gap * random_force(b.load[0], time * params.forcing_frequency)
+        periods = time * params.forcing_frequency
+        random = params.initial_gap * filtered(b.load[0], b.forcing[0], RIGID, periods)
         quantities["random_force"] = ("N", "random force at the tip", random)
     if not has_band(p)[0]:
         quantities = {

@@ -5,8 +5,10 @@ With y = [z, z'] of all modes and the time s since the phase began,
     y(s) = Re sum_k c_k shape_k exp(rate_k s),
 
 where one term is the displacement due to the gap (rate 0), one the response to the force (rate i),
-J more are those to the lines of a random force, if there is one, and the others are the decaying
-modes of the phase, one for each conjugate pair. Damping is proportional in free flight but not in
+and the others are the decaying modes of the phase, one for each conjugate pair. With a random
+force, y is the motion beyond the tip's response to it without contact; that is a sum of J harmonics
+between two of its samples, and in contact y responds to each of them by a term more. Damping is
+proportional in free flight but not in
 contact, whose modes are complex. Time is the phase of the forcing, Omega t; lengths are in initial
 gaps. Complex arrays are split into real and imaginary parts, axis 0 or 1, so that the compiler can
 vectorise over the last axis.
@@ -17,8 +19,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.structure.interpolation import COEFFICIENTS, REACH
 from models.beam.structure.modal import Array, Beams
-from models.beam.structure.random_lines import AMPLITUDE, COUNT, SPEED
+from models.beam.structure.random_load import FINER
 
 Complex = NDArray[np.complex128]
 
@@ -29,17 +32,18 @@ class Phase(NamedTuple):
     Attributes
     ----------
     rate : ndarray, shape (2, T)
-        Real and imaginary part; modes follow gap, force and lines, slowest decay first.
+        Real and imaginary part; modes follow gap, force and harmonics, slowest decay first.
     speed : ndarray, shape (T,)
         Moduli of the rates.
     tip : ndarray, shape (2, T)
-        Sum of the displacements in `shape`.
+        Sum of the displacements in `shape`, and 1 more for a harmonic, which the tip
+        follows itself.
     shape : ndarray, shape (T, 2, 2 m)
-        Per unit gap, phasor of the force and of each line, and coefficient of each mode.
+        Per unit gap, phasor of the force and of each harmonic, and coefficient of each mode.
     dual : ndarray, shape (2 m, 2, K)
-        Maps y, less the terms of gap, force and lines, to the modes' coefficients.
+        Maps y, less the terms of gap, force and harmonics, to the modes' coefficients.
     phasor : ndarray, shape (2, J)
-        Of the lines, at phase 0 of the force in the present period; see `set_lines`.
+        Of the harmonics, at phase 0 of the force, in the present interval between samples.
     """
 
     rate: Array
@@ -66,40 +70,34 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
     w, d, b = beams.in_phase_time(row, forcing)
     response = b / (w**2 - 1 + 2j * d)
     flexibility = b / w**2
-    phasor = np.zeros((2, COUNT if beams.load[row]["power"] > 0 else 0))
-    free = _phase(*_free_modes(w, d), np.zeros_like(b), force * response, phasor)
+    speed = _harmonics(beams.load[row])[:, None]
+    per_line = b / (w**2 - speed**2 + 2j * d * speed)
+    held = 1 + stiffness * per_line.sum(axis=1, keepdims=True)
+    phasor = np.zeros((2, len(speed)))
+    free = _phase(
+        *_free_modes(w, d),
+        np.zeros_like(b),
+        force * response,
+        phasor,
+        speed,
+        np.zeros(per_line.shape, complex),
+    )
     contact = _phase(
         *_contact_modes(w, d, b, stiffness),
         stiffness * flexibility / (1 + stiffness * flexibility.sum()),
         force * response / (1 + stiffness * response.sum()),
         phasor,
+        speed,
+        -stiffness * per_line / held,
     )
     return free, contact
 
 
-def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array) -> None:
-    """Set the lines of an epoch in both phases of one beam.
-
-    Parameters
-    ----------
-    free, contact : Phase
-        Updated in place.
-    beams : Beams
-    row : int
-    lines : ndarray, shape (J, 3)
-        As `models.beam.structure.random_lines.draw` sets them.
-    """
-    forcing, stiffness = beams.forcing[row], beams.stiffness[row]
-    w, d, b = beams.in_phase_time(row, forcing)
-    speed = lines[:, SPEED, None]
-    response = b / (w**2 - speed**2 + 2j * d * speed)
-    held = 1 + stiffness * response.sum(axis=1, keepdims=True)
-    here = slice(2, 2 + len(lines))
-    for phase, per_line in ((free, response), (contact, response / held)):
-        per_line = lines[:, AMPLITUDE, None] * per_line
-        phase.rate[1, here] = phase.speed[here] = lines[:, SPEED]
-        phase.tip[:, here] = _parts(per_line.sum(axis=1), 0)
-        phase.shape[here] = _parts(np.hstack([per_line, 1j * speed * per_line]), 1)
+def _harmonics(load: np.void) -> Array:
+    """Return the harmonics between samples of a random load, per radian of the force."""
+    if load["power"] == 0:
+        return np.empty(0)
+    return FINER * load["rate"] / REACH * np.arange(len(COEFFICIENTS))
 
 
 def _free_modes(w: Array, d: Array) -> tuple[Complex, Complex, Complex]:
@@ -142,22 +140,26 @@ def _phase(
     per_gap: Array,
     per_force: Complex,
     phasor: Array,
+    speed: Array,
+    per_harmonic: Complex,
 ) -> Phase:
     """Assemble a phase, with one term for each conjugate pair of modes."""
     keep = np.flatnonzero(rate.imag >= 0)
     keep = keep[np.argsort(-rate[keep].real)]
     twice = np.where(rate[keep].imag > 0, 2.0, 1.0)
-    lines = phasor.shape[1]
-    rate = np.concatenate([[0, 1j], np.zeros(lines), rate[keep]])
+    harmonics = slice(2, 2 + len(speed))
+    rate = np.concatenate([[0, 1j], 1j * speed[:, 0], rate[keep]])
     gap_column = np.concatenate([per_gap, np.zeros_like(per_gap)])
     force_column = np.concatenate([per_force, 1j * per_force])
-    unset = np.zeros((lines, len(gap_column)))
-    shape = np.vstack([gap_column, force_column, unset, shape.T[keep]])
-    dual = np.hstack([np.zeros((len(dual.T), 2 + lines)), dual.T[:, keep] * twice])
+    harmonic_columns = np.hstack([per_harmonic, 1j * speed * per_harmonic])
+    shape = np.vstack([gap_column, force_column, harmonic_columns, shape.T[keep]])
+    dual = np.hstack([np.zeros((len(dual.T), harmonics.stop)), dual.T[:, keep] * twice])
+    tip = shape[:, : len(per_gap)].sum(axis=1)
+    tip[harmonics] += 1
     return Phase(
         _parts(rate, 0),
         np.hypot(*_parts(rate, 0)),
-        _parts(shape[:, : len(per_gap)].sum(axis=1), 0),
+        _parts(tip, 0),
         _parts(shape, 1),
         _parts(dual, 1),
         phasor,

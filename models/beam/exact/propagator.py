@@ -9,23 +9,36 @@ import numpy as np
 
 from models.beam.exact.one_beam import CLOCK, advance_beam
 from models.beam.exact.passage import passage
-from models.beam.exact.phases import set_lines
 from models.beam.exact.systems import System
 from models.beam.exact.tuning import Beam
+from models.beam.structure.interpolation import REACH
 from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Record
-from models.beam.structure.random_lines import COUNT, SPEED, TURN, draw, turn_at
+from models.beam.structure.random_load import FINER
+from models.beam.structure.random_response import (
+    Workspace,
+    opening,
+    samples_per_stretch,
+    set_gain,
+    set_stretches,
+)
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
     """Return z and dz/d(Omega t) of each mode, the clock, and the work of unfinished contacts.
 
-    The shape is (n, 2 m + 3); the last two are the work at the right and the left site.
+    The shape is (n, 2 m + 3); the last two are the work at the right and the left site. The modes
+    are without their response to a random load.
     """
     n, m = system.modal.shape
     state = np.zeros((n, 2 * m - CLOCK))
     state[:, 0] = displacement
     state[:, m] = velocity / system.beams.forcing
+    b = system.beams
+    if b.is_random.any():
+        response = opening(b.load, b.forcing, b.oscillators)
+        state[:, :m] -= response[:, 0]
+        state[:, m : 2 * m] -= response[:, 1] / b.forcing[:, None]
     return state
 
 
@@ -69,7 +82,7 @@ def _advance(
         if system.beams.load[i]["power"] > 0:
             _advance_random(system, i, state[i], gaps[i], growth[i], row, of_speeds)
         else:
-            advance_beam(free, contact, state[i], gaps[i], growth[i], row, of_speeds)
+            advance_beam(free, contact, np.empty(0), state[i], gaps[i], growth[i], row, of_speeds)
 
 
 def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
@@ -93,30 +106,33 @@ def _advance_random(
     record: Record,
     of_speeds: bool,
 ) -> None:
-    """Advance one beam under a random load, whose phasors are reset in each period."""
-    free, contact = system.phases[row]
-    load = system.beams.load[row]
-    lines = np.empty((COUNT, 3))
-    drawn = -1
-    periods = len(record.work)
+    """Advance one beam under a random load, from one stretch of it to the next."""
+    b, load = system.beams, system.beams.load[row]
+    work = Workspace.of(system.beams.load)
+    gain = np.empty((2, load["size"] // 2))
+    samples = np.empty((2, samples_per_stretch(load)))
+    set_gain(load, b.forcing[row], b.oscillators[row], gain)
+    per_period = FINER * load["rate"]
+    periods, done, drawn = len(record.work), 0, -1
     steps = len(record.trace) // periods
-    for period in range(periods):
+    while done < periods:
         if np.isnan(state[0]):  # out of budget
-            record.work[period:] = record.strobe[period:] = np.nan
-            record.trace[period * steps :] = np.nan
+            record.work[done:] = record.strobe[done:] = np.nan
+            record.trace[done * steps :] = np.nan
             return
-        epoch, since = divmod(int(state[CLOCK]), int(load["epoch"]))
-        if epoch != drawn:
-            draw(load, epoch, lines)
-            set_lines(free, contact, system.beams, row, lines)
-            drawn = epoch
-        for j in range(COUNT):
-            angle = 2 * np.pi * turn_at(lines[j, SPEED], lines[j, TURN], since)
-            free.phasor[:, j] = np.cos(angle), np.sin(angle)
-        one = Record(
-            record.work[period : period + 1],
-            record.strobe[period : period + 1],
+        stretch, since = divmod(int(state[CLOCK]), int(load["stretch"]))
+        if stretch // 2 != drawn:
+            drawn = stretch // 2
+            set_stretches(load, gain, drawn, work, samples)
+        until = min(periods, done + int(load["stretch"]) - since)
+        first = since * per_period
+        last = first + (until - done) * per_period + REACH - 1
+        part = Record(
+            record.work[done:until],
+            record.strobe[done:until],
             record.peak,
-            record.trace[period * steps : (period + 1) * steps],
+            record.trace[done * steps : until * steps],
         )
-        advance_beam(free, contact, state, gaps, growth, one, of_speeds)
+        here = samples[stretch % 2, first:last]
+        advance_beam(*system.phases[row], here, state, gaps, growth, part, of_speeds)
+        done = until

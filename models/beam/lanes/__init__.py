@@ -2,15 +2,15 @@
 
 Reading order; a module imports only those above it:
 
-    layout        the columns of a state
-    recurrence    one mode over one step
-    systems       beams that share a step size
-    states        initial states, and states in half steps
-    lines         the random load at each step
-    steps         the hot loop: modes, contact force, impact work
-    tangents      the tangent flow along a known trajectory
-    propagator    many beams over whole forcing periods
-    speeds        the velocity along a known trajectory
+    layout          the columns of a state
+    recurrence      one mode over one step
+    random_motion   the response to a random load at each step
+    systems         beams that share a step size
+    states          initial states, and states in half steps
+    steps           the hot loop: modes, contact force, impact work
+    tangents        the tangent flow along a known trajectory
+    propagator      many beams over whole forcing periods
+    speeds          the velocity along a known trajectory
 """
 
 from models.beam.lanes.layout import CLOCK

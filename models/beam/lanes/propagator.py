@@ -3,7 +3,7 @@
 import numpy as np
 
 from models.beam.lanes.layout import CLOCK, X1
-from models.beam.lanes.lines import Lines, Load
+from models.beam.lanes.random_motion import random_motion
 from models.beam.lanes.steps import advance_blocks, advance_loaded_blocks, room
 from models.beam.lanes.systems import System
 from models.beam.lanes.tangents import carry
@@ -36,8 +36,7 @@ def advance(
         tuple(record),
     )
     if beams.is_random.any():
-        load = Load(beams.load, system.oscillators, system.begin, beams.forcing)
-        advance_loaded_blocks(*told, load, Lines.room(system.oscillators.shape[2]))
+        advance_loaded_blocks(*told, random_motion(beams, system.taps))
     else:
         advance_blocks(*told)
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.

@@ -9,20 +9,8 @@ from models.beam.lanes.layout import CLOCK, SHARED, X1, X2, P, modes_of
 from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.lanes.systems import System, gains, systems
 from models.beam.structure.modal import Array
-from models.beam.structure.random_lines import COUNT, draw
-from models.beam.structure.random_response import add_modes
+from models.beam.structure.random_response import opening
 from models.numerics.jit import kernel
-
-
-@kernel
-def _open(load, forcing, oscillators, opening):
-    """Add the modes' steady response to the random load at t = 0."""
-    lines = np.empty((COUNT, 3))
-    for n in range(load.size):
-        if load[n]["power"] > 0:
-            frequency, decay, mobility = oscillators[n]
-            draw(load[n], 0, lines)
-            add_modes(lines, 0, 1.0, forcing[n], frequency, decay, mobility, opening[n])
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
@@ -36,10 +24,10 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
     z = -modal.real * moving
     v = modal.imag * system.beams.forcing[:, None]
     if system.beams.is_random.any():
-        opening = np.zeros((n, 2, system.oscillators.shape[2]))
-        _open(system.beams.load, system.beams.forcing, system.oscillators, opening)
-        z -= opening[:, 0, :m] * moving
-        v -= opening[:, 1, :m]
+        b = system.beams
+        response = opening(b.load, b.forcing, b.oscillators)
+        z -= response[:, 0, :m] * moving
+        v -= response[:, 1, :m]
     z[:, 0] += displacement
     v[:, 0] += velocity
     state = np.zeros((n, 2 * m + SHARED))

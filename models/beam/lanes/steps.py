@@ -2,8 +2,8 @@
 
 Each mode is propagated exactly under a contact force that is linear within a step; the harmonic
 force enters through the exact steady response, so modes carry only the effect of contact, and so
-does a random force, see `models.beam.lanes.lines`. A damped mode under a sampled force obeys a
-two-term recurrence, here in transposed direct form:
+does a random force, see `models.beam.lanes.random_motion`. A damped mode under a sampled force
+obeys a two-term recurrence, here in transposed direct form:
 
     y_i <- t_i y_i + r_i + alpha_i p,    r_i <- beta_i p - d_i y_i,
 
@@ -23,7 +23,7 @@ the sampled penetration; this reduces the measured error of a work-rate by a fac
 import numpy as np
 
 from models.beam.lanes.layout import CLOCK, UNROLL, X1, X2, P, modes_of, padded
-from models.beam.lanes.lines import add_lines, draw_lines, in_fours, redraw_lines
+from models.beam.lanes.random_motion import add_motion, begin_motion
 from models.beam.structure.modal import Array
 from models.numerics.blocks import LANES, aligned, copy
 from models.numerics.fma import fma
@@ -39,10 +39,10 @@ _WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _HEAD = range(10, 16)
 def room(modes: int, steps: int) -> tuple[Array, Array, Array]:
     """Return room for a block of lanes: modes, other slots, and the tip's motion without contact.
 
-    The latter at each step of a period, and at a few steps more.
+    The latter at each step of a period.
     """
     of_modes, of_lanes = padded(modes) * _MODE * LANES, _HEAD * LANES
-    whole = aligned(of_modes + of_lanes + in_fours(steps) * LANES)
+    whole = aligned(of_modes + of_lanes + steps * LANES)
     return (
         whole[:of_modes],
         whole[of_modes : of_modes + of_lanes],
@@ -237,7 +237,7 @@ def advance_blocks(system_modes, sigma, response, state, gaps, growth, cosine, s
 
 @kernel
 def advance_loaded_blocks(
-    system_modes, sigma, response, state, gaps, growth, cosine, sine, room, record, load, lines
+    system_modes, sigma, response, state, gaps, growth, cosine, sine, room, record, motion
 ):
     """Do the same where some beams have a random load."""
     w, head, drive = room
@@ -246,12 +246,11 @@ def advance_loaded_blocks(
     for first in range(0, n, LANES):
         _load(system_modes, sigma, response, state, gaps, first, w, head)
         _swing(head, cosine, sine, drive)
-        is_random = draw_lines(load, state, first, cosine.size, lines)
+        is_random = begin_motion(motion, state, first)
         for period in range(periods):
             if is_random:
-                redraw_lines(load, state, first, period, cosine.size, lines, w, _MODE * LANES)
                 _swing(head, cosine, sine, drive)
-                add_lines(load, state, first, period, lines, drive)
+                add_motion(motion, state, first, period, drive)
             _take_period(w, head, drive, cosine.size, before, growth, first, period, record)
         _store(w, head, first, state, gaps, record[2])
     for row in range(n):

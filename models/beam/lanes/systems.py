@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.lanes.layout import padded
+from models.beam.lanes.random_motion import taps_of
 from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.parameters import Settings
+from models.beam.structure.interpolation import REACH
 from models.beam.structure.modal import Array, Beams, free_reach, steady_response
 from models.beam.structure.propagation import LONGEST
 from models.numerics.elementary import cos, sin
@@ -18,7 +20,7 @@ from models.numerics.jit import kernel
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
 UNSTABLE = 0.03  # compliance above which the impulse corrections may become unstable
-RESOLVED = 16  # steps per turn of the random load's fastest line, at least
+RESOLVED = 16  # steps per turn of the random load's highest frequency, at least
 MOST_UNDER_RANDOM = 1024  # steps per forcing period
 _MOST = 2**20  # steps in a time mean
 
@@ -38,12 +40,12 @@ class System(NamedTuple):
         Steady amplitude of each mode.
     response : ndarray, shape (n,), complex
         Their sum.
-    oscillators : ndarray, shape (n, 3, all modes)
-        w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode, for the response to a random load.
-    free_reach, beams, steps
-        As there.
+    free_reach, beams, steps, longest
+        As there; the more steps there are, the fewer periods, unless the steps are set.
     wave : ndarray, shape (2, steps)
         Cosine and sine of the force's phase at the end of each step.
+    taps : ndarray, shape (steps, REACH)
+        As in `models.beam.lanes.random_motion`.
     """
 
     modes: Array
@@ -51,21 +53,17 @@ class System(NamedTuple):
     sigma: Array
     modal: NDArray[np.complex128]
     response: NDArray[np.complex128]
-    oscillators: Array
     free_reach: Array
     beams: Beams
     steps: int
+    longest: int
     wave: Array
-
-    @property
-    def longest(self) -> int:
-        """Fewer, the more steps there are per period."""
-        return min(LONGEST, _MOST // self.steps)
+    taps: Array
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return some of the beams."""
-        arrays = (a.take(rows, axis=0) for a in self[:-3])
-        return System._make([*arrays, self.beams.take(rows), self.steps, self.wave])
+        arrays = (a.take(rows, axis=0) for a in self[:-5])
+        return System._make([*arrays, self.beams.take(rows), *self[-4:]])
 
 
 @kernel
@@ -116,25 +114,34 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
     gives way by no more than `COMPLIANCE` of its penetration, without residual flexibility; the
-    error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes at
-    least `RESOLVED` steps. A row is in no group if contact is too stiff, or the load too fast, for
-    the last of the ladder or for the steps set; nor if, under a random load, whose averages are
-    long, it takes more than `MOST_UNDER_RANDOM` steps.
+    error of a work-rate is then about 0.1 %. A turn of the random load's highest
+    frequency takes at least `RESOLVED` steps. A row is in no group if contact is too stiff, or the
+    load too fast, for the last of the ladder or for the steps set; nor if, under a random load,
+    whose averages are
+    long, it takes more than `MOST_UNDER_RANDOM` steps and they are not set.
     """
     steps = np.full(len(beams.forcing), settings.steps_per_period)
+    within = np.ones(len(steps), bool)
     if not settings.steps_per_period:
         least = _least_steps(beams)
         _choose_steps(
             beams.forcing, beams.frequency, beams.decay, gains(beams), beams.moving, least, steps
         )
-    for count in np.unique(steps):
-        rows = np.flatnonzero(steps == count)
-        for part, system in systems(beams.take(rows), int(count)):
+        within = ~beams.is_random | (steps <= MOST_UNDER_RANDOM)
+    for count in np.unique(steps[within]):
+        rows = np.flatnonzero(within & (steps == count))
+        longest = LONGEST if settings.steps_per_period else _MOST // int(count)
+        for part, system in systems(beams.take(rows), int(count), longest):
             yield rows[part], system
 
 
-def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare n beams for this many steps, in groups with equal numbers of modes."""
+def systems(
+    b: Beams, steps: int, longest: int = LONGEST
+) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n beams for this many steps, in groups with equal numbers of modes.
+
+    Rows of a group also share the rate of a random load. Time means take `longest` periods at most.
+    """
     n, m = b.frequency.shape
     modes, begin = np.zeros((n, 4, m)), np.zeros((n, 3, m))
     sigma, compliance = np.empty((2, n))
@@ -158,21 +165,23 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
         sigma,
         modal,
         modal.sum(axis=1),
-        np.stack([b.frequency, b.decay, b.mobility], axis=1),
         free_reach(b),
         b,
         steps,
+        min(LONGEST, longest),
         np.stack([cos(phase), sin(phase)]),
+        np.empty((0, REACH)),
     )
     sound = (np.abs(compliance) <= UNSTABLE) & (_least_steps(b) <= steps)
-    sound &= (b.load["power"] == 0) | (steps <= MOST_UNDER_RANDOM)
     width = np.minimum(m, _widths(begin[:, 2]))
-    for size in np.unique(width[sound]):
-        part = np.flatnonzero(sound & (width == size))
-        some = system.take(part)
-        cut = some._replace(
-            modes=np.ascontiguousarray(some.modes[:, :, :size]),
-            begin=np.ascontiguousarray(some.begin[:, :, :size]),
+    kinds = np.stack([width, b.load["rate"]], axis=1)
+    for size, rate in np.unique(kinds[sound], axis=0).tolist():
+        part = np.flatnonzero(sound & (kinds == [size, rate]).all(axis=1))
+        group = system.take(part)
+        cut = group._replace(
+            modes=np.ascontiguousarray(group.modes[:, :, :size]),
+            begin=np.ascontiguousarray(group.begin[:, :, :size]),
+            taps=taps_of(rate, steps) if group.beams.is_random.any() else group.taps,
         )
         yield part, cut
 
@@ -183,8 +192,8 @@ def gains(b: Beams) -> Array:
 
 
 def _least_steps(b: Beams) -> Array:
-    """Return the number of steps required by the fastest line of a random load, shape (n,)."""
-    return RESOLVED * b.load["edges"][:, -1]
+    """Return the number of steps required by the highest frequency of a random load, shape (n,)."""
+    return RESOLVED * b.load["high"]
 
 
 def _widths(moving: Array) -> NDArray[np.int64]:

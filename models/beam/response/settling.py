@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from models.beam.parameters import LONGEST_PERIOD
 from models.beam.response.approached_orbits import Approached, approached
-from models.beam.response.averages import time_mean
+from models.beam.response.averages import NINE_IN_TEN, time_mean
 from models.beam.response.response import (
     APERIODIC,
     ASYMMETRIC,
@@ -34,7 +34,6 @@ SEGMENT = 32  # periods between two checks; also the length of a batch
 SHORTEST, LONGEST = 32, 512  # segments of a look
 MOST_STEPS = 2**24  # of a look
 RANDOM_ACCURACY = 0.05  # relative standard error of a mean work-rate under a random load
-NINE_IN_TEN = 1.645  # standard errors in the half-width of a 90 % interval
 ACCURACY = NINE_IN_TEN * RANDOM_ACCURACY  # error of a mean above which a look is extended
 TURNS = 2  # of the first mode without contact, after which there will be none
 MEMORIES = 5  # memories of the beam after which it has forgotten its start

@@ -61,6 +61,21 @@ class Beams(NamedTuple):
         return self.forcing / (2 * np.pi * self.decay[:, 0])
 
     @property
+    def oscillators(self) -> Array:
+        """Frequency, decay and mobility of each mode, shape (n, 3, m)."""
+        return np.stack([self.frequency, self.decay, self.mobility], axis=1)
+
+    @property
+    def random_memory(self) -> Array:
+        """Forcing periods in which the motion under a random load changes, shape (n,).
+
+        The slowest free motion decays to 1/e, or the force of a narrow band changes its amplitude.
+        """
+        free = self.forcing / (2 * np.pi * slowest_decay(self.frequency, self.decay))
+        band = self.load["high"] - self.load["low"]
+        return np.maximum(free, np.divide(1, band, out=np.zeros_like(band), where=band > 0))
+
+    @property
     def turn(self) -> Array:
         """Forcing periods in a free oscillation of the first mode, shape (n,)."""
         return self.forcing / self.frequency[:, 0]
@@ -80,6 +95,18 @@ class Beams(NamedTuple):
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return some of the beams."""
         return Beams._make(a.take(rows, axis=0) for a in self)
+
+
+def slowest_decay(frequency: Array, decay: Array) -> Array:
+    """Return the rate of the slowest decay of n beams' free motion [s-1], shape (n,).
+
+    Parameters
+    ----------
+    frequency, decay : ndarray, shape (n, m)
+        w_i [rad s-1], d_i [s-1] of each mode.
+    """
+    over = np.sqrt(np.maximum(decay**2 - frequency**2, 0.0))
+    return np.where(over > 0, frequency**2 / (decay + over), decay).min(axis=1)
 
 
 def beams(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Beams:
@@ -121,7 +148,7 @@ def beams(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -
         p.force_amplitude / p.initial_gap,
         p.contact_stiffness,
         np.full(len(w), min(kept or w.shape[1], w.shape[1])),
-        random_load(p, w, decay, mobility, seed),
+        random_load(p, slowest_decay(w, decay), seed),
     )
 
 
@@ -158,5 +185,5 @@ def free_reach(b: Beams) -> Array:
     harmonic = np.hypot(response.real, response.imag)
     if not b.load["power"].any():
         return harmonic
-    random = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
+    random = tip_deviation(b.load, b.forcing, b.oscillators)
     return harmonic + SURE * random

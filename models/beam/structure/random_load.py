@@ -1,34 +1,61 @@
-"""The random load of n beams: division of its band into lines, and length of their epochs.
+"""The random load of n beams: white noise through a band-pass filter, and the filter's length.
 
-Sub-bands of equal width would leave a sharp resonance to one line, or to none: the beam's
-resonances are about 0.3 Hz wide. So only half of the edges are evenly spaced; the others divide the
-power that a white force supplies to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2), into equal
-shares.
+The force at the tip is stationary and Gaussian, of one-sided level S_F between two frequencies. Its
+level falls at each end of the band as a logistic function of width e; its variance is S_F times the
+bandwidth.
 
-Unlike a random process, a sum of fixed lines never loses its memory. So all lines are redrawn after
-each epoch of 2/d + 200/B, with the slowest decay d and the bandwidth B: a few correlation times of
-beam and force. The force never repeats, and the time mean of a work-rate converges to that of the
-process. Between epochs the force jumps, and the steady response with it; the modes take up the
-difference as free vibration. The jumps blur the band: outside it the level is
-S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch. Where modes outside the band would thus
-contribute more than 1 % of the tip's variance, the epoch is longer, up to 30 times.
+The noise has `rate` samples per forcing period. It is filtered in stretches by fast convolution
+(overlap-save), which is exact up to the response to noise more than 10 decay times old: each
+stretch takes account of the noise for some periods before it (`lead`) and after it (`lag`). So the
+process has no beginnings and no joints, and any part of it can be computed by itself.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import Rows
-from models.beam.structure.random_lines import (
-    COUNT,
-    LOAD,
-    Array,
-)
-from models.beam.structure.random_response import tip_deviation
-from models.numerics.elementary import arctan, tan
+from models.beam.structure.interpolation import BEFORE, HIGHEST
 
-_MEMORIES, _TURNS = 2, 200  # of the slowest mode, and of the bandwidth, per epoch
-_BLUR = 0.01  # of the tip's variance, from modes outside the band
-_LONGER = 30.0
+Array = NDArray[np.float64]
+LOAD = np.dtype(
+    [
+        ("power", "f8"),
+        ("low", "f8"),
+        ("high", "f8"),
+        ("edge", "f8"),
+        ("rate", "i8"),
+        ("size", "i8"),
+        ("lead", "i8"),
+        ("stretch", "i8"),
+        ("seed", "u8"),
+    ],
+    align=True,
+)
+"""A beam's random load.
+
+power
+    Variance of the force, over X0, per unit of the noise's bandwidth [N2 m-2]; 0 for no random
+    load.
+low, high, edge
+    Ends of the band and width of its edges, in turns per forcing period.
+rate
+    Samples of the noise per forcing period; the response has twice as many.
+size
+    Samples of the noise of which a stretch takes account.
+lead, stretch
+    Forcing periods before a stretch of which it takes account, and of the stretch itself.
+seed
+    Of the realisation.
+"""
+FINER = 2  # samples of the response per sample of the noise
+_RATES = np.array([base << k for k in range(15) for base in (2, 3)]) // 2
+_BAND_PASS = 16.0  # half-length of the band-pass, in decay times of the slowest mode
+_PER_BAND = 20.0  # and at least this over the bandwidth
+_EDGE = 0.5  # edge times half-length: the band-pass has then decayed to 1e-4
+_TAIL = 10.0  # decay times after which the beam has forgotten the force
+_MARGIN = 2 + BEFORE  # periods, for the interpolation
+_SPARE = 1.5  # least size over that of which a stretch only takes account
+_SHORTEST, _LONGEST = 2**10, 2**19  # sizes
 
 
 def has_band(p: Rows) -> NDArray[np.bool_]:
@@ -47,17 +74,15 @@ def has_band(p: Rows) -> NDArray[np.bool_]:
     return (p.random_force_level == 0) | (p.random_force_high > p.random_force_low)
 
 
-def random_load(
-    p: Rows, frequency: Array, decay: Array, mobility: Array, seed: NDArray[np.uint64]
-) -> NDArray[np.void]:
+def random_load(p: Rows, slowest: Array, seed: NDArray[np.uint64]) -> NDArray[np.void]:
     """Return the random load of n beams.
 
     Parameters
     ----------
     p : Params
         Each field an ndarray of shape (n,).
-    frequency, decay, mobility : ndarray, shape (n, m)
-        As in `models.beam.structure.modal.Beams`.
+    slowest : ndarray, shape (n,)
+        Rate of the slowest decay of free motion [s-1].
     seed : ndarray of uint64, shape (n,)
 
     Returns
@@ -65,53 +90,33 @@ def random_load(
     ndarray of LOAD, shape (n,)
     """
     load = np.zeros(len(seed), LOAD)
-    load["epoch"] = 1
+    load["stretch"] = load["rate"] = 1
     rows = np.flatnonzero((p.random_force_level > 0) & has_band(p))
     if not len(rows):
         return load
     forcing, low, high = (
         a[rows] for a in (p.forcing_frequency, p.random_force_low, p.random_force_high)
     )
-    modes = tuple(a[rows] for a in (frequency, decay, mobility))
-    edges = _divide(2 * np.pi * low, 2 * np.pi * high, *modes) / (2 * np.pi * forcing[:, None])
-    one = np.empty(len(rows), LOAD)
-    one["power"] = 2 * p.random_force_level[rows] * forcing / p.initial_gap[rows] ** 2
-    one["edges"] = edges
-    one["seed"] = seed[rows]
-    own = tip_deviation(one, 2 * np.pi * forcing, *modes) ** 2
-    blur = one["power"] / (2 * forcing) * _blur(low, high, *modes)
-    epoch = _MEMORIES / decay[rows].min(axis=1) + _TURNS / (high - low)
-    one["epoch"] = np.ceil(forcing * np.clip(blur / (_BLUR * own), epoch, _LONGER * epoch))
-    load[rows] = one
-    return load
-
-
-def _divide(low: Array, high: Array, frequency: Array, decay: Array, mobility: Array) -> Array:
-    """Return the edges of the sub-bands, shape (n, COUNT + 1), all in rad/s.
-
-    Half of them are evenly spaced; the others bound equal shares of the modes' power, which for
-    each mode is a difference of two angles.
-    """
-    half = COUNT // 2
-    even = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, half + 1)
-    first = arctan((low[:, None] - frequency) / decay)
-    power = mobility * (arctan((high[:, None] - frequency) / decay) - first)
-    below = np.cumsum(power, axis=1)
-    goal = below[:, -1:] * (np.arange(half) + 0.5) / half
-    mode = (goal[:, :, None] >= below[:, None, :-1]).sum(axis=2)
-    w, d, b, angle, total, own = (
-        np.take_along_axis(a, mode, axis=1)
-        for a in (frequency, decay, mobility, first, below, power)
+    rate = _RATES[np.searchsorted(FINER * HIGHEST * _RATES, high / forcing)]
+    half = np.maximum(_BAND_PASS / slowest[rows], _PER_BAND / (high - low))
+    tail = _TAIL / slowest[rows]
+    samples = _SPARE * forcing * rate * (2 * half + tail)
+    # Beams of longer memory are beyond any budget; here their force is still defined.
+    shorter = np.minimum(1.0, _LONGEST / samples)
+    half, tail = half * shorter, tail * shorter
+    needed = np.maximum(_SPARE * rate * (forcing * (2 * half + tail) + 2 * _MARGIN), _SHORTEST)
+    size = 2 ** np.ceil(np.log2(needed)).astype(np.int64)
+    lead = np.ceil(forcing * (half + tail)).astype(np.int64) + _MARGIN
+    lag = np.ceil(forcing * half).astype(np.int64) + _MARGIN
+    drawn = np.zeros(len(rows), LOAD)
+    drawn["power"] = 0.5 * p.random_force_level[rows] * forcing * rate / p.initial_gap[rows] ** 2
+    drawn["low"], drawn["high"], drawn["edge"] = (
+        low / forcing,
+        high / forcing,
+        _EDGE / half / forcing,
     )
-    uneven = w + d * tan(angle + (goal - (total - own)) / b)
-    return np.sort(np.hstack([even, np.clip(uneven, low[:, None], high[:, None])]), axis=1)
-
-
-def _blur(low: Array, high: Array, frequency: Array, decay: Array, mobility: Array) -> Array:
-    """Return the tip's variance from modes outside the band, times epoch over level, shape (n,)."""
-    low, high, natural = low[:, None], high[:, None], frequency / (2 * np.pi)
-    band = high - low
-    to_low, to_high = (np.maximum(np.abs(natural - end), band / 20) for end in (low, high))
-    outside = (natural < low) | (natural > high)
-    level = outside * band / (2 * np.pi**2 * to_low * to_high)
-    return (level * mobility**2 / (8 * decay * frequency**2)).sum(axis=1)
+    drawn["rate"], drawn["size"], drawn["lead"] = rate, size, lead
+    drawn["stretch"] = size // rate - lead - lag
+    drawn["seed"] = seed[rows]
+    load[rows] = drawn
+    return load

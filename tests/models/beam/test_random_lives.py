@@ -158,14 +158,23 @@ def test_a_site_much_faster_than_the_other_keeps_a_gap_of_known_size():
 
 
 def test_a_stiff_contact_that_hardly_ends_does_not_feed_on_its_steps():
-    x = rows(1)
-    x[0] = [
+    stiff = [
         *(18.4133, 165.819, 0.282995, 5194780.0, 6814.32, 4845627.0, 21.7748, 99.4254, 4.06674e-3),
         *(-0.317745, 10.0677, 5.43682e-5, 6.8e-11, 5.92539, 3.47426e-3, -0.0801288, -2.51198),
         *(535.794, 890.099, 2202.53),
     ]
-    _, status = MODEL.batch(x, np.array([744], np.uint64), Settings(depths=(1e-5,)))
-    assert status.tolist() == [Status.OK]
+    p = nominal(**dict(zip(Params._fields, stiff, strict=True)))
+    _, system = prepared(lanes, p, [744])
+    state, gaps = started(lanes, system, p)
+    peaks = [lanes.advance(system, state, gaps, np.zeros((1, 2)), 256).peak.max() for _ in range(4)]
+    assert 0 < peaks[-1] < peaks[0] < -p.initial_displacement[0] / p.initial_gap[0]
+
+
+def test_a_beam_slower_to_forget_than_the_budget_lasts_is_out_of_budget():
+    x = rows(1, length=18.0, mass_damping=10.0, random_force_level=1e-3, random_force_low=50.0)
+    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), Settings(depths=(1e-5,)))
+    assert status.tolist() == [Status.OUT_OF_BUDGET]
+    assert np.isnan(outputs["work_rate"]).all()
 
 
 def test_a_beam_that_its_steps_throw_out_of_all_bounds_is_out_of_budget(monkeypatch):
@@ -174,3 +183,12 @@ def test_a_beam_that_its_steps_throw_out_of_all_bounds_is_out_of_budget(monkeypa
     outputs, status = MODEL.batch(x, np.array([744, 0], np.uint64), Settings(depths=(1e-5,)))
     assert status.tolist() == [Status.OUT_OF_BUDGET, Status.OK]
     assert np.isnan(outputs["work_rate"][0]).all()
+
+
+@pytest.mark.slow
+def test_a_band_above_the_first_mode_gives_every_seed_the_same_work_rate():
+    x = rows(8, force_amplitude=0.0, random_force_level=0.2, random_force_low=50.0)
+    settings = Settings(depths=(1e-9,), accuracy=1.0, modes=6)
+    outputs, _ = MODEL.batch(x, np.arange(8, dtype=np.uint64), settings)
+    work = outputs["work_rate"].mean(axis=1)
+    assert work.std(ddof=1) < 0.15 * work.mean()
