@@ -259,7 +259,7 @@ class Pair:
         rows, kept = self.rows, [one.kept for one in samples]
         influence = [estimator.influence(one.numbers[one.kept]) for one in samples]
         parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
-        if np.array_equal(*kept) and all(
+        if np.array_equal(kept[0], kept[1]) and all(
             np.array_equal(rows[0][name].values, rows[1][name].values)
             for name in ("replicate", "group", "block")
         ):

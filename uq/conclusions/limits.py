@@ -147,7 +147,8 @@ def limit_of(
         return replace(plain, why=why)
     shown = best if is_unwanted else _opposite(best)
     many = f"{percent_range(shown.low, shown.high)} {said}"
-    ends = unit.between(*sorted(edges[-2:]))
+    low, high = sorted(edges[-2:])
+    ends = unit.between(low, high)
     why = f"averaged over the best of {len(shares)} parts of {names} ({ends}), {many}"
     if curve.of_values:
         why = f"where {names} is {last.place}, {many}"

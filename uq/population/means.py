@@ -201,8 +201,8 @@ def moments_of_rows(
     ends = beyond_jumps(mean, ends, _influence(values, weights), part, CONFIDENCE)
     found = Estimate(mean, *ends)
     relative = pulls(squares, weights, part) / max(variance, 1e-300)
-    ends = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
-    return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
+    away = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
+    return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(away / 2)).tolist())
 
 
 def weighted_moments(
