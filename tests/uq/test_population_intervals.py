@@ -8,8 +8,9 @@ from scipy import special, stats
 
 from uq.analysis.comparison import compare
 from uq.clusters import Clusters
+from uq.jumps import EvenReplicates
 from uq.population.few_rows import FEW
-from uq.population.means import EXACT, share_to_compare, weighted_share
+from uq.population.means import EXACT, moments_of_rows, share_to_compare, weighted_share
 from uq.population.scaling import population
 from uq.population.smoothing import effective_rows
 from uq.two_samples import difference
@@ -124,3 +125,16 @@ def test_intervals_hold_the_truth(spread, rows):
             found = weighted_share(special.ndtr(y - rest))
             misses += found.low > p, found.high < p
         assert (misses <= 0.05 * 400 + 8).all(), (p, misses)
+
+
+def test_replicates_without_a_heavy_row_do_not_show_their_error():
+    """Of an exponential law, weighted to one with a mean 1.3 times as large."""
+    replicate, random = np.repeat(np.arange(8), 128), np.random.default_rng(1)
+    covered = []
+    for _ in range(100):
+        order = np.concatenate([random.permutation(128) for _ in range(8)])
+        x = -np.log1p(-(order + random.random(1024)) / 128)
+        weights = np.exp(x * (1 - 1 / 1.3))
+        found = moments_of_rows(x, weights, EvenReplicates(replicate, x[:, None]))
+        covered.append([one.low <= 1.3 <= one.high for one in found])
+    assert np.mean(covered, axis=0).min() >= 0.9

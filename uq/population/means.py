@@ -23,7 +23,7 @@ from uq.intervals import (
     upper_probability,
     wilson_interval,
 )
-from uq.jumps import beyond_jumps
+from uq.jumps import EvenReplicates, beyond_jumps
 from uq.population.few_rows import Hits, hits_behind, widened
 from uq.population.smoothing import (
     HOPELESS,
@@ -144,10 +144,10 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     return Estimate(mean, low, high)
 
 
-def _beyond_outliers(mean: float, found: Floats) -> tuple[float, float]:
-    """Return Student's interval, moved by what two more outliers as far would add."""
+def _beyond_outliers(mean: float, found: Floats, rows: Floats) -> tuple[float, float]:
+    """Return Student's interval of parts, moved by what two more outlying rows as far would add."""
     low, high = scatter_interval(mean, found)
-    move = _outlier(mean, found)
+    move = _outlier(mean, rows)
     return low + min(move, 0.0), high + max(move, 0.0)
 
 
@@ -186,7 +186,9 @@ def moments_of_rows(
     -------
     mean, sd : Estimate
         With Student's intervals from the parts' influences, that of the standard deviation by its
-        logarithm; of a single row a mean alone.
+        logarithm; of a single row a mean alone. The end on the side of the farther outlier is moved
+        by what two more such parts would add; of replicates whose rows have weights, two more such
+        rows: eight replicates without a heavy row scatter too little, and show no outlier.
 
     References
     ----------
@@ -197,12 +199,15 @@ def moments_of_rows(
         return Estimate(mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
     squares = (values - mean) ** 2 + within
     variance = float(np.average(squares, weights=weights))
-    ends = _beyond_outliers(mean, pulls(values, weights, part))
-    ends = beyond_jumps(mean, ends, _influence(values, weights), part, CONFIDENCE)
-    found = Estimate(mean, *ends)
-    relative = pulls(squares, weights, part) / max(variance, 1e-300)
-    away = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
-    return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(away / 2)).tolist())
+    of_rows = isinstance(part, EvenReplicates) and not is_constant(weights)
+    influence, found = _influence(values, weights), pulls(values, weights, part)
+    ends = _beyond_outliers(mean, found, mean + influence if of_rows else found)
+    ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
+    of_mean = Estimate(mean, *ends)
+    size = max(variance, 1e-300)
+    relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
+    away = np.asarray(_beyond_outliers(1.0, relative, 1.0 + rows if of_rows else relative)) - 1.0
+    return of_mean, Estimate(variance**0.5, *(variance**0.5 * np.exp(away / 2)).tolist())
 
 
 def weighted_moments(
