@@ -23,7 +23,6 @@ from uq.intervals import (
     upper_probability,
     wilson_interval,
 )
-from uq.jumps import beyond_jumps
 from uq.population.few_rows import Hits, hits_behind, widened
 from uq.population.smoothing import (
     HOPELESS,
@@ -46,7 +45,7 @@ def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
     of an input together, also on that law (`uq.clusters.LearntTogether`).
     """
     mean = np.average(numbers, weights=weights)
-    influence = _influence(numbers, weights)
+    influence = weights * (numbers - mean) / weights.mean()
     if part is None:
         return mean + influence
     of = np.asarray(part)
@@ -55,11 +54,6 @@ def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
     _, place = np.unique(of, return_inverse=True)
     sums = np.bincount(place, weights=influence)
     return np.asarray(mean + len(sums) * sums / len(influence))
-
-
-def _influence(numbers: Floats, weights: Floats) -> Floats:
-    """Return the influence of each row on a weighted mean, shape (n,)."""
-    return weights * (numbers - np.average(numbers, weights=weights)) / weights.mean()
 
 
 def weighted_share(
@@ -85,8 +79,7 @@ def weighted_share(
     Returns
     -------
     Estimate
-        With Student's interval of the logit from the parts' influences, and with the error of jumps
-        that replicates do not show (`uq.jumps`). The end on the side of the
+        With Student's interval of the logit from the parts' influences. The end on the side of the
         farther outlier is moved by what two more such parts would add, since samples without them
         scatter too little. Where no more than 20 effective rows carry the mean, or its
         complement, it is no narrower than the exact interval of a share of hits: the rows that
@@ -108,7 +101,7 @@ def weighted_share(
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
-    low, high = _of_logit(mean, found, confidence, _influence(numbers, worth), part)
+    low, high = _of_logit(mean, found, confidence)
     if 0 < mean < 1:
         outlier = _outlier(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
@@ -139,8 +132,7 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     if len(found) < 2:
         return Estimate(mean)
     some = hits_behind(numbers, None, part)
-    ends = _of_logit(mean, found, CONFIDENCE, numbers - mean, part)
-    low, high = widened(ends, some, lambda rows: wilson_interval(mean, rows))
+    low, high = widened(_of_logit(mean, found), some, lambda rows: wilson_interval(mean, rows))
     return Estimate(mean, low, high)
 
 
@@ -156,16 +148,13 @@ def _outlier(mean: float, found: Floats) -> float:
     return float(2 * ((found.max() - mean) - (mean - found.min())) / len(found))
 
 
-def _of_logit(
-    mean: float, found: Floats, confidence: float, influence: Floats, part: Replicates
-) -> tuple[float, float]:
-    """Return Student's interval of the logit of a mean, from what each part says of it, and row."""
+def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
+    """Return Student's interval of the logit of a mean, from what each part says of it."""
     if not 0 < mean < 1:
         return mean, mean
     error = found.std(ddof=1) / len(found) ** 0.5
     wide = student(upper_probability(confidence), len(found) - 1)
-    _, reach = beyond_jumps(0.0, (-wide * error, wide * error), influence, part, confidence)
-    half = reach / (mean * (1 - mean))
+    half = wide * error / (mean * (1 - mean))
     low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
     return low, high
 
@@ -197,12 +186,10 @@ def moments_of_rows(
         return Estimate(mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
     squares = (values - mean) ** 2 + within
     variance = float(np.average(squares, weights=weights))
-    ends = _beyond_outliers(mean, pulls(values, weights, part))
-    ends = beyond_jumps(mean, ends, _influence(values, weights), part, CONFIDENCE)
-    found = Estimate(mean, *ends)
+    found = Estimate(mean, *_beyond_outliers(mean, pulls(values, weights, part)))
     relative = pulls(squares, weights, part) / max(variance, 1e-300)
-    away = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
-    return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(away / 2)).tolist())
+    ends = np.asarray(_beyond_outliers(1.0, relative)) - 1.0
+    return found, Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
 
 
 def weighted_moments(
