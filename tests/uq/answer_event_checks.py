@@ -56,7 +56,7 @@ def _denied_limit(event, x, hits):
         event.limited,
     ).groups()
     unwanted = 1 - hits if few == "more" else hits
-    known, at = np.isfinite(hits), event.limit.at
+    known, at = np.isfinite(hits), event.limit.at / event.over_unit.per  # in the unit of `x`
     beyond = known & ((x > at) if event.limit.is_lower else (x < at))
     if (
         share != ("95" if few == "more" else "5")
@@ -66,7 +66,7 @@ def _denied_limit(event, x, hits):
         yield event.limited
         return
     shown = [float(one) for one in place[1:] if one is not None]
-    if not any(abs(one - at / event.over_unit.per) <= 0.006 * abs(one) for one in shown):
+    if not any(abs(one - at) <= 0.006 * abs(one) for one in shown):
         yield event.limited
     if unwanted[beyond].mean() >= 0.05:
         yield event.limited

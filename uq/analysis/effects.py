@@ -12,8 +12,8 @@ from uq.intervals import (
     Ends,
     Replicates,
     by_replicate,
-    interval_of_mean,
     is_constant,
+    scatter_interval,
 )
 from uq.methods.slices import has_many_equal
 
@@ -160,6 +160,7 @@ def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
 
 def _interval(value: float, rows: Floats, part: Replicates, confidence: float = CONFIDENCE) -> Ends:
     """Return the interval of an estimate from what each row says of it."""
-    if len(rows) > 1 and is_constant(rows if part is None else by_replicate(rows, part)):
-        return value, value  # no row deviates
-    return interval_of_mean(value, rows, part, confidence)
+    estimates = rows if part is None else by_replicate(rows, part)
+    if len(estimates) > 1 and is_constant(estimates):  # no row deviates
+        return value, value
+    return scatter_interval(value, estimates, confidence)
