@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from uq.clusters import Clusters, linearised_means
 from uq.contract import Floats, Mask
 from uq.exact_shares import are_few, exact_interval
+from uq.jumps import beyond_jumps
 from uq.quantile_functions import normal, student
 
 CONFIDENCE = 0.95
@@ -108,7 +109,8 @@ def mean_interval(
     Returns
     -------
     low, high : float
-        Student's t [1]_ of the rows, or of the means of the replicates.
+        Student's t [1]_ of the rows, or of the means of the replicates, with the error of jumps
+        that these do not show (`uq.jumps`).
 
     References
     ----------
@@ -116,8 +118,31 @@ def mean_interval(
     """
     if len(values) < 2 or is_constant(values):
         return UNKNOWN
-    estimates = values if replicate is None else by_replicate(values, replicate)
-    return scatter_interval(values.mean(), estimates, confidence)
+    return interval_of_mean(float(values.mean()), values, replicate, confidence)
+
+
+def interval_of_mean(
+    value: float, values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Ends:
+    """Return the interval of an estimate that is off by as much as the mean of some values.
+
+    Parameters
+    ----------
+    value : float
+    values : ndarray, shape (n,)
+        The rows, or the influence of each on the estimate, plus a constant.
+    replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        As in `mean_interval`.
+    """
+    if replicate is None:
+        return scatter_interval(value, values, confidence)
+    ends = scatter_interval(value, by_replicate(values, replicate), confidence)
+    return beyond_jumps(value, ends, values, replicate, confidence)
 
 
 def share_interval(
@@ -137,7 +162,8 @@ def share_interval(
         Wilson's score interval [1]_. For replicates, with the effective number of independent
         rows and Student's t in place of the normal quantile [2]_. Where hits or misses are few, the
         interval of Clopper and Pearson (`uq.exact_shares`), which is conservative; replicates
-        then count for at most their rows, since few hits show little of their scatter.
+        then count for at most their rows, since few hits show little of their scatter. It allows
+        for jumps that replicates do not show, as in `mean_interval`.
 
     References
     ----------
@@ -150,15 +176,16 @@ def share_interval(
         return UNKNOWN
     if replicate is None:
         return binomial_interval(hits.mean(), len(hits), confidence)
-    return _floats(
-        scattered_share_interval(
-            hits.mean(),
-            by_replicate(hits, replicate),
-            confidence=confidence,
-            rows=len(hits),
-            samples=replicate.samples if isinstance(replicate, Clusters) else None,
-        )
+    share = float(hits.mean())
+    ends = scattered_share_interval(
+        share,
+        by_replicate(hits, replicate),
+        confidence=confidence,
+        rows=len(hits),
+        samples=replicate.samples if isinstance(replicate, Clusters) else None,
     )
+    low, high = beyond_jumps(share, _floats(ends), hits.astype(float), replicate, confidence)
+    return max(low, 0.0) if low == low else low, min(high, 1.0) if high == high else high
 
 
 def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:

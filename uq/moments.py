@@ -20,6 +20,7 @@ from uq.intervals import (
     sized,
     upper_probability,
 )
+from uq.jumps import beyond_jumps
 from uq.quantile_functions import normal
 from uq.tails import FEWEST_ROWS, Tail, heavier_tail
 
@@ -148,7 +149,8 @@ def sd_interval(
     low, high : float
         Independent rows: after [1]_, with the kurtosis of the rows. Replicates: Student's t of the
         logarithms of their variances; samples of several rows: of their mean squares, as the
-        relative error of the variance. In all the upper end is raised by what one more row as
+        relative error of the variance. Replicates allow for jumps that they do not show
+        (`uq.jumps`). In all the upper end is raised by what one more row as
         extreme as the farthest would add, since samples without such rows scatter too little.
 
     References
@@ -174,6 +176,8 @@ def sd_interval(
         if not (found > 0).all():
             return UNKNOWN
         low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
+        low, high = beyond_jumps(variance, (low, high), squares, replicate, confidence)
+        low = max(low, 0.0)
     return size * float(np.sqrt(low)), size * float(np.sqrt(high + squares.max() / n))
 
 

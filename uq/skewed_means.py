@@ -5,6 +5,7 @@ import numpy as np
 from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import CONFIDENCE, Ends, Replicates, by_replicate, sized, upper_probability
+from uq.jumps import beyond_jumps
 from uq.quantile_functions import student
 
 
@@ -25,6 +26,7 @@ def corrected_mean_interval(
     low, high : float
         By the cubic transformation of Student's t whose skewness vanishes [1]_, with the skewness
         of the rows, or of the means of the replicates; without skewness it is Student's interval.
+        Replicates allow for jumps that they do not show (`uq.jumps`).
 
     References
     ----------
@@ -46,7 +48,7 @@ def corrected_mean_interval(
     error = float(estimates.std(ddof=1)) / n**0.5
     t = student(upper_probability(confidence), n - 1)
     low, high = (mean - error * _untransformed(end, skewness / n**0.5) for end in (t, -t))
-    low, high = size * low, size * high
+    low, high = beyond_jumps(size * mean, (size * low, size * high), values, replicate, confidence)
     if replicate is None or isinstance(replicate, Clusters) and replicate.are_samples:
         return low, high
     away = values - values.mean()

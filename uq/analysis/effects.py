@@ -12,8 +12,8 @@ from uq.intervals import (
     Ends,
     Replicates,
     by_replicate,
+    interval_of_mean,
     is_constant,
-    scatter_interval,
 )
 from uq.methods.slices import has_many_equal
 
@@ -163,4 +163,4 @@ def _interval(value: float, rows: Floats, part: Replicates, confidence: float = 
     estimates = rows if part is None else by_replicate(rows, part)
     if len(estimates) > 1 and is_constant(estimates):  # no row deviates
         return value, value
-    return scatter_interval(value, estimates, confidence)
+    return interval_of_mean(value, rows, part, confidence)

@@ -74,6 +74,11 @@ class Estimator:
     averages: bool = False
     is_scale: bool = False
 
+    def influence(self, x: Floats) -> Floats:
+        """Return the influence of each row on the estimate, a mean or a standard deviation."""
+        pull = self.pull(x)
+        return pull / (2 * x.std()) if self.is_scale else pull
+
 
 def _centred(x: Floats) -> Floats:
     return x - x.mean()

@@ -18,6 +18,7 @@ from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
 from uq.exact_shares import exact_interval
+from uq.jumps import beyond_jumps
 from uq.population.means import share_to_compare
 from uq.rows.elements import (
     Floats,
@@ -174,7 +175,8 @@ class Pair:
             apart = own[1] - own[0]
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
                 return Estimate(value)
-            return Estimate(value, *intervals.scatter_interval(value, apart))
+            ends = intervals.scatter_interval(value, apart)
+            return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
         if self.kinship is Kinship.WEIGHTED:
             return two_samples.difference(known[0], known[1], self.unpaired)
         if estimator.counts_hits and all(one is None for one in self._replicate):
@@ -246,6 +248,25 @@ class Pair:
         if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
+
+    def _beyond_jumps(
+        self, value: float, ends: intervals.Ends, estimator: Estimator, samples: list[Sample]
+    ) -> intervals.Ends:
+        """Return the interval of a difference, with the error of jumps that replicates hide.
+
+        Of the difference row by row where both results have the same ones: most jumps cancel.
+        """
+        rows, kept = self.rows, [one.kept for one in samples]
+        influence = [estimator.influence(one.numbers[one.kept]) for one in samples]
+        parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
+        if np.array_equal(kept[0], kept[1]) and all(
+            np.array_equal(rows[0][name].values, rows[1][name].values)
+            for name in ("replicate", "group", "block")
+        ):
+            influence, parts = [influence[1] - influence[0]], parts[:1]
+        for of_rows, part in zip(influence, parts, strict=True):
+            ends = beyond_jumps(value, ends, of_rows, part, intervals.CONFIDENCE)
+        return ends
 
     def _averaged(self, i: int, sample: Sample) -> Estimate:
         """Return a mean of probabilities with the interval from which a difference is built."""

@@ -85,8 +85,7 @@ def weighted_share(
     Returns
     -------
     Estimate
-        With Student's interval of the logit from the parts' influences, and with the error of jumps
-        that replicates do not show (`uq.jumps`). The end on the side of the
+        With Student's interval of the logit from the parts' influences. The end on the side of the
         farther outlier is moved by what two more such parts would add, since samples without them
         scatter too little. Where no more than 20 effective rows carry the mean, or its
         complement, it is no narrower than the exact interval of a share of hits: the rows that
@@ -108,7 +107,7 @@ def weighted_share(
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
-    low, high = _of_logit(mean, found, confidence, _influence(numbers, worth), part)
+    low, high = _of_logit(mean, found, confidence)
     if 0 < mean < 1:
         outlier = _outlier(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
@@ -139,8 +138,7 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     if len(found) < 2:
         return Estimate(mean)
     some = hits_behind(numbers, None, part)
-    ends = _of_logit(mean, found, CONFIDENCE, numbers - mean, part)
-    low, high = widened(ends, some, lambda rows: wilson_interval(mean, rows))
+    low, high = widened(_of_logit(mean, found), some, lambda rows: wilson_interval(mean, rows))
     return Estimate(mean, low, high)
 
 
@@ -156,16 +154,13 @@ def _outlier(mean: float, found: Floats) -> float:
     return float(2 * ((found.max() - mean) - (mean - found.min())) / len(found))
 
 
-def _of_logit(
-    mean: float, found: Floats, confidence: float, influence: Floats, part: Replicates
-) -> tuple[float, float]:
-    """Return Student's interval of the logit of a mean, from what each part says of it, and row."""
+def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
+    """Return Student's interval of the logit of a mean, from what each part says of it."""
     if not 0 < mean < 1:
         return mean, mean
     error = found.std(ddof=1) / len(found) ** 0.5
     wide = student(upper_probability(confidence), len(found) - 1)
-    _, reach = beyond_jumps(0.0, (-wide * error, wide * error), influence, part, confidence)
-    half = reach / (mean * (1 - mean))
+    half = wide * error / (mean * (1 - mean))
     low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
     return low, high
 

@@ -18,6 +18,7 @@ from uq.designs.registry import DESIGNS
 from uq.element_names import MOST_PLACES, Place, is_whole, place_of, whole_name
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
+from uq.jumps import EvenReplicates
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in, places
 from uq.rows.nesting import is_nested, nesting_of
@@ -89,11 +90,19 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
     """
     together = LAW_PULLS in rows.variables
     if not is_nested(rows) and not together:
-        return None if are_independent(rows) else rows["replicate"].values
+        if are_independent(rows):
+            return None
+        return EvenReplicates(rows["replicate"].values, inputs_of(rows))
     place = nesting_of(rows)
     are_samples = has_independent_samples(rows)
     of = place.sample if are_samples else rows["replicate"].values
     return Clusters(of, place.samples, are_samples, _learnt(rows, of) if together else None)
+
+
+def inputs_of(rows: xr.Dataset) -> Floats:
+    """Return the values of the uncertain inputs, shape (n, d)."""
+    columns = [v.values for v in rows.variables.values() if v.attrs.get("role") == "input"]
+    return np.column_stack(columns) if columns else np.empty((rows.sizes["sample"], 0))
 
 
 def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> LearntTogether:
