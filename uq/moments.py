@@ -22,7 +22,7 @@ from uq.intervals import (
 )
 from uq.jumps import beyond_jumps
 from uq.quantile_functions import normal
-from uq.tails import FEWEST_ROWS, Tail, heavier_tail
+from uq.tails import Tail, heavier_tail
 
 LIGHT_ENOUGH = 0.15
 """The interval of a standard deviation needs a fourth moment, which exists for k < 1/4. Measured,
@@ -31,6 +31,11 @@ it covers 93 % or more for laws whose samples of some hundred rows show at most 
 SUSPECT = 0.4
 """A k above which the interval of a mean carries a caution. Samples of 200 rows of Pareto's law
 with index 1.5 seldom show less, those of an exponential law hardly ever more."""
+
+ENOUGH_ROWS = 200
+"""Independent rows from which the standard deviation has an interval. Of fewer, too many hold no
+value far out, and scatter too little: of an exponential law, the intervals of 50 rows cover 85 %,
+of 100 rows 89 %, of 200 rows 96 %. Whether they are given must not depend on the values."""
 
 _FEWEST = 8  # rows that show a kurtosis
 
@@ -72,9 +77,9 @@ def moments(
     """
     tail = heavier_tail(values)
     no_mean, no_sd = ("", "") if tail is None else (_why_no_mean(tail), _why_no_sd(tail))
-    if not no_sd and replicate is None and 1 < len(values) < FEWEST_ROWS:
+    if not no_sd and replicate is None and 1 < len(values) < ENOUGH_ROWS:
         if not is_constant(values):
-            no_sd = f"needs {FEWEST_ROWS} rows to judge how heavy the tails are"
+            no_sd = f"needs {ENOUGH_ROWS} rows: fewer seldom show how far the tails reach"
     if len(values) == 1:
         no_mean = no_sd = ONE_ROW
     has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance

@@ -8,6 +8,7 @@ CHAPTERS = {
     ),
     "Plain statistics of other designs": (
         r"(Ishigami|Two regimes|Heavy-tailed life), [a-z-]+, \d+ replicates of \d+ rows"
+        r"|Even replicates"
     ),
     "Means with heavy tails, and standard deviations": (
         r"(Pareto|Lognormal|Normal|Uniform|Exponential), "

@@ -174,3 +174,11 @@ def test_the_size_of_values_changes_no_digit_of_their_scatter(size):
     for name in ("mean", "sd"):
         found, known = (getattr(one, name).numbers for one in (small, usual))
         assert np.array(found) / size == pytest.approx(np.array(known), rel=1e-9)
+
+
+def test_too_few_independent_rows_give_no_interval_of_the_standard_deviation():
+    """Of 50 rows of an exponential law, those with a light tail would cover 85 %."""
+    values = np.random.default_rng(1).normal(size=200)
+    assert moments(values).sd.has_interval
+    few = moments(values[:199]).sd
+    assert not few.has_interval and few.reason.startswith("needs 200 rows")
