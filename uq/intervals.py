@@ -162,8 +162,7 @@ def share_interval(
         Wilson's score interval [1]_. For replicates, with the effective number of independent
         rows and Student's t in place of the normal quantile [2]_. Where hits or misses are few, the
         interval of Clopper and Pearson (`uq.exact_shares`), which is conservative; replicates
-        then count for at most their rows, since few hits show little of their scatter. It allows
-        for jumps that replicates do not show, as in `mean_interval`.
+        then count for at most their rows, since few hits show little of their scatter.
 
     References
     ----------
@@ -176,16 +175,15 @@ def share_interval(
         return UNKNOWN
     if replicate is None:
         return binomial_interval(hits.mean(), len(hits), confidence)
-    share = float(hits.mean())
-    ends = scattered_share_interval(
-        share,
-        by_replicate(hits, replicate),
-        confidence=confidence,
-        rows=len(hits),
-        samples=replicate.samples if isinstance(replicate, Clusters) else None,
+    return _floats(
+        scattered_share_interval(
+            hits.mean(),
+            by_replicate(hits, replicate),
+            confidence=confidence,
+            rows=len(hits),
+            samples=replicate.samples if isinstance(replicate, Clusters) else None,
+        )
     )
-    low, high = beyond_jumps(share, _floats(ends), hits.astype(float), replicate, confidence)
-    return max(low, 0.0) if low == low else low, min(high, 1.0) if high == high else high
 
 
 def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:

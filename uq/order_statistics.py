@@ -16,7 +16,6 @@ from uq.intervals import (
     scattered_share_interval,
     upper_probability,
 )
-from uq.jumps import beyond_jumps
 from uq.quantile_functions import binomial, binomial_exceeded, negative_binomial
 
 
@@ -91,8 +90,8 @@ def quantile_interval(
     -------
     low, high : float
         Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
-        both ends of the interval of the share of rows below the quantile [2]_, which allows for
-        jumps (`uq.jumps`). Bounds may be infinite.
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
+        be infinite.
 
     References
     ----------
@@ -118,8 +117,6 @@ def quantile_interval(
     low, high = scattered_share_interval(
         probability, by_replicate(below, replicate), below.mean(), confidence, **several
     )
-    ends = float(low), float(high)
-    low, high = beyond_jumps(probability, ends, below.astype(float), replicate, confidence)
     return (
         quantile(ascending, low) if low * n >= 1 else np.nan,
         quantile(ascending, high) if (1 - high) * n >= 1 else np.nan,

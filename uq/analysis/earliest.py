@@ -11,6 +11,7 @@ from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import CONFIDENCE, Replicates, mean_interval, replicates_of_some, share_interval
+from uq.jumps import EvenReplicates
 from uq.rows.elements import Element, flags
 
 SHARE = 0.05
@@ -126,6 +127,8 @@ def inputs_apart(
     mask = np.zeros(ds.sizes["sample"], dtype=bool)
     mask[first] = True
     part = replicates_of_some(replicate, mask)
+    if isinstance(part, EvenReplicates):  # a rank follows its input without a jump
+        part = part.view(np.ndarray)
     sure = 1 - (1 - CONFIDENCE) / (2 * max(len(ranked), 1))
     columns = independent_inputs(ds)
     found, has_intervals = [], False
