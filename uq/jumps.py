@@ -63,10 +63,10 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
         """Return the replicates of some rows; the same, with its neighbours, of all."""
         if isinstance(rows, np.ndarray) and rows.dtype == bool and rows.all():
             return self
-        found = super().__getitem__(rows)
-        if isinstance(found, EvenReplicates) and len(self.inputs):
-            found.inputs = self.inputs[rows]
-        return found
+        chosen = super().__getitem__(rows)
+        if isinstance(chosen, EvenReplicates) and len(self.inputs):
+            chosen.inputs = self.inputs[rows]
+        return chosen
 
     @cached_property
     def neighbours(self) -> "Neighbours":
@@ -200,7 +200,7 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
     """
     residual = neighbours.without_smooth(values[neighbours.rows])
     n = len(residual)
-    found: list[float] = []
+    sizes: list[float] = []
     steps: list[Floats] = []
     rounding = 1e-12 * float(np.abs(values).max(initial=0.0))
     while len(neighbours.order) and (noise := float(residual.std())) > rounding:
@@ -208,11 +208,11 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
         explained = np.abs(sums) / neighbours.norms
         which, place = divmod(int(explained.argmax()), n)
         error = noise / float(neighbours.norms[place])
-        if explained[which, place] < SURE * noise or len(found) == MOST_JUMPS:
-            found.append(NOISE * error)
+        if explained[which, place] < SURE * noise or len(sizes) == MOST_JUMPS:
+            sizes.append(NOISE * error)
             break
         size = float(explained[which, place] / neighbours.norms[place])
-        found.append(min(size, _step(residual[neighbours.order[which]], place, neighbours, noise)))
+        sizes.append(min(size, _step(residual[neighbours.order[which]], place, neighbours, noise)))
         behind = np.zeros(n)
         behind[neighbours.order[which, place:]] = 1.0
         step = neighbours.without_smooth(behind)
@@ -222,7 +222,7 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
             break
         steps.append(step / np.sqrt(step @ step))
         residual = residual - steps[-1] * (steps[-1] @ residual)
-    return np.array(found)
+    return np.array(sizes)
 
 
 def _step(ordered: Floats, place: int, neighbours: Neighbours, noise: float) -> float:

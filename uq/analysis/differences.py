@@ -113,8 +113,8 @@ def _compared(
         return Compared(both[0], both[1], Estimate(0.0), identical=True, ratio=ratio)
     if estimator is not None and estimator.counts_hits and pair.are_equal(samples):
         most = pair.most_that_change_sides(samples[0])
-        found = Estimate(0.0, -most, most)
-        return Compared(both[0], both[1], found, no_row_changes_sides=True)
+        apart = Estimate(0.0, -most, most)
+        return Compared(both[0], both[1], apart, no_row_changes_sides=True)
     if estimator is None or any(one.estimate.assumes for one in both):
         apart = two_samples.difference(known[0], known[1], pair.unpaired)
     else:

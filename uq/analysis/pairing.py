@@ -256,8 +256,8 @@ class Pair:
 
         Of the difference row by row where both results have the same ones: most jumps cancel.
         """
-        rows, kept = self.rows, [one.kept for one in samples]
-        influence = [estimator.influence(one.numbers[one.kept]) for one in samples]
+        rows, kept = self.rows, [sample.kept for sample in samples]
+        influence = [estimator.influence(sample.numbers[sample.kept]) for sample in samples]
         parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
         if np.array_equal(kept[0], kept[1]) and all(
             np.array_equal(rows[0][name].values, rows[1][name].values)

@@ -154,11 +154,11 @@ def leader(one: Quantity) -> Markup:
         return keyed(ranking.sentence, _key(one, "ranking", "rows_factor"))
     keys = _keys(one, 0, "inputs", ranking.leader)
     keys += [_key(one, "ranking", "unexplained")] * bool(ranking.beyond_single)
-    known = [keyed(ranking.sentence, *keys)]
+    sentences = [keyed(ranking.sentence, *keys)]
     if ranking.leads and ranking.leader.effect:
         text = sentence(ranking.leader.effect)
-        known.append(keyed(text, *_keys(one, 0, "effects", ranking.leader)))
-    return Markup(" ").join(known)
+        sentences.append(keyed(text, *_keys(one, 0, "effects", ranking.leader)))
+    return Markup(" ").join(sentences)
 
 
 def earliest(one: Quantity) -> Iterator[Markup]:

@@ -64,22 +64,22 @@ def first_order_indices(sample: Sample) -> Indices:
     columns = dict(sample.inputs)
     values, errors, widest, factors = _of_rows(columns, y, part, sample.confidence)
     names = list(columns)
-    own = np.sqrt(np.diag(errors))
-    found = {
-        name: _estimate(float(values[i]), own[i], widest[:, i], factors[i])
+    halves = np.sqrt(np.diag(errors))
+    indices = {
+        name: _estimate(float(values[i]), halves[i], widest[:, i], factors[i])
         for i, name in enumerate(names)
     }
     products = {
         (names[i], names[j]): float(errors[i, j])
         for i, j in combinations_with_replacement(range(len(names)), 2)
     }
-    lacking = {name: one.reason for name, one in found.items() if one.reason}
+    lacking = {name: index.reason for name, index in indices.items() if index.reason}
     notes = tuple(f"S1 of {name} has no interval: {why}" for name, why in lacking.items())
     nulls = {}
     if lacking and sample.nulls and len(np.unique(y)) == 2:
         nulls = {S1: null_of(_without_effect(y, part), len(names))}
     missing = {name: factors[i] for i, name in enumerate(names) if name in lacking}
-    return Indices({S1: found}, notes, nulls, half_products=products, rows_factors=missing)
+    return Indices({S1: indices}, notes, nulls, half_products=products, rows_factors=missing)
 
 
 def _without_effect(y: Floats, part: Part) -> Floats:

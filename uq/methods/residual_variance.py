@@ -59,8 +59,8 @@ def variance(y: Floats, part: Part = None) -> float:
     if part is None:
         return total / (pairs - len(y))
     for number in np.unique(part):
-        own = y[part == number]
-        pairs, total = pairs - float(len(own)) ** 2, total - _pair_sum(own)
+        rows = y[part == number]
+        pairs, total = pairs - float(len(rows)) ** 2, total - _pair_sum(rows)
     return total / pairs if pairs > 0 else np.nan
 
 
@@ -108,18 +108,18 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     rest = order[np.repeat(~shared, counts)]
     if len(rest) <= 2 * LEAST_LAGS:  # too few for lags: one group, whatever their values
         alike, rest = [*alike, rest], rest[:0]
-    found = [(rows, _of_equal(y[rows], _of(part, rows))) for rows in alike]
+    residuals = [(rows, _of_equal(y[rows], _of(part, rows))) for rows in alike]
     if len(rest):
-        found.append((rest, _of_neighbours(y[rest], _of(part, rest))))
-    found = [(rows, one) for rows, one in found if np.isfinite(one.variance)]
-    kept = sum(len(rows) for rows, _ in found)
+        residuals.append((rest, _of_neighbours(y[rest], _of(part, rest))))
+    residuals = [(rows, left) for rows, left in residuals if np.isfinite(left.variance)]
+    kept = sum(len(rows) for rows, _ in residuals)
     squares = np.zeros(len(y))
-    if not found:  # no two rows of one value are of different replicates
+    if not residuals:  # no two rows of one value are of different replicates
         return Residual(np.nan, squares, 0.0, 0.0)
-    for rows, one in found:
-        squares[rows] = one.squares
-    parts = np.array([(one.variance, one.noise, one.excess) for _, one in found])
-    shares = np.array([len(rows) / kept for rows, _ in found])
+    for rows, left in residuals:
+        squares[rows] = left.squares
+    parts = np.array([(left.variance, left.noise, left.excess) for _, left in residuals])
+    shares = np.array([len(rows) / kept for rows, _ in residuals])
     total, noise, excess = (shares @ parts).tolist()
     return Residual(total, squares, noise, excess)
 

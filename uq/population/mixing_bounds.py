@@ -105,12 +105,12 @@ def _at_most(
     is_counted: bool,
 ) -> Floats:
     """Return P(a share of units up to a threshold ended), shape (probabilities, thresholds)."""
-    found = np.zeros((len(probability), len(threshold)))
+    at_most = np.zeros((len(probability), len(threshold)))
     for weight, size in zip(often, sizes, strict=True):
         count = np.floor(threshold * size) if is_counted else threshold * size + step
         count = np.clip(count, -1.0, size)
         inside = (count >= 0) & (count < size)
         k = np.where(inside, count, 0.0)
         below = special.betaincc(k + 1, size - k, probability[:, None])
-        found += weight * np.where(inside, below, count >= size)
-    return found
+        at_most += weight * np.where(inside, below, count >= size)
+    return at_most

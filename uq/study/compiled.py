@@ -15,9 +15,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from platformdirs import user_cache_path
-
 from uq.compilation import when_imported
+from uq.places import cache_path
 from uq.study.sources import DISTRIBUTION, digest, is_installed, own_packages, signature, sources_of
 
 _models: set[str] = set()
@@ -72,10 +71,8 @@ class SourcesLocator:
         import numba
 
         config: Any = numba.config
-        users = user_cache_path(DISTRIBUTION, appauthor=False) / "numba"
-        if not (config.CACHE_DIR or users.is_absolute()):  # no home: it begins with "~"
-            users = _fresh_folder()
-        self._path = Path(config.CACHE_DIR or users) / key_of(module) / module
+        users = config.CACHE_DIR or cache_path(DISTRIBUTION) / "numba"
+        self._path = Path(users) / key_of(module) / module
         self._line = str(function.__code__.co_firstlineno)
 
     @classmethod

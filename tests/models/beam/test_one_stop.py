@@ -35,6 +35,12 @@ def meets_later(first, touches):
     return work
 
 
+def computed(parameters, **settings):
+    """Return outputs and status of a row with some parameters changed."""
+    x = np.array([list(Params(**(MODEL.nominal | parameters)))])
+    return MODEL.batch(x, np.zeros(1, np.uint64), Settings(**settings))
+
+
 @pytest.mark.parametrize("regime", [SYMMETRIC, APERIODIC])
 @pytest.mark.parametrize("met", [0, 1])
 def test_a_stop_that_is_never_met_never_wears_though_the_other_has_reached_the_last_depth(
@@ -72,9 +78,7 @@ def test_the_first_life_is_known_and_the_other_infinite(side):
         "forcing_frequency": 20.0,
         "force_amplitude": 0.3,
     }
-    x = np.array([list(Params(**(MODEL.nominal | p)))])
-    settings = Settings(depths=(5e-6, 1e-5))
-    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), settings)
+    outputs, status = computed(p, depths=(5e-6, 1e-5))
     near, far = (1, 0) if side > 0 else (0, 1)
     assert outputs["work_rate"][0, far] == 0 < outputs["work_rate"][0, near]
     assert status[0] == Status.OK
@@ -94,9 +98,7 @@ def test_a_worn_stop_is_followed_over_many_times_the_last_depth(side):
         "forcing_frequency": 44.477256,
         "force_amplitude": 0.290711,
     }
-    x = np.array([list(Params(**(MODEL.nominal | p)))])
-    settings = Settings(depths=(1e-9,), accuracy=1.0)
-    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), settings)
+    outputs, status = computed(p, depths=(1e-9,), accuracy=1.0)
     assert status[0] == Status.OK
     assert np.isfinite(outputs["time_to_depth"]).sum() == 1
     assert np.isposinf(outputs["time_to_depth"]).sum() == 1
