@@ -10,7 +10,13 @@ from uq.intervals import upper_probability
 from uq.methods.given_data import DUMMIES, beside_nulls, null_of, one_kind
 from uq.methods.indices import S1, Indices
 from uq.methods.measures import first_order
-from uq.methods.residual_variance import Part, Residual, residual_variance, variance
+from uq.methods.residual_variance import (
+    Part,
+    Residual,
+    ordered_residual_variance,
+    residual_variance,
+    variance,
+)
 from uq.methods.sample import Sample
 from uq.quantile_functions import student
 from uq.wording import counted
@@ -84,8 +90,13 @@ def first_order_indices(sample: Sample) -> Indices:
 
 def _without_effect(y: Floats, part: Part) -> Floats:
     """Return the indices of inputs without effect."""
-    idle = np.random.default_rng(0).random((DUMMIES, len(y)))
-    return _shares({str(i): column for i, column in enumerate(idle)}, y, part)
+    every = variance(y, part)
+    orders = np.random.default_rng(0).random((DUMMIES, len(y))).argsort(axis=1)
+    parts = [None if part is None else part[order] for order in orders]
+    left = [
+        ordered_residual_variance(y[order], of) for order, of in zip(orders, parts, strict=True)
+    ]
+    return 1 - np.array(left) / every
 
 
 def _of_rows(
@@ -126,11 +137,6 @@ def _rows_factor(influence: Floats) -> float:
     square = float(influence @ influence)
     rows = square**2 / float(np.sum(influence**4)) if square > 0 else 0.0
     return ENOUGH_ROWS / max(rows, 1.0)
-
-
-def _shares(columns: dict[str, Floats], y: Floats, part: Part) -> Floats:
-    every = variance(y, part)
-    return np.array([1 - residual_variance(x, y, part).variance / every for x in columns.values()])
 
 
 def _estimate(value: float, half: float, widest: Floats, factor: float) -> Estimate:

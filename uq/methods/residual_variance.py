@@ -69,6 +69,11 @@ def _pair_sum(y: Floats) -> float:
     return float(len(y) * np.sum((y - y.mean(axis=0)) ** 2))
 
 
+def ordered_residual_variance(y: Floats, part: Part = None) -> float:
+    """Estimate the residual variance alone, from rows in the order of an input without ties."""
+    return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part)[2]
+
+
 def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     """Estimate the variance of an output that is left when an input is known.
 
@@ -140,21 +145,36 @@ def _of_equal(y: Floats, part: Part) -> Residual:
 
 def _of_neighbours(y: Floats, part: Part) -> Residual:
     """Return the residual variance of rows in the order of the input."""
+    number, lags, left = _extrapolated(y, part)
+    squares, local, smoothed = _squared_residuals(y, number, left)
+    noise = 0.0
+    for lag, weight in zip(lags, _weights(lags), strict=True):
+        used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
+        noise += weight**2 * float(squares[lag:] @ squares[:-lag]) / (len(y) - lag) / used
+    excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
+    return Residual(left, squares * _times_used(lags, len(y)), noise, excess)
+
+
+def _extrapolated(y: Floats, part: Part) -> tuple[int, tuple[int, ...], float]:
+    """Return the number of lags, the lags, and the residual variance that they lead to."""
     number = _number_of_lags(y, part)
     lags = _lags(number, len(y), part)
-    left = _intercept(y, part, lags)
-    squares, local, smoothed = _squared_residuals(y, number, left)
-    diagonal, noise = np.ones(len(y)), 0.0
-    for lag, weight in zip(lags, _weights(lags), strict=True):
-        # Near the ends of the order rows count a quarter less, and those they meet a quarter more.
-        diagonal[:lag] -= weight / 4
-        diagonal[lag : 2 * lag] += weight / 4
-        diagonal[-lag:] -= weight / 4
-        diagonal[-2 * lag : -lag] += weight / 4
-        used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
-        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag])) / used
-    excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
-    return Residual(left, squares * diagonal, noise, excess)
+    return number, lags, _intercept(y, part, lags)
+
+
+def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
+    """Return how much each row counts, relative to one with two partners at each lag.
+
+    Near the ends of the order rows count a quarter less, and those they meet a quarter more.
+    """
+    lag, quarter = np.array(lags, int), np.array(_weights(lags)) / 4
+    changes = np.zeros(rows)
+    changes[0] = 1 - quarter.sum()
+    changes[lag] += 2 * quarter
+    changes[2 * lag] -= quarter
+    changes[rows - 2 * lag] += quarter
+    changes[rows - lag] -= 2 * quarter
+    return np.cumsum(changes)
 
 
 def _lags(number: int, rows: int, part: Part) -> tuple[int, ...]:
@@ -183,13 +203,16 @@ def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
 
 def _half_square(y: Floats, part: Part, lag: int) -> float:
     """Return half the mean squared difference of rows some places apart."""
-    squares = np.sum((y[lag:] - y[:-lag]) ** 2, axis=1) / 2
-    counts = np.ones(len(squares))
+    steps = y[lag:] - y[:-lag]
+    if part is None:  # the counts of both ends make up for the pairs that are lacking
+        first, last = steps[:lag].ravel(), steps[-lag:].ravel()
+        ends = (first @ first + last @ last) / 2
+        return float((steps.ravel() @ steps.ravel() + ends) / (2 * len(y)))
+    counts = np.ones(len(steps))
     counts[:lag] += 0.5
     counts[-lag:] += 0.5
-    if part is not None:
-        counts *= part[lag:] != part[:-lag]
-    return float(counts @ squares / counts.sum())
+    counts *= part[lag:] != part[:-lag]
+    return float(counts @ np.sum(steps**2, axis=1) / (2 * counts.sum()))
 
 
 def _number_of_lags(y: Floats, part: Part) -> int:
