@@ -36,9 +36,9 @@ def mean_and_error(batches: Array) -> tuple[Array, Array]:
 def ratio_error(numerators: Array, denominators: Array) -> Array:
     """Return standard errors of ratios of time means, linearised (delta method).
 
-    Batches without a denominator tell nothing of the ratio, so that the degrees of freedom are those
-    of the others. Where these are few, the error is larger by Student's factor: 1.645 of it remain
-    half the width of a 90 % interval.
+    Batches without a denominator tell nothing of the ratio: degrees of freedom are those of the
+    others. Where these are few, the error is larger by Student's factor, so that 1.645 times the
+    error remains the half-width of a 90 % interval.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def ratio_error(numerators: Array, denominators: Array) -> Array:
         NaN where fewer than two batches have a denominator.
     """
     mean = denominators.mean(axis=1, keepdims=True)
-    with np.errstate(invalid="ignore"):  # 0/0 where no batch has one
+    with np.errstate(divide="ignore", invalid="ignore"):  # where no batch has one
         ratio = numerators.mean(axis=1, keepdims=True) / mean
         _, error = mean_and_error((numerators - ratio * denominators) / mean)
     return error * _wider(denominators.shape[1])[np.count_nonzero(denominators, axis=1)]

@@ -42,7 +42,6 @@ def test_every_number_of_a_mole_has_an_error():
     assert numbers == values | {f"{name}_error" for name in values}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MEANS)
 def test_stated_errors_are_those_that_averages_have(short, name):
     values, errors = short[name], short[f"{name}_error"]
@@ -51,7 +50,6 @@ def test_stated_errors_are_those_that_averages_have(short, name):
     assert np.mean(np.abs(values - values.mean()) < 1.645 * errors) > 0.8
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", EXTREMES)
 def test_extremes_grow_with_time_and_by_no_more_than_stated(short, name):
     """The largest of 32 averaging times is that of a time 32 times as long."""
