@@ -5,14 +5,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lanes.rows import OUT_OF_BUDGET, OUTCOME
-from models.mole.parameters import NO_IMPACT, PERIODIC, Params, Rows, Settings
+from models.mole.lanes.rows import OUT_OF_BUDGET, OUTCOME, SCALES
+from models.mole.lanes.strobe import REPEAT
+from models.mole.parameters import NO_IMPACT, ON_STOP, PERIODIC, Params, Rows, Settings
 from models.mole.response.following import follow_other, follow_repeating
 from models.mole.response.machines import Machines
 from models.mole.response.measured import BATCHES, Response
 from models.mole.response.settling import LATEST, settle, settle_late
 from models.mole.response.verdict import verdicts
-from models.numerics.batch_means import mean_and_error
+from models.numerics.batch_means import mean_and_error, ratio_error
+from models.numerics.block_maxima import maximum_and_growth
 from uq.contract import Status
 
 
@@ -58,29 +60,39 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
     repeats = response.period > 0
     progression, progression_error = _mean(response.progress, response.time, repeats)
     impact, impact_error = _mean(response.impact, response.time, repeats)
-    electrical, _ = _mean(response.electric, response.time, repeats)
+    electrical, electrical_error = _mean(response.electric, response.time, repeats)
     exponent, exponent_error = _mean(response.growth, response.time, repeats)
     periods = response.time * p.control_frequency
+    _, impacts_error = _mean(response.contacts, periods, repeats)
+    high, low = response.high.max(axis=1), response.low.min(axis=1)
+    contacts = response.contacts.sum(axis=1)
     other = verdicts(response.growth, periods, machines.system.common == 0)
     regime = np.where(repeats, PERIODIC, other)
-    regime[(response.contacts == 0) & ~response.touching] = NO_IMPACT
+    regime[(contacts == 0) & ~response.touching] = NO_IMPACT
+    regime[(contacts == 0) & response.touching & (high - low < REPEAT * SCALES[0])] = ON_STOP
     regime[~known] = -1
-    force = p.contact_stiffness * np.maximum(response.high - p.stop_gap, 0.0)
-    range_ = response.high - response.low
-    impacts = response.contacts / (response.time * p.control_frequency)
-    blows = np.where(response.contacts > 0, response.contacts, np.nan)
+    gap, stiffness = p.stop_gap[:, None], p.contact_stiffness[:, None]
+    forces = stiffness * np.maximum(response.high - gap, 0.0)
+    blows = np.where(contacts > 0, contacts, np.nan)
     return {
         "progression_rate": progression,
         "progression_rate_error": progression_error,
-        "peak_contact_force": np.where(known, force, np.nan),
+        "peak_contact_force": np.where(known, forces.max(axis=1), np.nan),
+        "peak_contact_force_error": _growth(known, repeats, forces),
         "impact_work_rate": impact,
         "impact_work_rate_error": impact_error,
-        "impacts_per_period": impacts,
-        "impact_impulse": response.impulse / blows,
+        "impacts_per_period": contacts / periods,
+        "impacts_per_period_error": impacts_error,
+        "impact_impulse": response.impulse.sum(axis=1) / blows,
+        "impact_impulse_error": _ratio_error(response.impulse, response.contacts, repeats),
         "impact_energy": response.impact.sum(axis=1) / blows,
-        "displacement_range": np.where(known, range_, np.nan),
+        "impact_energy_error": _ratio_error(response.impact, response.contacts, repeats),
+        "displacement_range": np.where(known, high - low, np.nan),
+        "displacement_range_error": _growth(known, repeats, response.high, -response.low),
         "electrical_power": electrical,
+        "electrical_power_error": electrical_error,
         "efficiency": impact / electrical,
+        "efficiency_error": _ratio_error(response.impact, response.electric, repeats),
         "lyapunov_exponent": exponent,
         "lyapunov_exponent_error": exponent_error,
         "regime": regime.astype(np.int8),
@@ -93,3 +105,17 @@ def _mean(parts: Any, time: Any, repeats: Any) -> tuple[Any, Any]:
     mean, error = mean_and_error(parts)
     error = np.where(repeats, 0.0, error)
     return mean * BATCHES / time, error * BATCHES / time
+
+
+def _ratio_error(parts: Any, of: Any, repeats: Any) -> Any:
+    """Return the standard error of the ratio of two quantities given in batches."""
+    exact = np.where(of.any(axis=1), 0.0, np.nan)
+    return np.where(repeats, exact, ratio_error(parts, of))
+
+
+def _growth(known: Any, repeats: Any, *maxima: Any) -> Any:
+    """Return by how much a sum of largest values may grow; maxima are given in batches."""
+    error = np.where(known, 0.0, np.nan)
+    other = known & ~repeats
+    error[other] = sum(maximum_and_growth(largest[other])[1] for largest in maxima)
+    return error

@@ -20,9 +20,9 @@ TURN = 2 * pi
 LONGEST_PERIOD = 64
 """Common periods of the longest response that is recognised as periodic."""
 PERIODS = ("non-repeating", *map(str, range(1, LONGEST_PERIOD + 1)))
-REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic", "undecided")
+REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic", "undecided", "resting-on-stop")
 FORMULATIONS = ("physical", "paper", "as-printed")
-NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC, UNDECIDED = range(5)
+NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC, UNDECIDED, ON_STOP = range(6)
 PHYSICAL, PAPERS, AS_PRINTED = range(3)
 
 
@@ -115,26 +115,46 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     return {}
 
 
+_EXTREME = "over the averaging time, with which it grows where the motion does not repeat"
+_GROWTH = "expected at most over a time twenty times as long; 0 where the motion repeats"
+
 OUTPUTS: Mapping[str, Output] = {
     "progression_rate": Output("m s-1", "mean velocity of the mole, positive forwards"),
     "progression_rate_error": Output(
         "m s-1", "standard error of the mean velocity, 0 where the motion repeats"
     ),
-    "peak_contact_force": Output("N", "largest force of the stop on the bar"),
+    "peak_contact_force": Output("N", f"largest force of the stop on the bar {_EXTREME}"),
+    "peak_contact_force_error": Output("N", f"growth of the largest force {_GROWTH}"),
     "impact_work_rate": Output("W", "mean power of the contact force on the mole"),
     "impact_work_rate_error": Output(
         "W", "standard error of the impact work-rate, 0 where the motion repeats"
     ),
     "impacts_per_period": Output("1", "contacts per control period"),
+    "impacts_per_period_error": Output(
+        "1", "standard error of the contacts per control period, 0 where the motion repeats"
+    ),
     "impact_impulse": Output(
         "N s", "mean impulse of the contact force per contact", may_be_undefined=True
+    ),
+    "impact_impulse_error": Output(
+        "N s",
+        "standard error of the mean impulse, 0 where the motion repeats",
+        may_be_undefined=True,
     ),
     "impact_energy": Output(
         "J", "mean work of the contact force on the mole per contact", may_be_undefined=True
     ),
-    "displacement_range": Output("m", "peak-to-peak displacement u"),
+    "impact_energy_error": Output(
+        "J", "standard error of the mean work, 0 where the motion repeats", may_be_undefined=True
+    ),
+    "displacement_range": Output("m", f"peak-to-peak displacement u {_EXTREME}"),
+    "displacement_range_error": Output("m", f"growth of the peak-to-peak displacement {_GROWTH}"),
     "electrical_power": Output("W", "mean power drawn from the supply"),
+    "electrical_power_error": Output(
+        "W", "standard error of the electrical power, 0 where the motion repeats"
+    ),
     "efficiency": Output("1", "impact work-rate over electrical power"),
+    "efficiency_error": Output("1", "standard error of the efficiency, 0 where the motion repeats"),
     "lyapunov_exponent": Output(
         "s-1", "largest Lyapunov exponent, natural logarithm, excluding progression"
     ),

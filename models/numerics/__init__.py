@@ -15,7 +15,8 @@ Reading order; a module imports only those above it:
     symmetric       eigenvalues of many symmetric matrices
     multipliers     the largest multiplier of many linear maps
     exponents       Lyapunov exponents
-    batch_means     time means with their errors
+    batch_means     time means and their ratios, with errors
+    block_maxima    largest values over a time, and how they grow with it
     events          event location within a step
     series          sums over power series of many systems
     tableaux        coefficients of the Runge-Kutta methods

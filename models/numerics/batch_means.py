@@ -1,4 +1,4 @@
-"""Time means of a quantity that fluctuates without settling, with their errors, by batch means."""
+"""Time means of quantities that fluctuate without settling, and their errors, by batch means."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,39 @@ def mean_and_error(batches: Array) -> tuple[Array, Array]:
         means = batches.reshape(n, count // length, length, *rest).mean(axis=2)
         error = np.maximum(error, means.std(axis=1, ddof=1) / np.sqrt(count // length))
     return batches.mean(axis=1), error
+
+
+def ratio_error(numerators: Array, denominators: Array) -> Array:
+    """Return standard errors of ratios of time means, linearised (delta method).
+
+    Batches without a denominator tell nothing of the ratio: degrees of freedom are those of the
+    others. Where these are few, the error is larger by Student's factor, so that 1.645 times the
+    error remains the half-width of a 90 % interval.
+
+    Parameters
+    ----------
+    numerators, denominators : ndarray, shape (n, b)
+        Over consecutive intervals of equal length; b a multiple of 4, at least 8.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        NaN where fewer than two batches have a denominator.
+    """
+    mean = denominators.mean(axis=1, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):  # where no batch has one
+        ratio = numerators.mean(axis=1, keepdims=True) / mean
+        _, error = mean_and_error((numerators - ratio * denominators) / mean)
+    return error * _wider(denominators.shape[1])[np.count_nonzero(denominators, axis=1)]
+
+
+def _wider(count: int) -> Array:
+    """Return the factors of a standard error of which 0, 1, ... or all batches tell something."""
+    from scipy.special import stdtrit
+
+    number = np.arange(2, count + 1)
+    factors = stdtrit(number - 1, _NINE_IN_TEN) * np.sqrt(number / (number - 1))
+    return np.append([np.nan, np.nan], np.round(factors / factors[-1], 9))
 
 
 def mean_and_bound(batches: Array) -> tuple[Array, Array]:

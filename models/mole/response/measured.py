@@ -22,14 +22,11 @@ class Response(NamedTuple):
     ----------
     time : ndarray, shape (n,)
         Time averaged over [s].
-    progress, impact, electric : ndarray, shape (n, BATCHES)
-        Advance of the mole [m], work of the impacts and of the supply [J] in each batch; all in the
-        first if the motion repeats.
-    impulse : ndarray, shape (n,)
-        Of the contact force [N s].
-    contacts : ndarray, shape (n,)
-    low, high : ndarray, shape (n,)
-        Smallest and largest displacement u [m].
+    progress, impact, electric, impulse, contacts : ndarray, shape (n, BATCHES)
+        Advance of the mole [m], work of the impacts and of the supply [J], impulse of the contact
+        force [N s] and number of contacts in each batch; all in the first if the motion repeats.
+    low, high : ndarray, shape (n, BATCHES)
+        Smallest and largest displacement u [m] in each batch; infinite in batches without motion.
     touching : ndarray of bool, shape (n,)
         Whether the bar touched the stop at the beginning.
     growth : ndarray, shape (n, BATCHES)
@@ -54,17 +51,17 @@ class Response(NamedTuple):
     @staticmethod
     def nothing(n: int) -> "Response":
         """Return n unknown responses."""
-        batches = (np.zeros((n, BATCHES)) for _ in range(4))
-        progress, impact, electric, growth = batches
+        batches = (np.zeros((n, BATCHES)) for _ in range(6))
+        progress, impact, electric, impulse, contacts, growth = batches
         return Response(
             np.full(n, np.nan),
             progress,
             impact,
             electric,
-            np.zeros(n),
-            np.zeros(n),
-            np.full(n, np.inf),
-            np.full(n, -np.inf),
+            impulse,
+            contacts,
+            np.full((n, BATCHES), np.inf),
+            np.full((n, BATCHES), -np.inf),
             np.zeros(n, bool),
             growth,
             np.zeros(n, np.int64),
@@ -80,7 +77,7 @@ class Response(NamedTuple):
         self.progress[rows, batch] += record[:, PROGRESS]
         self.impact[rows, batch] += record[:, IMPACT]
         self.electric[rows, batch] += record[:, ELECTRIC]
-        self.impulse[rows] += record[:, IMPULSE]
-        self.contacts[rows] += record[:, CONTACTS]
-        self.low[rows] = np.minimum(self.low[rows], record[:, LOW])
-        self.high[rows] = np.maximum(self.high[rows], record[:, HIGH])
+        self.impulse[rows, batch] += record[:, IMPULSE]
+        self.contacts[rows, batch] += record[:, CONTACTS]
+        self.low[rows, batch] = np.minimum(self.low[rows, batch], record[:, LOW])
+        self.high[rows, batch] = np.maximum(self.high[rows, batch], record[:, HIGH])

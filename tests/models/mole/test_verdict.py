@@ -7,6 +7,7 @@ from models.mole.batch import batch
 from models.mole.paper.table import rows
 from models.mole.parameters import (
     CHAOTIC,
+    ON_STOP,
     PERIODIC,
     QUASI_PERIODIC,
     REGIMES,
@@ -51,6 +52,7 @@ def test_each_verdict_needs_evidence(exponent, scatter, alone, expected):
 def test_codes_of_files_written_before_keep_their_meaning():
     assert REGIMES[:4] == ("no-impact", "periodic", "quasi-periodic", "chaotic")
     assert REGIMES[UNDECIDED] == "undecided"
+    assert REGIMES[ON_STOP] == "resting-on-stop"
 
 
 def test_a_short_look_at_chaos_is_lengthened():

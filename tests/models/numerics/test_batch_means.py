@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.numerics.batch_means import mean_and_bound, mean_and_error
+from models.numerics.batch_means import mean_and_bound, mean_and_error, ratio_error
 
 
 def series(rng, memory, rows, count):
@@ -43,3 +43,23 @@ def test_every_element_is_on_its_own(estimate):
     for i, j in np.ndindex(3, 2):
         alone = estimate(batches[i : i + 1, :, j])
         np.testing.assert_allclose([mean[i, j], error[i, j]], np.concatenate(alone))
+
+
+@pytest.mark.parametrize("rate", [5.0, 0.3])
+def test_errors_of_ratios_hold_with_many_or_few_events(rate):
+    """Impulses of mean 3 and variance 1; at 0.3 events a batch, three of four batches have none."""
+    rng = np.random.default_rng(5)
+    events = rng.poisson(rate, (4000, 20)).astype(float)
+    sums = 3 * events + np.sqrt(events) * rng.normal(size=events.shape)
+    error = ratio_error(sums, events)
+    estimated = np.count_nonzero(events, axis=1) > 1
+    assert np.isnan(error).tolist() == (~estimated).tolist()
+    sums, events, error = sums[estimated], events[estimated], error[estimated]
+    off = np.abs(sums.sum(axis=1) / events.sum(axis=1) - 3)
+    assert 0.85 < (off < 1.645 * error).mean() < 0.97
+
+
+def test_a_constant_ratio_is_exact():
+    """However much its numerator and denominator fluctuate together."""
+    works = np.random.default_rng(6).uniform(1, 2, (3, 20))
+    assert np.all(ratio_error(0.25 * works, works) < 1e-15)
