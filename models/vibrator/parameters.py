@@ -116,7 +116,8 @@ class Params(NamedTuple):
     feed_mass: Annotated[float, Parameter(
         "m_n", "kg", "mass of the feed thrown by the deck", (0.0, 6e3), "assumed: empty")] = 0.0
     throw_coefficient: Annotated[float, Parameter(
-        "k_p", "1", "vertical acceleration amplitude of the deck over gravity; sets the gravity",
+        "k_p", "1",
+        "vertical acceleration amplitude of the deck over gravity; sets the gravity of the feed",
         (0.05, 60.0), f"assumed: within single-stroke motion, as studied in {PAPER}")] = 2.0
     feed_position: Annotated[float, Parameter(
         "x_n", "m", "position of the feed from C along x", (-30.0, 30.0), "assumed: at C")] = 0.0
@@ -126,6 +127,9 @@ class Params(NamedTuple):
     initial_phase_2: Annotated[float, Parameter(
         "psi_2(0)", "rad", "phase of vibrator 2 at the start, from hanging down", (-pi, pi),
         HANGING, initial=True)] = 0.0
+    gravity: Annotated[float, Parameter(
+        "g", "m s-2", "gravity on the unbalanced masses; 9.81 matters while the motors start",
+        (0.0, 30.0), f"assumed: none, as in (13) to (23) of {PAPER}")] = 0.0
 # fmt: on
 
 

@@ -16,8 +16,9 @@ rides on the shaft, and the force m e w^2 n - m e mu Q t pulls at it. That leave
 for x, y, alpha, u and chi, of which the last two are eliminated first.
 
 The feed is a point mass on the deck, level with C, free to move vertically. It rides while the deck
-pushes it up, flies, and lands without rebound. x, y and alpha are measured from equilibrium under
-its weight.
+pushes it up, flies, and lands without rebound. x, y, alpha and u are measured from equilibrium
+under all weights, which springs carry wherever the body moves; only the unbalances swing under
+gravity, as in `models.vibrator.equations.rigid_motion`.
 """
 
 import math
@@ -123,6 +124,8 @@ def accelerations(m, riding, state):
     lag_1, lag_2 = r.synchronous_speed_1 - w_1, r.synchronous_speed_2 - w_2
     drive_1 = _drive(r.torque_1, lag_1, r.slip_1, r.bearing_loss_1, w_1, w_1 - set_speed)
     drive_2 = _drive(r.torque_2, lag_2, r.slip_2, r.bearing_loss_2, w_2, w_2 + set_speed)
+    drive_1 -= r.gravity * r.unbalance_1 * one.n_x
+    drive_2 += r.gravity * r.unbalance_2 * two.n_x
     x_1, y_1 = _pull(one, r.unbalance_1, r.mobility_1, drive_1, w_1, bias_x_1, bias_y_1)
     x_2, y_2 = _pull(two, r.unbalance_2, r.mobility_2, drive_2, w_2, bias_x_2, bias_y_2)
 

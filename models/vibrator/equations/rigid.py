@@ -43,6 +43,8 @@ class Rigid(NamedTuple):
         k_x, k_y [N m-1], b_x, b_y [N s m-1]
     support_offset, half_spacing : float
         h, l [m]
+    gravity : float
+        g [m s-2]
     """
 
     mass: Any
@@ -72,6 +74,7 @@ class Rigid(NamedTuple):
     damping_y: Any
     support_offset: Any
     half_spacing: Any
+    gravity: Any
 
 
 class Motion(NamedTuple):
@@ -124,11 +127,13 @@ def accelerations(m, c_1, s_1, c_2, s_2, x, y, alpha, vx, vy, va, w_1, w_2):
     lag_1, lag_2 = m.synchronous_speed_1 - w_1, m.synchronous_speed_2 - w_2
     d_1, d_2 = fma(m.slip_1, m.slip_1, lag_1 * lag_1), fma(m.slip_2, m.slip_2, lag_2 * lag_2)
     inverse = 1 / (d_1 * d_2 * determinant)
-    # Kloss torque (22), (23), then less bearing loss.
+    # Kloss torque (22), (23), then less bearing loss and the moment of the unbalance's weight.
     share_1, share_2 = d_2 * determinant * inverse, d_1 * determinant * inverse
     kloss_1, kloss_2 = m.torque_1 * lag_1 * share_1, m.torque_2 * lag_2 * share_2
     q_1 = fma(-m.bearing_loss_1 * w_1 * w_1, 1.0 if w_1 > va else -1.0, kloss_1)
     q_2 = fma(-m.bearing_loss_2 * w_2 * w_2, 1.0 if w_2 > -va else -1.0, kloss_2)
+    q_1 = fma(-m.gravity * m.unbalance_1, c_1, q_1)
+    q_2 = fma(m.gravity * m.unbalance_2, c_2, q_2)
     # Forces on the body: of the supports, centrifugal, and those due to the rotors' torques.
     p_x = m.stiffness_x * fma(m.support_offset, alpha, x)
     p_x = fma(m.damping_x, fma(m.support_offset, va, vx), p_x)

@@ -6,6 +6,11 @@ n_i = (cos theta_i, sin theta_i), the masses m are at (x, y) + s_i + alpha e_z x
 the geometry is frozen at alpha = 0, and the forces still derive from a Lagrangian. As in (15), the
 body feels no reaction to the torques of motors and bearings.
 
+Gravity, which (13) to (23) neglect, has the potential g sum m e_i sin theta_i. As the angles psi_i
+are measured from a fixed axis, it acts on psi_i alone, with the moment -m e_1 g cos theta_1 or
++m e_2 g cos theta_2. All other weights are constant forces on x, y and alpha, which the supports
+carry: x, y and alpha are measured from equilibrium.
+
 `acceleration` applies to the machine with its motors bolted to the body and no feed; for all else
 see `models.vibrator.equations.general`.
 """

@@ -128,6 +128,7 @@ def rigid_machines(p: Rows) -> Rigid:
         damping_y=damping(p.damping_ratio, sprung, p.stiffness_y),
         support_offset=p.support_offset,
         half_spacing=p.support_half_spacing,
+        gravity=p.gravity,
     )
 
 

@@ -21,7 +21,7 @@ def fastest_rates(m: Rigid) -> NDArray[np.float64]:
     ndarray, shape (n,)
         [s-1]. For the supports by Gershgorin's theorem, in units in which the body's mass and
         radius of gyration are 1; for each motor the steepest slope of its torque over the rotor's
-        inertia.
+        inertia, and the frequency at which its unbalance swings under gravity.
     """
     centre = (m.moment_x**2 + m.moment_y**2) / m.mass
     inertia = m.inertia - centre
@@ -44,7 +44,11 @@ def fastest_rates(m: Rigid) -> NDArray[np.float64]:
             (m.mobility_2, m.torque_2, m.slip_2, m.bearing_loss_2, m.synchronous_speed_2),
         )
     ]
-    return np.maximum.reduce([vibration + decay, *motor])
+    swing = [
+        np.sqrt(m.gravity * unbalance * mobility)
+        for unbalance, mobility in ((m.unbalance_1, m.mobility_1), (m.unbalance_2, m.mobility_2))
+    ]
+    return np.maximum.reduce([vibration + decay, *motor, *swing])
 
 
 def slowest_period(m: Rigid) -> Any:

@@ -134,9 +134,10 @@ def linearise(c, w, out):
         slope_1 = fma(-2 * m.bearing_loss_1 * w_1, 1.0 if w_1 > va else -1.0, slope_1)
         slope_2 = fma(-2 * m.bearing_loss_2 * w_2, 1.0 if w_2 > -va else -1.0, slope_2)
         slope_1, slope_2 = step * m.mobility_1 * slope_1, step * m.mobility_2 * slope_2
-        # The body's acceleration along n_i turns the rotor.
+        # The body's acceleration along n_i turns the rotor; gravity acts like one upwards.
         aa = step * w[_ALPHA + lane]
-        ax, ay = fma(up, aa, step * w[_X + lane]), step * w[_Y + lane]
+        ax = fma(up, aa, step * w[_X + lane])
+        ay = fma(step * step, m.gravity, step * w[_Y + lane])
         own_1 = r_1 * fma(h_1, aa, fma(c_1, ax, s_1 * ay))
         own_2 = r_2 * fma(h_2, aa, fma(c_2, ax, s_2 * ay))
         v_1, v_2 = step * w_1, step * w_2

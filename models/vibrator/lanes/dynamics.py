@@ -25,7 +25,7 @@ _VX, _VY, _VA, _W_1, _W_2 = (_AT.speed + i * LANES for i in range(DEGREES))
 _AX, _AY, _AA, _A_1, _A_2 = (_AT.rise + i * LANES for i in range(DEGREES))
 _PASSED = 9  # numbers that one loop passes to the next
 C_1, S_1, C_2, S_2, _F_X, _F_Y, _F_A, _Q_1, _Q_2 = (_AT.end + i * LANES for i in range(_PASSED))
-_CONSTANTS = 37
+_CONSTANTS = 39
 (
     _ANGLE,
     _X_1,
@@ -48,6 +48,8 @@ _CONSTANTS = 37
     _TORQUE_2,
     _LOSS_1,
     _LOSS_2,
+    _WEIGHT_1,
+    _WEIGHT_2,
     _TOP_1,
     _TOP_2,
     _SLIP_1,
@@ -101,6 +103,8 @@ def prepare(m, h, w, lane):
     w[_TORQUE_2 + lane] = h * m.mobility_2 * m.torque_2
     w[_LOSS_1 + lane] = h * m.mobility_1 * m.bearing_loss_1
     w[_LOSS_2 + lane] = h * m.mobility_2 * m.bearing_loss_2
+    w[_WEIGHT_1 + lane] = -h * r_1 * m.gravity
+    w[_WEIGHT_2 + lane] = h * r_2 * m.gravity
     w[_TOP_1 + lane], w[_TOP_2 + lane] = m.synchronous_speed_1, m.synchronous_speed_2
     w[_SLIP_1 + lane], w[_SLIP_2 + lane] = m.slip_1 * m.slip_1, m.slip_2 * m.slip_2
     w[_STIFF_X + lane] = -h * m.stiffness_x / m.mass
@@ -135,8 +139,10 @@ def accelerate(w):
         kloss_2 = w[_TORQUE_2 + lane] * lag_2 / fma(lag_2, lag_2, w[_SLIP_2 + lane])
         square_1, square_2 = w_1 * w_1, w_2 * w_2
         loss_1, loss_2 = w[_LOSS_1 + lane] * square_1, w[_LOSS_2 + lane] * square_2
-        w[_Q_1 + lane] = kloss_1 - (loss_1 if w_1 > va else -loss_1)
-        w[_Q_2 + lane] = kloss_2 - (loss_2 if w_2 > -va else -loss_2)
+        q_1 = kloss_1 - (loss_1 if w_1 > va else -loss_1)
+        q_2 = kloss_2 - (loss_2 if w_2 > -va else -loss_2)
+        w[_Q_1 + lane] = fma(w[_WEIGHT_1 + lane], c_1, q_1)
+        w[_Q_2 + lane] = fma(w[_WEIGHT_2 + lane], c_2, q_2)
         # Forces of the supports, and their moment about the centre of mass.
         offset = w[_OFFSET + lane]
         p_x = w[_STIFF_X + lane] * fma(offset, alpha, w[_X + lane])

@@ -2,10 +2,10 @@
 
 The machine is autonomous, so the period T is an unknown and psi_1 = 0 anchors the start of the
 revolution: the other nine components of the state and T are such that after T the body is where it
-was and both vibrators have turned once. The equations are the same for the opposite displacement of
-the body and vibrators turned by pi, so after T/2 the motion is its own mirror image: half a turn is
-enough. An orbit without this symmetry, and one whose body turns so fast that a bearing loss may
-change its sign, is sought in a whole turn.
+was and both vibrators have turned once. Without gravity, the equations are the same for the
+opposite displacement of the body and vibrators turned by pi, so after T/2 the motion is its own
+mirror image: half a turn is enough. An orbit without this symmetry, and one whose body turns so
+fast that a bearing loss may change its sign, is sought in a whole turn.
 
 The derivatives of the end with respect to the start also give the Floquet multipliers. They cost
 several times the motion itself, and only the last ones must be accurate: to come close, derivatives
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel, spliced
 from models.numerics.linear import invert
+from models.vibrator.equations.rigid import Rigid
 from models.vibrator.lanes.chords import (
     CLOSE_ENOUGH,
     angle_and_period,
@@ -45,6 +46,7 @@ _CLOSE = 1e-6  # of a revolution: after a step this small only rounding errors a
 _BOUND = 1e12  # of motion and derivatives
 _BOLDEST = 0.5  # longest step of psi_2 [rad]
 _SHORTEST = 0.2  # period over that of the guess
+_GRAVITY = Rigid._fields.index("gravity")
 _QUIET = 0.5  # angular velocity of the body over that of the vibrators: bearing losses keep sign
 
 
@@ -247,7 +249,7 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     """
     n = len(state)
     out = Orbits(np.zeros(n, bool), state.copy(), period.copy(), *np.full((4, n), np.nan))
-    _find(constants, out, np.arange(n), steps, HALF)
+    _find(constants, out, np.flatnonzero(constants[:, _GRAVITY] == 0), steps, HALF)
     speed = 2 * np.pi / out.period
     spin = np.hypot(out.state[:, 7], out.state[:, 2] * speed)
     rest = np.flatnonzero(~(out.found & (spin < _QUIET * speed)))

@@ -51,6 +51,7 @@ def machine(c, lane):
         c[24 * LANES + lane],
         c[25 * LANES + lane],
         c[26 * LANES + lane],
+        c[27 * LANES + lane],
     )
 
 
@@ -83,7 +84,8 @@ def store(lanes, first, table):
 class Part(NamedTuple):
     """One of one or two equal parts of a revolution; the second mirrors the first.
 
-    The equations are the same for the opposite displacement of the body and vibrators turned by pi.
+    Without gravity, the equations are the same for the opposite displacement of the body and
+    vibrators turned by pi.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ NAMES = (
     "body_mass body_inertia unbalance_1 unbalance_2 unbalanced_mass rotor_inertia "
     "support_half_spacing working_angle shaft_half_angle shaft_distance axis_offset "
     "stiffness_x stiffness_y damping_ratio support_offset mount_stiffness mount_angle mount_mass "
-    "mount_damping_ratio mount_rotational_stiffness mount_inertia feed_mass feed_position"
+    "mount_damping_ratio mount_rotational_stiffness mount_inertia feed_mass feed_position gravity"
 ).split()
 
 
@@ -86,7 +86,9 @@ def mechanics(exact):
 
     m, half = p["unbalanced_mass"], p["shaft_distance"] * sp.sin(p["shaft_half_angle"])
     set_mass, set_inertia = p["mount_mass"] + 2 * m, p["mount_inertia"] + 2 * m * half**2
+    # The supports carry all weights where they act in equilibrium; the unbalances swing.
     potential, loss = -weight * (1 - riding) * deck, 0
+    potential += p["gravity"] * m * sum(n[1] for n in unbalances)
     sprung = p["body_mass"] + 2 * m
     for side in (1, -1):
         place = sp.Matrix([side * p["support_half_spacing"], -p["support_offset"]])

@@ -16,9 +16,14 @@ def at(p, i):
 
 
 def plausible(rows, seed, **fixed):
-    """Return machines with every parameter off its nominal value, on mounts and with feed."""
+    """Return machines off nominal in every parameter but gravity, on mounts and with feed."""
     rng = np.random.default_rng(seed)
-    p = Params._make(value * rng.uniform(0.8, 1.25, rows) for value in Params())
+    nominal = Params()._asdict()
+    gravity = np.full(rows, nominal.pop("gravity"))
+    p = Params(
+        **{name: value * rng.uniform(0.8, 1.25, rows) for name, value in nominal.items()},
+        gravity=gravity,
+    )
     between = {
         "working_angle": (-np.pi, np.pi),
         "axis_offset": (-0.4, 0.4),

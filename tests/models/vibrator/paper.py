@@ -1,4 +1,8 @@
-"""Equations (13)-(23) as they are printed, forces between rotors and body included."""
+"""Equations (13)-(23) as they are printed, forces between rotors and body included.
+
+Weights of the unbalanced masses, which the paper neglects, are added to (20) and (21), and the
+static forces of the supports that carry them to (14) and (15).
+"""
 
 import numpy as np
 
@@ -28,11 +32,13 @@ def rates(t, state, p):
     right[0] = -k_x * (x + h * a) - b_x * (vx + h * va)
     # (14)
     matrix[1, [ay, py_1, py_2]] = p.body_mass, -1, -1
-    right[1] = -k_y * y - b_y * vy
+    weight = p.gravity * m
+    right[1] = -k_y * y - b_y * vy + 2 * weight
     # (15)
     matrix[2, [aa, py_1, py_2]] = p.body_inertia, -d * np.cos(th[0]), -d * np.cos(th[1])
     matrix[2, [px_1, px_2]] = d * np.sin(th)
     right[2] = -h * (k_x * (x + h * a) + b_x * (vx + h * va)) - l2 * (k_y * a + b_y * va)
+    right[2] += weight * d * np.cos(th).sum()
     # (16), (17)
     matrix[3, [f_1, px_1, py_1]] = p.rotor_inertia, e[0] * c_1, e[0] * s_1
     matrix[4, [f_2, px_2, py_2]] = p.rotor_inertia, -e[1] * c_2, e[1] * s_2
@@ -43,9 +49,9 @@ def rates(t, state, p):
     matrix[6, [px_2, ax, aa, f_2]] = 1, m, -m * d * np.sin(th[1]), m * e[1] * c_2
     right[6] = m * e[1] * w_2**2 * s_2
     matrix[7, [py_1, ay, aa, f_1]] = 1, m, m * d * np.cos(th[0]), -m * e[0] * s_1
-    right[7] = m * e[0] * w_1**2 * c_1
+    right[7] = m * e[0] * w_1**2 * c_1 - weight
     matrix[8, [py_2, ay, aa, f_2]] = 1, m, m * d * np.cos(th[1]), -m * e[1] * s_2
-    right[8] = m * e[1] * w_2**2 * c_2
+    right[8] = m * e[1] * w_2**2 * c_2 - weight
     return np.concatenate([state[5:], np.linalg.solve(matrix, right)[:5]])
 
 

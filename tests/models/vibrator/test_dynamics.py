@@ -17,7 +17,12 @@ AT = layout(dynamics.DEGREES)
 STEP = 3e-3
 MACHINES = systems(
     plausible(
-        LANES, seed=8, mount_stiffness=np.inf, mount_rotational_stiffness=np.inf, feed_mass=0.0
+        LANES,
+        seed=8,
+        mount_stiffness=np.inf,
+        mount_rotational_stiffness=np.inf,
+        feed_mass=0.0,
+        gravity=9.81,
     )
 ).rigid
 CONSTANTS = pack(MACHINES).T.ravel()

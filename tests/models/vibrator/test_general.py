@@ -20,6 +20,7 @@ ODD = Params(
     mount_inertia=8.0,
     feed_mass=120.0,
     feed_position=0.7,
+    gravity=9.81,
 )
 MOUNTS = list(itertools.product((np.inf, 1e6), (np.inf, 3e5)))
 

@@ -16,6 +16,7 @@ from models.vibrator.theory.averaged import disphasing, steady_motion
 
 RIGID = {"mount_stiffness": np.inf, "mount_rotational_stiffness": np.inf, "feed_mass": 0.0}
 MACHINES = plausible(10, seed=1, **RIGID)
+HEAVY = MACHINES._replace(gravity=np.full(10, 9.81))
 TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
 
 
@@ -62,22 +63,23 @@ def passage(m, start, period):
     return np.array(columns).T
 
 
-def test_orbits_close_on_themselves():
-    orbits = find(MACHINES, 192)
+@pytest.mark.parametrize("p", [MACHINES, HEAVY])
+def test_orbits_close_on_themselves(p):
+    orbits = find(p, 192)
     assert orbits.found.all()
     assert np.all(orbits.state[:, 3] == 0)
     for i in range(10):
-        assert gap(systems(MACHINES).row(i), orbits.state[i], orbits.period[i]) < 1e-9
+        assert gap(systems(p).row(i), orbits.state[i], orbits.period[i]) < 1e-9
 
 
-@pytest.mark.parametrize("off", [0.0, np.pi])
-def test_the_multiplier_is_that_of_the_passages(off):
+@pytest.mark.parametrize(("p", "off"), [(MACHINES, 0.0), (MACHINES, np.pi), (HEAVY, 0.0)])
+def test_the_multiplier_is_that_of_the_passages(p, off):
     """Of stable orbits, and of the unstable ones with the vibrators the other way round."""
-    orbits = find(MACHINES, 96, off)
+    orbits = find(p, 96, off)
     assert orbits.found.sum() > 3
     assert np.all((orbits.multiplier[orbits.found] > 1) == bool(off))
     for i in np.flatnonzero(orbits.found)[:5]:
-        m = systems(MACHINES).row(i)
+        m = systems(p).row(i)
         values = np.linalg.eigvals(passage(m, orbits.state[i], orbits.period[i]))
         np.testing.assert_allclose(orbits.multiplier[i], abs(values).max(), rtol=1e-5)
 
@@ -93,7 +95,7 @@ def test_the_disphasing_angle_converges_with_order_5():
 
 @pytest.mark.parametrize("part", [WHOLE, HALF])
 def test_derivatives_of_a_part_are_those_of_nearby_ones(part):
-    (state, period), constants = guess(MACHINES), pack(systems(MACHINES).rigid)
+    (state, period), constants = guess(HEAVY), pack(systems(HEAVY).rigid)
     end = tangents.revolve(constants, state, period, 24, part)
     turn = TURN / part.parts
     plain = part.mirror * follow(constants, state, period, 24)[:, -1] - turn
@@ -134,8 +136,9 @@ def test_the_orbits_are_those_of_a_plain_newtons_method(off):
     np.testing.assert_allclose(quick.period, period, rtol=1e-11)
 
 
-def test_the_estimated_error_is_a_bound_of_the_true_one():
-    coarse, fine = find(MACHINES, 24), find(MACHINES, 192)
+@pytest.mark.parametrize("p", [MACHINES, HEAVY])
+def test_the_estimated_error_is_a_bound_of_the_true_one(p):
+    coarse, fine = find(p, 24), find(p, 192)
     error = abs(coarse.angle - fine.angle)
     assert np.all((error < 2 * coarse.error) & (coarse.error < 1e-7))
     assert np.all(fine.error < 1e-4 * coarse.error)
@@ -160,6 +163,17 @@ def test_half_a_turn_later_the_body_is_at_the_opposite_displacement():
         motion = propagator.propagate(m, orbits.state[i], orbits.period[i] / 2, 1e-13)
         errors = motion.state - TURN / 2 - mirror * orbits.state[i]
         assert abs(errors / propagator.scales_of(m, rigid_motion.DEGREES)).max() < 1e-9
+
+
+def test_gravity_averages_out_to_first_order_over_a_turn():
+    """Reversed gravity is half a turn later: an orbit changes with the square of gravity."""
+    none, full, twice = (
+        find(MACHINES._replace(gravity=np.full(10, g)), 96) for g in (0.0, 9.81, 19.62)
+    )
+    small = abs(full.angle - none.angle)
+    assert np.all((small > 1e-6) & (small < 1e-3))
+    np.testing.assert_allclose(twice.angle - none.angle, 4 * (full.angle - none.angle), rtol=1e-2)
+    np.testing.assert_allclose(full.period, none.period, rtol=1e-5)
 
 
 def test_half_a_turn_leads_to_the_same_orbits_as_a_whole_one(monkeypatch):
@@ -212,7 +226,7 @@ def test_motors_that_cannot_synchronise_have_no_orbit():
 
 
 def test_a_machine_has_the_same_bits_in_any_company():
-    p = plausible(37, seed=3, **RIGID)
+    p = plausible(37, seed=3, **RIGID)._replace(gravity=np.arange(37) % 3 * 5.0)
     constants, (state, period) = pack(systems(p).rigid), guess(p)
     found = np.isfinite(period)
     together = orbit.find_orbits(constants, state, period, 24)

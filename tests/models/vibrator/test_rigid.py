@@ -12,7 +12,12 @@ from models.vibrator.equations.rigid import accelerations
 from models.vibrator.equations.system import systems
 
 MACHINES = plausible(
-    30, seed=17, mount_stiffness=np.inf, mount_rotational_stiffness=np.inf, feed_mass=0.0
+    30,
+    seed=17,
+    mount_stiffness=np.inf,
+    mount_rotational_stiffness=np.inf,
+    feed_mass=0.0,
+    gravity=9.81,
 )
 
 

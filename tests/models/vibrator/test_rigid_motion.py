@@ -23,6 +23,7 @@ ODD = NOMINAL._replace(
     working_angle=0.7,
     stiffness_x=1.1e6,
     damping_ratio=0.07,
+    gravity=9.81,
 )
 
 

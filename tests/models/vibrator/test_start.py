@@ -145,6 +145,13 @@ def test_motors_too_unlike_never_lock():
     assert 145 < out.speed[0] < 157
 
 
+def test_motors_that_cannot_lift_their_unbalances_stall():
+    """At a rated torque of 12 N m the starting torque is 11.4 N m, the weight's moment 49 N m."""
+    weak = {"rated_torque_1": 12.0, "rated_torque_2": 12.0, "stiffness_x": 2.07e6}
+    out, _ = outcomes(fleet(2, **weak, support_offset=0.0, gravity=[0.0, 9.81]), run_up=8.0)
+    assert [REGIMES[i] for i in out.regime] == ["captured", "one-stalled"]
+
+
 def test_weak_motors_on_stiff_supports_are_caught_at_resonance():
     weak = {"stiffness_x": 2.07e6, "support_offset": 0.0}
     torque = np.array([20.0, 240.0])

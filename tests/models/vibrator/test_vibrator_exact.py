@@ -28,7 +28,12 @@ FLEXIBLE = FREE._replace(
 FED = Params(feed_mass=300.0, throw_coefficient=1.75, feed_position=0.4, damping_ratio=0.07)
 
 
-@pytest.mark.parametrize("p", [FREE, FLEXIBLE, FREE._replace(feed_mass=200.0)])
+HEAVY = FLEXIBLE._replace(gravity=9.81)
+
+
+@pytest.mark.parametrize(
+    "p", [FREE, FLEXIBLE, FREE._replace(feed_mass=200.0), FREE._replace(gravity=9.81), HEAVY]
+)
 @pytest.mark.parametrize("kinematics", ["small", "exact"])
 def test_energy_is_conserved_without_motors_and_losses(kinematics, p):
     """The geometry frozen at alpha = 0 has an energy too: it is that of the linear embedding."""

@@ -79,6 +79,17 @@ def test_it_agrees_with_the_exact_propagator(start, ends):
     assert np.all(scaled_errors(state, ends) < 1e-8)
 
 
+def test_it_agrees_with_the_exact_propagator_under_gravity():
+    p, state = MACHINES._replace(gravity=np.full(ROWS, 9.81)), at_rest()
+    ends = np.array(
+        [propagator.propagate(systems(p).row(i), state[i], 1.0, 1e-13).state for i in range(ROWS)]
+    )
+    steps = 48 * TURNS
+    h = np.full(ROWS, DURATION / steps)
+    lanes.advance(prepared(p), state, h, TARGET, steps, BAND, accurate=False)
+    assert np.all(scaled_errors(state, ends) < 1e-8)
+
+
 @pytest.mark.parametrize(("order", "per_turn"), [(5, (10, 14, 20)), (8, (4, 6, 9))])
 def test_its_errors_fall_with_the_order_of_the_method(start, ends, order, per_turn):
     """The machines' geometric mean."""
