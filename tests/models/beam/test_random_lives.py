@@ -7,6 +7,7 @@ from random_load import LEVEL, PURE, nominal, prepared, started
 from models.beam import MODEL, lanes
 from models.beam.lanes import propagator
 from models.beam.parameters import REGIMES, Params, Settings
+from models.beam.response.averages import NINE_IN_TEN
 from models.beam.response.settling import settle
 from models.beam.wear.fitted_wear import FittedWear, fit
 from models.beam.wear.random_lives import _step
@@ -105,6 +106,20 @@ def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
     off, error = np.array(found).T
     assert abs(np.exp(off).mean() - 1) < 0.15
     assert error.mean() == pytest.approx(off.std(), rel=0.25)
+
+
+@pytest.mark.parametrize(("nodes", "noise"), [(7, 0.1), (14, 0.04)])
+def test_nine_in_ten_lives_from_noisy_rates_are_within_their_errors(nodes, noise):
+    rng = np.random.default_rng(5)
+    x = np.linspace(0.0, 1.0, nodes)
+    rate = np.exp(1 + 0.4 * x)
+    true = (1 - np.exp(-0.4)) / 0.4 / np.e
+    within = []
+    for _ in range(400):
+        mean = rate * rng.gamma(noise**-2, noise**2, nodes)
+        life, error = FittedWear(x, mean, noise * mean).life(1.0)
+        within.append(abs(life - true) < NINE_IN_TEN * error)
+    assert 0.87 < np.mean(within) < 0.94
 
 
 def test_a_fit_of_next_to_nothing_is_no_overflow():
