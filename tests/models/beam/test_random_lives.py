@@ -200,6 +200,18 @@ def test_a_beam_that_its_steps_throw_out_of_all_bounds_is_out_of_budget(monkeypa
     assert np.isnan(outputs["work_rate"][0]).all()
 
 
+def test_steps_are_fine_enough_for_a_fast_random_force():
+    """The same realisations in four times as many steps."""
+    n, loud = 16, {"random_force_level": 2.0, "random_force_low": 110.0, "random_force_high": 180.0}
+    p = nominal(n, force_amplitude=0.0, **loud)
+    work = []
+    for steps in (0, 768):
+        _, system = prepared(lanes, p, steps_per_period=steps)
+        state, gaps = started(lanes, system, p)
+        work.append(lanes.advance(system, state, gaps, np.zeros((n, 2)), 512).work.mean(axis=1))
+    assert work[0].mean() == pytest.approx(work[1].mean(), rel=3e-3)
+
+
 @pytest.mark.slow
 def test_a_band_above_the_first_mode_gives_every_seed_the_same_work_rate():
     x = rows(8, force_amplitude=0.0, random_force_level=0.2, random_force_low=50.0)
