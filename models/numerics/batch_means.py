@@ -83,8 +83,6 @@ def mean_and_bound(batches: Array) -> tuple[Array, Array]:
     -------
     mean, error : ndarray, shape (n, ...)
     """
-    from scipy.special import stdtrit  # which few rows need
-
     n, count, *rest = batches.shape
     error = np.zeros((n, *rest))
     length = 1
@@ -92,7 +90,19 @@ def mean_and_bound(batches: Array) -> tuple[Array, Array]:
         number = count // length
         joined = batches[:, count - number * length :].reshape(n, number, length, *rest)
         spread = joined.mean(axis=2).std(axis=1, ddof=1)
-        student = round(float(stdtrit(number - 1, _NINE_IN_TEN)), 9)  # the same on every processor
-        error = np.maximum(error, student / np.sqrt(number) * spread)
+        error = np.maximum(error, student(number - 1) / np.sqrt(number) * spread)
         length *= 2
     return batches.mean(axis=1), error
+
+
+def student(freedom: int) -> float:
+    """Return the half-width of a 90 % interval over the standard error it is estimated with.
+
+    Parameters
+    ----------
+    freedom : int
+        Degrees of freedom of the standard error; at least 1.
+    """
+    from scipy.special import stdtrit  # which few rows need
+
+    return round(float(stdtrit(freedom, _NINE_IN_TEN)), 9)  # the same on every processor

@@ -21,8 +21,9 @@ LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
 UNSTABLE = 0.03  # compliance above which the impulse corrections may become unstable
 RESOLVED = 16  # steps per turn of the random load's highest frequency, at least
+_FINE = 48  # and where that many can be had: fewer than 32 make work-rates up to 1 % too high
 MOST_UNDER_RANDOM = 1024  # steps per forcing period
-_MOST = 2**20  # steps in a time mean
+_MOST = 2**21  # steps in a time mean
 
 
 class System(NamedTuple):
@@ -114,16 +115,17 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
     gives way by no more than `COMPLIANCE` of its penetration, without residual flexibility; the
-    error of a work-rate is then about 0.1 %. A turn of the random load's highest
-    frequency takes at least `RESOLVED` steps. A row is in no group if contact is too stiff, or the
-    load too fast, for the last of the ladder or for the steps set; nor if, under a random load,
-    whose averages are
-    long, it takes more than `MOST_UNDER_RANDOM` steps and they are not set.
+    error of a work-rate is then about 0.1 %. A turn of the random load's highest frequency takes
+    `_FINE` steps, or as many as `MOST_UNDER_RANDOM` allows, and at least `RESOLVED`. A row is in no
+    group if contact is too stiff, or the load too fast, for the last of the ladder or for the steps
+    set; nor if, under a random load, whose averages are long, it takes more than
+    `MOST_UNDER_RANDOM` steps and they are not set.
     """
     steps = np.full(len(beams.forcing), settings.steps_per_period)
     within = np.ones(len(steps), bool)
     if not settings.steps_per_period:
-        least = _least_steps(beams)
+        fine = np.minimum(_FINE * beams.load["high"], MOST_UNDER_RANDOM)
+        least = np.maximum(fine, _least_steps(beams))
         _choose_steps(
             beams.forcing, beams.frequency, beams.decay, gains(beams), beams.moving, least, steps
         )

@@ -3,12 +3,14 @@
 The reciprocal of a noisy mean is biased upwards. So the logarithm of the wear rate along the path
 is fitted by a cubic such that the ratios of means to fit average to one (the quasi-likelihood of a
 gamma law). This is unbiased, and the scatter about it gives its error, including the misfit of the
-cubic. Precise means are interpolated instead.
+cubic, with Student's factor for so few nodes. Precise means are interpolated instead.
 """
 
 import numpy as np
 
+from models.beam.response.averages import NINE_IN_TEN
 from models.beam.structure.modal import Array
+from models.numerics.batch_means import student
 from models.numerics.elementary import exp, expm1, log
 from models.numerics.linear import inverse, product
 
@@ -31,9 +33,14 @@ class FittedWear:
             self.log, self.relative = log(rate), relative
         else:
             self.coefficient, self.covariance = fit(x / x[-1], rate)
+            freedom = max(1, len(x) - len(self.coefficient))
+            self.covariance *= (student(freedom) / NINE_IN_TEN) ** 2
 
     def life(self, end: float) -> tuple[float, float]:
-        """Return the integral of dx/rate up to an end, and its standard error."""
+        """Return the integral of dx/rate up to an end, and its error.
+
+        This is the half-width of a 90 % interval over `NINE_IN_TEN`.
+        """
         if self.interpolated:
             inside = np.append(self.x[self.x < end], end)
             level = np.interp(inside, self.x, self.log)

@@ -7,6 +7,7 @@ from random_load import LEVEL, PURE, nominal, prepared, started
 from models.beam import MODEL, lanes
 from models.beam.lanes import propagator
 from models.beam.parameters import REGIMES, Params, Settings
+from models.beam.response.averages import NINE_IN_TEN
 from models.beam.response.settling import settle
 from models.beam.wear.fitted_wear import FittedWear, fit
 from models.beam.wear.random_lives import _step
@@ -107,6 +108,20 @@ def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
     assert error.mean() == pytest.approx(off.std(), rel=0.25)
 
 
+@pytest.mark.parametrize(("nodes", "noise"), [(7, 0.1), (14, 0.04)])
+def test_nine_in_ten_lives_from_noisy_rates_are_within_their_errors(nodes, noise):
+    rng = np.random.default_rng(5)
+    x = np.linspace(0.0, 1.0, nodes)
+    rate = np.exp(1 + 0.4 * x)
+    true = (1 - np.exp(-0.4)) / 0.4 / np.e
+    within = []
+    for _ in range(400):
+        mean = rate * rng.gamma(noise**-2, noise**2, nodes)
+        life, error = FittedWear(x, mean, noise * mean).life(1.0)
+        within.append(abs(life - true) < NINE_IN_TEN * error)
+    assert 0.87 < np.mean(within) < 0.94
+
+
 def test_a_fit_of_next_to_nothing_is_no_overflow():
     """A site that wears by fits and starts, over thirty powers of ten."""
     rate = np.array([1e-300, 1e-3, 1e-250, 1.0, 1e-200, 1e3, 1e-300, 1e-300, 1e-280, 1e-300])
@@ -183,6 +198,18 @@ def test_a_beam_that_its_steps_throw_out_of_all_bounds_is_out_of_budget(monkeypa
     outputs, status = MODEL.batch(x, np.array([744, 0], np.uint64), Settings(depths=(1e-5,)))
     assert status.tolist() == [Status.OUT_OF_BUDGET, Status.OK]
     assert np.isnan(outputs["work_rate"][0]).all()
+
+
+def test_steps_are_fine_enough_for_a_fast_random_force():
+    """The same realisations in four times as many steps."""
+    n, loud = 16, {"random_force_level": 2.0, "random_force_low": 110.0, "random_force_high": 180.0}
+    p = nominal(n, force_amplitude=0.0, **loud)
+    work = []
+    for steps in (0, 768):
+        _, system = prepared(lanes, p, steps_per_period=steps)
+        state, gaps = started(lanes, system, p)
+        work.append(lanes.advance(system, state, gaps, np.zeros((n, 2)), 512).work.mean(axis=1))
+    assert work[0].mean() == pytest.approx(work[1].mean(), rel=3e-3)
 
 
 @pytest.mark.slow
