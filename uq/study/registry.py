@@ -25,6 +25,7 @@ from uq.outside.returned import Returned, as_plain, from_plain
 from uq.places import node
 from uq.provenance import provenance
 from uq.study.compiled import keep_apart, own_packages
+from uq.study.namesakes import found_at, hidden_beside, namesake
 from uq.study.sources import fingerprint
 
 GROUP = "vibrolife.models"
@@ -176,6 +177,11 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
     module_name, _, attribute = point.value.partition(":")
     if not module_name or not (attribute or _FILE.fullmatch(point.name)):
         raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
+    package = module_name.partition(".")[0]
+    if clash := namesake(package):
+        raise InputError(f"{label} cannot be imported: {clash}")
+    if _FILE.fullmatch(point.name) and (clash := hidden_beside(module_name)):
+        raise InputError(f"{label} {clash}")
     keep_apart(module_name)
     try:
         with redirect_stdout(sys.stderr):  # what it prints is no part of an answer
@@ -184,12 +190,12 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
     except InputError:
         raise
     except (Exception, SystemExit) as error:
+        place = f" from {point.value}" if attribute else ""
         problem = described(error)
         if isinstance(error, ModuleNotFoundError):
-            problem += "; install it, or name its folder in PYTHONPATH"
-        place = f" from {point.value}" if attribute else ""
+            problem += f"; {_remedy_of_missing((error.name or '').partition('.')[0])}"
         raise InputError(f"{label} cannot be imported{place}: {problem}") from error
-    if module_name.partition(".")[0] not in own_packages():
+    if package not in own_packages():
         fingerprint(module_name)  # now, before anything is edited
     if is_machine(found):
         found = model_of(found, returned)
@@ -200,6 +206,15 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         )
     _check(found, label)
     return found
+
+
+def _remedy_of_missing(package: str) -> str:
+    """Return what to do where a module of a package was not found."""
+    if clash := namesake(package):
+        return clash
+    if there := found_at(package):
+        return f"Python finds '{package}' in {there}; if another is meant, rename one of them"
+    return "install it, or name its folder in PYTHONPATH"
 
 
 def _only_model(module: ModuleType, label: str) -> str:
