@@ -16,6 +16,7 @@ from uq.analysis import stopping
 from uq.analysis.stopped import out_of_reach
 from uq.errors import InputError
 from uq.rows import results
+from uq.rows.commands import with_model
 from uq.rows.sampling import rows
 from uq.rows.weights import has_weights
 from uq.rows.workload import Workload, workload_of
@@ -98,7 +99,7 @@ def run(
     options = RunOptions(
         workers, scheduler, chunk_rows, row_limit, fresh, mixed, progress or ignore, say or ignore
     )
-    ds = run_study(study, path, options)
+    ds = with_model(run_study(study, path, options), study.model_reference)
     if say is None and not mixed and (line := line_on_other_code(study, path, ds)):
         warnings.warn(line, stacklevel=2)
     return ds
