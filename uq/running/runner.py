@@ -26,6 +26,7 @@ from uq.running.loading import load_study
 from uq.running.options import Progress, Report, RunOptions, Say, ignore
 from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.definition import Study
+from uq.study.hints import hints
 from uq.study.reading import read_study_text
 from uq.study.registry import is_other_code
 
@@ -111,6 +112,8 @@ def run_study(study: Study, path: Path, options: RunOptions) -> xr.Dataset:
     if not options.fresh and (found := finished(study, path)) is not None:
         return found
     with store.keep(study, path, options.fresh, None, options.say, options.mixed) as kept:
+        for sentence in hints(study):
+            options.say(sentence)
         return carry_out(workload_of(study), options, kept, study)
 
 

@@ -156,7 +156,7 @@ def run(
     quiet: given.Quiet = False,
 ) -> int:
     """Run a study, or resume it; show the summary."""
-    from uq.cli.run import carried_out, end, loaded, warn
+    from uq.cli.run import carried_out, end, loaded
     from uq.running.runner import finished, output_path, run_study
 
     asked = loaded(study, model, samples, row_limit)
@@ -164,8 +164,6 @@ def run(
     if not fresh and (ds := finished(asked, target)) is not None:
         note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
     else:
-        if not quiet:
-            warn(asked)
         options = RunOptions(workers, scheduler, chunk_rows, row_limit, fresh, mixed)
         ds, note = carried_out(target, quiet, options, partial(run_study, asked, target))
     return end(asked, ds, target, quiet, note, mixed)
