@@ -97,8 +97,10 @@ def test_a_study_names_no_code(uq, write_function):
     assert file and "must consist of letters" in uq("check", "own.toml").err
 
 
-def test_an_own_model_that_is_not_named_is_asked_for(uq, write_function):
-    write_function(WEAR)
+def test_an_own_model_that_is_not_named_is_asked_for(uq, folder, write_function):
+    file = write_function(WEAR)
+    assert f"{file} has it: name that file" in uq("check", "own.toml").err
+    (folder / file).unlink()
     assert "a model of your own is named by its file" in uq("check", "own.toml").err
 
 

@@ -8,13 +8,10 @@ import xarray as xr
 
 from uq import order_statistics
 from uq.rows.elements import Element, Floats, elements_of
-from uq.study.file import AnalysisTable, Tolerance
+from uq.study.file import USUAL, AnalysisTable
 
 SIDES = {"lower": ("lower",), "upper": ("upper",), "both": ("lower", "upper")}
 """What a study asks for -> the bounds of each element of an output."""
-
-USUAL = Tolerance(0.95, 0.95)
-"""Coverage and confidence where the study does not ask for others."""
 
 
 class JointBound(NamedTuple):

@@ -34,6 +34,10 @@ _READERS = (
 """Verbs that only read results. For each array of one, xarray would import dask to ask whether it
 is one of dask's: here none is."""
 
+_HOMES = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME")
+"""Folders of a user, ignored where they are relative, as the XDG base directory specification has
+it: libraries would make a folder ``~`` in the current one for a ``~`` that no shell expanded."""
+
 
 def main() -> NoReturn:
     """Run the command line and end the process."""
@@ -44,6 +48,9 @@ def main() -> NoReturn:
         sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # "not installed"
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
+    for name in _HOMES:
+        if not os.path.isabs(os.environ.get(name, os.sep)):
+            del os.environ[name]
     streams.watch()
     try:
         code = _run(sys.argv[1:])
@@ -69,7 +76,10 @@ def say_when_interrupted(sentence: str) -> None:
 def _of_the_system(error: OSError) -> str:
     """Return the line of a failure that the operating system reports."""
     place = f"{os.fsdecode(error.filename)}: " if isinstance(error.filename, str | bytes) else ""
-    return f"uq: {place}{error.strerror or one_line(error) or type(error).__name__}"
+    reason = error.strerror or one_line(error) or type(error).__name__
+    if reason.startswith("No usable temporary directory"):
+        reason += "; name a folder that can be written in TMPDIR"
+    return f"uq: {place}{reason}"
 
 
 def _unforeseen(error: Exception) -> str:

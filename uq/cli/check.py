@@ -2,7 +2,7 @@
 
 from itertools import combinations
 
-from uq.cli.printing import grid, heading, number
+from uq.cli.printing import grid, heading, number, paragraph
 from uq.cli.progress import say
 from uq.designs.levels import OWN
 from uq.designs.registry import DESIGNS
@@ -12,6 +12,7 @@ from uq.running import runner
 from uq.running.loading import load_study
 from uq.study.definition import Study
 from uq.study.file import DesignTable
+from uq.study.hints import hints
 from uq.units import powers, typical, unit_of
 from uq.wording import counted, in_brackets, law, listed, threshold
 
@@ -58,6 +59,10 @@ def check(path: str, model: str | None) -> None:
     else:
         grid(laws + ties, header=header)
     _show_sampled(study)
+    if lacking := hints(study):
+        heading("\nBefore you run it")
+        for sentence in lacking:
+            paragraph(sentence, indent=2)
 
 
 def _until(design: DesignTable) -> str:

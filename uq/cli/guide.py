@@ -1,6 +1,8 @@
 """What ``uq`` without a command says: what to do next."""
 
 import shlex
+import tomllib
+from contextlib import suppress
 from pathlib import Path
 
 from uq.cli.printing import console, grid, heading, paragraph
@@ -37,5 +39,18 @@ def _with_what_is_here() -> list[tuple[str, str]]:
             others = f"one of {len(found) - 1} others" if found[2:] else "1 other"
             more = f", or {others} in {folder}/" if found[1:] else ""
             name = shlex.quote(str(found[0]))
-            lines.append((f"uq {verb.format(name)}", words + more))
+            model = _model_option(found[0]) if ending == "toml" else ""
+            lines.append((f"uq {verb.format(name)}{model}", words + more))
     return lines
+
+
+def _model_option(study: Path) -> str:
+    """Return ``--model`` and a file, after a blank, for a study of a model in a file here."""
+    from uq.study.own_files import file_with
+    from uq.study.registry import model_names
+
+    with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+        model = tomllib.loads(study.read_text("utf-8-sig"))["study"]["model"]
+        if model not in model_names() and (file := file_with(model, (Path(), study.parent))):
+            return f" --model {file}"
+    return ""

@@ -15,11 +15,13 @@ from uq.cli.printing import console
 from uq.contract import Status
 from uq.literals import plain_line
 from uq.rows import results
+from uq.rows.commands import with_model
 from uq.running import runner
 from uq.running.loading import load_study
 from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
 from uq.study.definition import Study
+from uq.study.hints import hints
 from uq.upkeep.amending import study_of
 from uq.wording import counted
 
@@ -30,6 +32,12 @@ def loaded(
     """Return a study, with another number of samples if one is given."""
     study = load_study(path, model, progress.say, row_limit)
     return study if samples is None else study.with_samples(samples)
+
+
+def warn(study: Study) -> None:
+    """Print what a study will lack, on standard error."""
+    for sentence in hints(study):
+        progress.say(plain_line(sentence))
 
 
 def amended(
@@ -84,7 +92,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
     if not quiet:
         from uq.analysis.findings import Findings
 
-        tables.show_findings(Findings(ds))
+        tables.show_findings(Findings(with_model(ds, study.model_reference)))
         console.print()
         console.print(note)
         name = shlex.quote(str(target))

@@ -1,12 +1,16 @@
 """What commands on a result are given: its file, and where a model that is not installed lives."""
 
 import shlex
+from pathlib import Path
 
 import xarray as xr
 
-from uq.study.registry import model_names
+from uq.study.own_files import file_with, shortened
+from uq.study.registry import model_names, without_returns
 
 _FILE = "result_file"
+_MODEL = "model_reference"
+_NEAR = 3  # folders: the current one, that of the result, and the one above
 
 
 def named(ds: xr.Dataset, file: str) -> xr.Dataset:
@@ -20,6 +24,22 @@ def file_of(ds: xr.Dataset) -> str:
     return shlex.quote(str(ds.encoding.get(_FILE, "OUT")))
 
 
+def with_model(ds: xr.Dataset, reference: str) -> xr.Dataset:
+    """Return a result whose commands name its model as the user did."""
+    ds.encoding[_MODEL] = without_returns(reference)
+    return ds
+
+
 def model_option(ds: xr.Dataset) -> str:
-    """Return `` --model FILE`` for rows of a model that is not installed here, else ""."""
-    return "" if ds.attrs["model"] in model_names() else " --model FILE"
+    """Return ``--model`` and a file, after a blank, for rows of a model that is not installed here.
+
+    The file that the user gave, one here or near the result that has the model, else FILE.
+    """
+    model = ds.attrs["model"]
+    given = ds.encoding.get(_MODEL, model)
+    if given != model:
+        return f" --model {shortened(given)}"
+    if model in model_names():
+        return ""
+    folders = [Path(), *Path(str(ds.encoding.get(_FILE, "."))).parents][:_NEAR]
+    return f" --model {file_with(model, folders) or 'FILE'}"

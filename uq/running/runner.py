@@ -16,6 +16,7 @@ from uq.analysis import stopping
 from uq.analysis.stopped import out_of_reach
 from uq.errors import InputError
 from uq.rows import results
+from uq.rows.commands import with_model
 from uq.rows.sampling import rows
 from uq.rows.weights import has_weights
 from uq.rows.workload import Workload, workload_of
@@ -25,6 +26,7 @@ from uq.running.loading import load_study
 from uq.running.options import Progress, Report, RunOptions, Say, ignore
 from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.definition import Study
+from uq.study.hints import hints
 from uq.study.reading import read_study_text
 from uq.study.registry import is_other_code
 
@@ -98,7 +100,7 @@ def run(
     options = RunOptions(
         workers, scheduler, chunk_rows, row_limit, fresh, mixed, progress or ignore, say or ignore
     )
-    ds = run_study(study, path, options)
+    ds = with_model(run_study(study, path, options), study.model_reference)
     if say is None and not mixed and (line := line_on_other_code(study, path, ds)):
         warnings.warn(line, stacklevel=2)
     return ds
@@ -110,6 +112,8 @@ def run_study(study: Study, path: Path, options: RunOptions) -> xr.Dataset:
     if not options.fresh and (found := finished(study, path)) is not None:
         return found
     with store.keep(study, path, options.fresh, None, options.say, options.mixed) as kept:
+        for sentence in hints(study):
+            options.say(sentence)
         return carry_out(workload_of(study), options, kept, study)
 
 

@@ -200,7 +200,7 @@ def study_from_text(
     found = None
     if reference is not None:
         try:
-            found = find_model(reference) if model is None else model_at(model)
+            found = find_model(reference, folder) if model is None else model_at(model)
         except InputError as error:
             if model is not None:
                 lines += error.lines

@@ -304,6 +304,9 @@ class Tolerance(NamedTuple):
     confidence: _NearlyAll
 
 
+USUAL = Tolerance(0.95, 0.95)
+"""Coverage and confidence where a study does not ask for others."""
+
 _SURE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "maximum": 0.999999999}
 
 

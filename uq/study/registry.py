@@ -25,6 +25,8 @@ from uq.outside.returned import Returned, as_plain, from_plain
 from uq.places import node
 from uq.provenance import provenance
 from uq.study.compiled import keep_apart, own_packages
+from uq.study.namesakes import found_at, hidden_beside, namesake
+from uq.study.own_files import file_with
 from uq.study.sources import fingerprint
 
 GROUP = "vibrolife.models"
@@ -40,7 +42,7 @@ def model_names() -> tuple[str, ...]:
     return tuple(sorted(_entry_points()))
 
 
-def find_model(name: str) -> Model:
+def find_model(name: str, folder: Path | None = None) -> Model:
     """Return an installed model by its name.
 
     The name may come from a file that somebody sent: nothing but an installed model is ever
@@ -49,6 +51,8 @@ def find_model(name: str) -> Model:
     Parameters
     ----------
     name : str
+    folder : Path, optional
+        Where a file with such a model may lie, besides the current folder; named, not read in.
 
     Returns
     -------
@@ -60,7 +64,7 @@ def find_model(name: str) -> Model:
         No model of this name is installed, or its package cannot be imported. A broken model does
         not affect the others.
     """
-    return _load(_installed(name), f"model '{name}'", None)
+    return _load(_installed(name, folder), f"model '{name}'", None)
 
 
 def model_at(reference: str) -> Model:
@@ -101,8 +105,12 @@ def model_at(reference: str) -> Model:
 
 def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
     """Return the reference of a function of which it is known what it returns."""
-    plain = reference.partition(_KNOWN_TO_RETURN)[0]
-    return f"{plain}{_KNOWN_TO_RETURN}{json.dumps(as_plain(returned))}"
+    return f"{without_returns(reference)}{_KNOWN_TO_RETURN}{json.dumps(as_plain(returned))}"
+
+
+def without_returns(reference: str) -> str:
+    """Return a reference as the user gave it."""
+    return reference.partition(_KNOWN_TO_RETURN)[0]
 
 
 def located(reference: str) -> str:
@@ -124,7 +132,7 @@ def module_of(reference: str) -> str:
 
 def _point(reference: str) -> EntryPoint:
     """Return the place of a model, from which it can be imported."""
-    reference = reference.partition(_KNOWN_TO_RETURN)[0]
+    reference = without_returns(reference)
     if in_file := _FILE.fullmatch(reference):
         return EntryPoint(reference, f"{_module_in(Path(in_file[1]))}:{in_file[2] or ''}", GROUP)
     if ":" in reference:
@@ -136,10 +144,15 @@ def _point(reference: str) -> EntryPoint:
     return _installed(reference)
 
 
-def _installed(name: str) -> EntryPoint:
+def _installed(name: str, folder: Path | None = None) -> EntryPoint:
     """Return the place of an installed model."""
     installed = _entry_points()
     if name not in installed:
+        if file := file_with(name, filter(None, (Path(), folder))):
+            raise InputError(
+                f"model '{name}' is not installed; {file} has it: name that file, for a study"
+                f" or a result with --model {file}"
+            )
         names = ", ".join(sorted(installed)) or "none"
         raise InputError(
             f"no such model '{name}'{nearest(name, installed)} (installed: {names};"
@@ -176,6 +189,11 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
     module_name, _, attribute = point.value.partition(":")
     if not module_name or not (attribute or _FILE.fullmatch(point.name)):
         raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
+    package = module_name.partition(".")[0]
+    if clash := namesake(package):
+        raise InputError(f"{label} cannot be imported: {clash}")
+    if _FILE.fullmatch(point.name) and (clash := hidden_beside(module_name)):
+        raise InputError(f"{label} {clash}")
     keep_apart(module_name)
     try:
         with redirect_stdout(sys.stderr):  # what it prints is no part of an answer
@@ -184,12 +202,12 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
     except InputError:
         raise
     except (Exception, SystemExit) as error:
+        place = f" from {point.value}" if attribute else ""
         problem = described(error)
         if isinstance(error, ModuleNotFoundError):
-            problem += "; install it, or name its folder in PYTHONPATH"
-        place = f" from {point.value}" if attribute else ""
+            problem += f"; {_remedy_of_missing((error.name or '').partition('.')[0])}"
         raise InputError(f"{label} cannot be imported{place}: {problem}") from error
-    if module_name.partition(".")[0] not in own_packages():
+    if package not in own_packages():
         fingerprint(module_name)  # now, before anything is edited
     if is_machine(found):
         found = model_of(found, returned)
@@ -200,6 +218,15 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         )
     _check(found, label)
     return found
+
+
+def _remedy_of_missing(package: str) -> str:
+    """Return what to do where a module of a package was not found."""
+    if clash := namesake(package):
+        return clash
+    if there := found_at(package):
+        return f"Python finds '{package}' in {there}; if another is meant, rename one of them"
+    return "install it, or name its folder in PYTHONPATH"
 
 
 def _only_model(module: ModuleType, label: str) -> str:
@@ -287,7 +314,7 @@ def code_of(reference: str) -> str:
     if reference.startswith(_SERVERS):
         from uq.outside.server import code_of_server
 
-        return code_of_server(reference.partition(_KNOWN_TO_RETURN)[0])
+        return code_of_server(without_returns(reference))
     module = module_of(reference)
     if not (found := fingerprint(module)):
         raise InputError(

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 DISTRIBUTION = "vibrolife"
-_INSTALLED = ("site-packages", "dist-packages")
+INSTALLED = ("site-packages", "dist-packages")
 _PLATFORM = __name__.partition(".")[0]
 _COMPUTED = "*"  # a module whose name is computed at run time
 _IMPORTERS = ("import_module", "__import__")
@@ -56,7 +56,7 @@ def sources_of(module: str) -> Sources:
     others: set[str] = set()
     if root is None:
         return Sources(found, root, others)
-    beside = root.name not in _INSTALLED
+    beside = root.name not in INSTALLED
     todo, seen = {module}, set()
     while todo:
         name = todo.pop()
@@ -121,7 +121,7 @@ def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
         return []
     folder = root / package
     files = [file for ending in _FILES if (file := Path(f"{folder}{ending}")).is_file()]
-    if root.name not in _INSTALLED:
+    if root.name not in INSTALLED:
         unused = [root.joinpath(*name.split(".")) for name in own_models() - _above(modules)]
         files += [
             file
@@ -135,7 +135,7 @@ def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
 def is_installed(package: str) -> bool:
     """Return whether a package is installed, and so not being edited."""
     root = _root(package) if package not in sys.stdlib_module_names else None
-    return root is None or root.name in _INSTALLED
+    return root is None or root.name in INSTALLED
 
 
 @cache

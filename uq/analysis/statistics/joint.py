@@ -6,11 +6,11 @@ from math import isnan
 from typing import Any
 
 from uq import json_form
-from uq.analysis.joint_bounds import USUAL
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
 from uq.estimate import Estimate
 from uq.order_statistics import joint_bounds, rows_for_bound
 from uq.rows.elements import Element
+from uq.study.file import USUAL
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:

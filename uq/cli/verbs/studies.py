@@ -128,9 +128,11 @@ def plan(
 ) -> None:
     """Estimate what a study will take, from a few of its rows."""
     from uq.cli.plan import plan as show_plan
-    from uq.cli.run import loaded
+    from uq.cli.run import loaded, warn
 
-    show_plan(loaded(study, model, samples), workers, json)
+    asked = loaded(study, model, samples)
+    warn(asked)
+    show_plan(asked, workers, json)
 
 
 def run(

@@ -1,0 +1,162 @@
+"""What a study will lack, as far as it shows before any row is computed.
+
+None of it is a fault: each may be meant.
+"""
+
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from inspect import isfunction
+from math import prod
+from typing import TYPE_CHECKING
+
+from uq.contract import Model, Output
+from uq.designs.layouts import PATHS, PLAIN
+from uq.designs.registry import DESIGNS
+from uq.methods.registry import METHODS, fed_by
+from uq.order_statistics import is_within, rows_for_bound, rows_to_reach
+from uq.outside.row_by_row import RowByRow
+from uq.quantile_functions import student
+from uq.study.file import USUAL
+from uq.wording import counted, listed
+from uq.written import read_quantity
+
+if TYPE_CHECKING:
+    from uq.study.definition import Study
+
+REPLICATES = 8
+"""How many are advised."""
+
+_FEW = 3  # replicates, of which an interval is about twice as wide, or more
+_PURE = ("1", "cycles")  # in which a life may be counted
+_LIFE = re.compile(
+    r"(?!.*_(error|sd|ratio|share|fraction)$)"
+    r"((.*_)?(life|lives|lifetimes?|ttf)(_(s|h|min|seconds|minutes|hours|days|years|cycles))?"
+    r"|(.*_)?(time|hours|days|years|cycles)_(to|until)_.+|(.*_)?(failure|survival)_time)",
+    re.IGNORECASE,
+)
+
+
+def hints(study: "Study") -> list[str]:
+    """Return what a study will lack, and what would provide it, one sentence each.
+
+    Parameters
+    ----------
+    study : Study
+        Of a model of which the outputs are known.
+    """
+    return [
+        *undeclared_lives(study.model, study.analysis.outputs),
+        *_intervals(study),
+        *_indices(study),
+        *_ends_of_samples(study),
+    ]
+
+
+def undeclared_lives(model: Model, names: tuple[str, ...] = ()) -> Iterator[str]:
+    """Yield which outputs bear the name of a life, but are not declared as one.
+
+    Parameters
+    ----------
+    model : Model
+    names : tuple of str
+        Outputs; all if not given.
+    """
+    for name in names or model.outputs:
+        output = model.outputs[name]
+        if output.kind == "value" and _LIFE.fullmatch(name) and _may_be_time(output):
+            yield (
+                f"output '{name}' is not declared as a life: no survival curve, no B-lives, no"
+                f" hours or days; if it is one, {_declaration_of_life(model, name)}"
+            )
+
+
+def _declaration_of_life(model: Model, name: str) -> str:
+    if not isinstance(model.batch, RowByRow):
+        return "give its Output kind = 'lifetime'"
+    function = model.batch.function
+    if isfunction(getattr(function, "py_func", function)):
+        return f"write @uq.machine(returns={{'{name}': uq.Returned('s', life=True)}})"
+    return "state life = true, unit = 's' where the machine describes it"
+
+
+def _may_be_time(output: Output) -> bool:
+    if output.unit in _PURE:
+        return True
+    with suppress(ValueError):
+        return read_quantity(f"1 {output.unit}").dimensions == {"s": 1}
+    return False
+
+
+def _intervals(study: "Study") -> Iterator[str]:
+    """Yield that too few replicates, or samples of several rows, show no scatter."""
+    design = study.design
+    kind = DESIGNS[design.method]
+    key, count, least = "replicates", design.replicates, REPLICATES
+    why = f"the rows of a '{design.method}' design are not independent"
+    remedy = f"set {key} = {least}"
+    if kind.independent or design.independent:
+        if design.rows_of_a_sample == 1:
+            return
+        key, count, why = "samples", design.samples, "the rows of one sample are not independent"
+        remedy = f"set {key} = {least} or more"
+    elif kind.imported:
+        why = "how the rows were drawn is unknown"
+        remedy = "set independent = true if they are independent draws from the laws"
+    numbers = "number but its indices" if kind.layout is PATHS else "number"
+    if count == 1:
+        yield f"[design] {key} = 1: no {numbers} will have an interval, since {why}; {remedy}"
+    elif count <= _FEW:
+        wider = student(0.975, count - 1) / student(0.975, least - 1)
+        yield (
+            f"[design] {key} = {count}: intervals will be about {wider:.2g} times as wide as from"
+            f" {least} with as many rows in all; {remedy}"
+        )
+
+
+def _indices(study: "Study") -> Iterator[str]:
+    """Yield which sensitivity methods have too few groups of rows.
+
+    The default of a plain sample is not asked for: who wants statistics needs fewer rows.
+    """
+    design, kind = study.design, DESIGNS[study.design.method]
+    groups = design.samples * design.replicates
+    default = () if kind.layout is PLAIN else fed_by(kind)[:1]
+    for name in study.analysis.sensitivity or default:
+        method = METHODS[name]
+        if groups < method.least:
+            needed = counted(method.least, *method.layout.group)
+            yield f"sensitivity '{name}' needs {needed}, and there will be {groups} at most"
+
+
+def _ends_of_samples(study: "Study") -> Iterator[str]:
+    """Yield which quantiles and bounds lie beyond all rows."""
+    design, analysis = study.design, study.analysis
+    rows = design.samples * design.replicates * design.rows_of_a_sample
+    if DESIGNS[design.method].layout is not PLAIN:
+        return
+    if beyond := [p for p in analysis.quantiles if not is_within(p, rows)]:
+        yield (
+            f"[analysis] quantiles: {listed([f'{p:g}' for p in beyond])} of {counted(rows, 'row')}"
+            f" will have no value; {max(map(rows_to_reach, beyond))} rows are needed"
+        )
+    for key in ("tolerance", "joint_bounds"):
+        if getattr(analysis, key):
+            bounds = _joint(study) if key == "joint_bounds" else 1
+            coverage, confidence = analysis.tolerance or USUAL
+            needed = rows_for_bound(coverage, confidence, bounds=bounds)
+            if rows < needed:
+                yield (
+                    f"[analysis] {key}: {counted(rows, 'row')} will give no bound;"
+                    f" {needed} are needed if none fails"
+                )
+
+
+def _joint(study: "Study") -> int:
+    """Return how many bounds are to hold at once."""
+    axes, outputs = study.model.coordinates(study.settings), study.model.outputs
+    bounds = 0
+    for name, side in study.analysis.joint_bounds.items():
+        elements = prod(len(axes[dim]) for dim in outputs[name].dims)
+        bounds += elements * (2 if side == "both" else 1)
+    return bounds
