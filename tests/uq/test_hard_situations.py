@@ -1,5 +1,7 @@
 """Situations in which programs of this kind have failed, each with its right answer."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from asked_indices import sensitivities, values
@@ -12,13 +14,18 @@ from computed import (
     summarised,
     with_output,
 )
+from limit_states import SPHERE, STANDARD
 from own_machines import opened
 from own_study import own_study
+from rare_studies import close, study
+from rare_studies import linear as rare_linear
 from sample_models import SIDES, ok, simple
 
 import uq as package
 from uq.analysis.summary import summarise
 from uq.contract import Output
+from uq.errors import InputError
+from uq.exploring.rare_events import rare_event
 from uq.order_statistics import rows_for_bound
 
 FAR = 1e12
@@ -164,3 +171,27 @@ def test_a_seed_too_long_for_a_generator_is_said_so(uq, write_function):
     name = write_function(NUMPY_SEED, own_study("noise"))
     ended = uq("run", "own.toml", "--model", name, "-o", "own.nc", "--quiet")
     assert "the seed of a row has 64 bits: shorten it to seed % 2**32" in ended.err
+
+
+def test_a_certain_event_has_no_design_point():
+    with pytest.raises(InputError, match="all of 1000 rows lie beyond the threshold"):
+        rare_event(rare_linear(), "y", -1.0, method="importance", workers=0)
+    certain = rare_event(rare_linear(), "y", -1.0, workers=0, replicates=2)
+    assert float(certain["probability"]) == float(certain["high"]) == 1.0
+
+
+def _pair(x, seed, settings):
+    return {"pair": x[:, 0] + x[:, 1]}, ok(len(x))
+
+
+PAIR = replace(SPHERE, name="pair", outputs={"pair": Output("1", "sum of two")}, batch=_pair)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["subset", "importance"])
+@pytest.mark.parametrize("inputs", [2, 8])
+def test_inputs_that_are_not_used_do_not_mislead_a_search(method, inputs):
+    names = [f"x{i + 1}" for i in range(inputs)]
+    of = study("test_hard_situations:PAIR", dict.fromkeys(names, STANDARD))
+    ds = rare_event(of, "pair", 4.7 * np.sqrt(2), method=method, workers=0)
+    assert close(ds, 1.300807454e-06)
