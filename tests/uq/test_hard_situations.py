@@ -14,6 +14,7 @@ from computed import (
     summarised,
     with_output,
 )
+from learnt_studies import lognormal
 from limit_states import SPHERE, STANDARD
 from own_machines import opened
 from own_study import own_study
@@ -26,6 +27,8 @@ from uq.analysis.summary import summarise
 from uq.contract import Output
 from uq.errors import InputError
 from uq.exploring.rare_events import rare_event
+from uq.exploring.updating import update
+from uq.learning.answer import learnt
 from uq.order_statistics import rows_for_bound
 
 FAR = 1e12
@@ -195,3 +198,33 @@ def test_inputs_that_are_not_used_do_not_mislead_a_search(method, inputs):
     of = study("test_hard_situations:PAIR", dict.fromkeys(names, STANDARD))
     ds = rare_event(of, "pair", 4.7 * np.sqrt(2), method=method, workers=0)
     assert close(ds, 1.300807454e-06)
+
+
+@pytest.mark.slow
+def test_a_life_within_an_interval_and_a_line_at_its_beginning():
+    laws = {"rate": lognormal(2.5e-10, 0.5, "shared"), "depth": lognormal(2.5e-4, 0.1)}
+    rows = computed(
+        study_of(
+            {
+                "study": {"name": "wear", "model": "exponential-wear"},
+                "design": {"method": "monte-carlo", "samples": 4000, "units": 2, "seed": 1},
+                "uncertain": laws,
+            }
+        )
+    )
+    line = {"unit": "A", "output": "life"}
+    within = [
+        line | {"kind": "survived", "time": 432000.0},
+        line | {"kind": "ended", "time": 864000.0},
+    ]
+    answers = [
+        learnt(update(rows, [*within, *more]))
+        for more in ([], [line | {"kind": "survived", "time": 0.0}])
+    ]
+    for answer in answers:
+        rate = next(entry.posterior for entry in answer.inputs if entry.name == "rate")
+        assert rate.mean.value == pytest.approx(3.836346593e-10, rel=0.02)
+        assert rate.sd.value == pytest.approx(8.10448196e-11, rel=0.06)
+        assert rate.quantiles[0.5] == pytest.approx(3.686359093e-10, rel=0.02)
+    assert answers[0].inputs == answers[1].inputs
+    assert answers[1].taught[-1].bits == 0.0
