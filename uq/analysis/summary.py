@@ -253,7 +253,7 @@ def resolution_of(element: Element, least: float) -> float:
     if not len(values):
         return 0.0
     low, middle, high = values[[int(p * (len(values) - 1)) for p in (0.05, 0.5, 0.95)]]
-    return (high - low) / 100 if high - low < least * abs(middle) else 0.0
+    return float(high - low) / 100 if high - low < least * abs(middle) else 0.0
 
 
 def status_counts(ds: xr.Dataset) -> dict[str, int]:
