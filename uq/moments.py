@@ -85,7 +85,7 @@ def moments(
     has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance
     return Moments(
         Estimate(
-            float(values.mean()) if has_mean else np.nan,
+            _mean(values) if has_mean else np.nan,
             *(UNKNOWN if no_mean else mean_interval(values, replicate, confidence)),
             no_mean,
         ),
@@ -97,6 +97,10 @@ def moments(
         tail,
         None if tail is None or no_mean else _caution(tail),
     )
+
+
+def _mean(values: Floats) -> float:
+    return float(values[0] if np.ptp(values) == 0 else values.mean())  # else it may be rounded
 
 
 def _caution(tail: Tail) -> str | None:
@@ -221,6 +225,8 @@ def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
     """
     if len(values) < 2:
         return np.nan
+    if np.ptp(values) == 0:
+        return 0.0  # that of their mean, which is rounded, would be another
     values, size = sized(values)
     means = values[:1] if replicate is None else by_replicate(values, replicate)
     if len(means) > 1:

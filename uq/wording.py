@@ -21,9 +21,29 @@ def capitalized(text: str) -> str:
     return text if symbol else f"{text[:1].upper()}{text[1:]}"
 
 
-def number(value: float | None) -> str:
-    """Return a number for a table; a dash if there is none."""
-    return "-" if value is None else f"{value:.5g}"
+def number(value: float | None, resolution: float = 0.0) -> str:
+    """Return a number for a table, to five digits or its resolution; a dash if there is none."""
+    return "-" if value is None else f"{value:.{digits(value, resolution, 5)}g}"
+
+
+def digits(value: float, resolution: float, least: int) -> int:
+    """Return the significant digits of a number that show differences of this size.
+
+    Parameters
+    ----------
+    value : float
+    resolution : float
+        0 where `least` digits suffice.
+    least : int
+
+    Returns
+    -------
+    int
+        At most 17, which tell all numbers apart.
+    """
+    if not (resolution > 0 and isfinite(value) and value):
+        return least
+    return min(max(least, floor(log10(abs(value))) - floor(log10(resolution)) + 1), 17)
 
 
 def quantity(value: float, units: str) -> str:
@@ -61,7 +81,7 @@ def duration(seconds: float | None) -> str:
     return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
 
 
-def known(estimate: Estimate, end: str = "value", per: float = 1.0) -> str:
+def known(estimate: Estimate, end: str = "value", per: float = 1.0, resolution: float = 0.0) -> str:
     """Return one number of an estimate, or why there is none.
 
     Parameters
@@ -70,6 +90,8 @@ def known(estimate: Estimate, end: str = "value", per: float = 1.0) -> str:
     end : {"value", "low", "high"}
     per : float
         What the number is divided by: the length of a unit.
+    resolution : float
+        Of the digits, as `number` takes it, before the division.
 
     Returns
     -------
@@ -77,15 +99,15 @@ def known(estimate: Estimate, end: str = "value", per: float = 1.0) -> str:
     """
     value = getattr(estimate, end)
     if isfinite(value):
-        return number(value / per)
+        return number(value / per, resolution / per)
     if value != inf:
         return "-"
     return "beyond the horizon" if end in estimate.beyond else "never"
 
 
-def interval(estimate: Estimate, per: float = 1.0) -> str:
+def interval(estimate: Estimate, per: float = 1.0, resolution: float = 0.0) -> str:
     """Return the ends of an interval; "" where neither is known, or both are never."""
-    ends = [known(estimate, end, per) for end in ("low", "high")]
+    ends = [known(estimate, end, per, resolution) for end in ("low", "high")]
     return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
 
 

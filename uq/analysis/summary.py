@@ -1,10 +1,11 @@
 """The summary of a result: how rows ended, the regimes, and the statistics of each output."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from uq import json_form
@@ -72,6 +73,10 @@ def _compared_json(one: Statistic) -> dict[str, Any]:
 
 
 SHARE = Kind(entry=_compared_json)
+
+_OF_VALUES = {"moments", "quantiles", "b_lives", "tolerance", "joint_bounds"}
+_DIGITS = 5  # of numbers in tables
+_FEWEST_STEPS = 10  # of the last digit, within the range of the values
 
 REGIME = "regime"
 """The category by which rows are told apart in tables and figures."""
@@ -223,8 +228,32 @@ def _described(
     element: Element, context: Context, fits: bool, wanted: Collection[str]
 ) -> Described:
     parts = {name: tuple(STATISTICS[name](element, context)) for name in wanted}
+    if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
+        for name in _OF_VALUES & parts.keys():
+            parts[name] = tuple(replace(one, resolution=step) for one in parts[name])
     fitted = fits_of(element, context.replicate is None) if fits and element.is_lifetime else {}
     return Described(element.units, parts, fitted)
+
+
+def resolution_of(element: Element, least: float) -> float:
+    """Return the difference that digits must show where an output is far from 0 for its scatter.
+
+    Parameters
+    ----------
+    element : Element
+    least : float
+        Range of the middle 90 % over their median from which the usual digits suffice.
+
+    Returns
+    -------
+    float
+        A hundredth of that range; 0 where the usual digits suffice.
+    """
+    values = element.ascending[np.isfinite(element.ascending)]
+    if not len(values):
+        return 0.0
+    low, middle, high = values[[int(p * (len(values) - 1)) for p in (0.05, 0.5, 0.95)]]
+    return float(high - low) / 100 if high - low < least * abs(middle) else 0.0
 
 
 def status_counts(ds: xr.Dataset) -> dict[str, int]:

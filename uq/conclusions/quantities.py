@@ -13,7 +13,7 @@ from uq.analysis.statistics.counts import never_ending
 from uq.analysis.statistics.quantiles import quantiles
 from uq.analysis.statistics.statistic import Context, Statistic
 from uq.analysis.statistics.tolerance import tolerance
-from uq.analysis.summary import Described, summarise
+from uq.analysis.summary import Described, resolution_of, summarise
 from uq.conclusions.bounds import (
     CONFIDENCE,
     COVERAGE,
@@ -55,6 +55,8 @@ from uq.wording import threshold
 
 LOW, HIGH = 0.05, 0.95
 """Probabilities of the ends of the likely range."""
+
+_NARROW = 0.003  # a range over its values, of which three digits show but few steps
 
 
 def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
@@ -157,7 +159,8 @@ def _quantity(
     shortest = float(least.min()) if len(least) else nan
     typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
     unit = unit_for(element.units, abs(typical))
-    promise = promise_of(findings.ds, described, element, context.analysis, wanted, unit)
+    fine = unit._replace(resolution=resolution_of(folded, _NARROW))
+    promise = promise_of(findings.ds, described, element, context.analysis, wanted, fine)
     return Quantity(
         element.name,
         element_called(findings.ds, element),
@@ -167,7 +170,7 @@ def _quantity(
             quantile_of(described, LOW),
             middle,
             quantile_of(described, HIGH),
-            unit,
+            fine,
             element.is_angle,
             end_of(element),
             never_ending(element, context.replicate) if element.is_lifetime else NOTHING,

@@ -12,7 +12,7 @@ from uq.greek import readable
 from uq.rows.element import Element
 from uq.rows.variables import input_unit
 from uq.units import beside, powers, unit_of
-from uq.wording import capitalized, percent, percent_interval
+from uq.wording import capitalized, digits, percent, percent_interval
 
 _TWIN = re.compile(r"(.+)_(\d+)")
 
@@ -26,14 +26,17 @@ class Unit(NamedTuple):
         "" for a pure number.
     per : float
         What numbers are divided by.
+    resolution : float
+        The smallest difference that digits must show, before the division; 0 for three digits.
     """
 
     name: str = ""
     per: float = 1.0
+    resolution: float = 0.0
 
     def number(self, value: float, towards: float = 0.0) -> str:
-        """Return a number in this unit to three digits; `towards` -inf or inf rounds that way."""
-        return rounded(value / self.per, towards)
+        """Return a number in this unit to its digits; `towards` -inf or inf rounds that way."""
+        return rounded(value / self.per, towards, self.resolution / self.per)
 
     def text(self, value: float, towards: float = 0.0) -> str:
         """Return a number with its unit."""
@@ -52,15 +55,16 @@ class Unit(NamedTuple):
         return f"{self.number(low)} to {self.number(high)}"
 
 
-def rounded(value: float, towards: float = 0.0) -> str:
-    """Return a number to three digits; `towards` -inf or inf rounds down or up."""
+def rounded(value: float, towards: float = 0.0, resolution: float = 0.0) -> str:
+    """Return a number to three digits, or its resolution; `towards` -inf or inf rounds that way."""
     if not 1e-300 < abs(value) < 1e300:  # a digit of others may be 0 or infinite
         return f"{value or 0.0:.3g}"  # no minus before a zero
-    digit = 10.0 ** (floor(log10(abs(value))) - 2)
+    count = digits(value, resolution, 3)
+    digit = 10.0 ** (floor(log10(abs(value))) - count + 1)
     places = value / digit
     if towards and abs(places - round(places)) > 1e-9:
         places = ceil(places) if towards > 0 else floor(places)
-    shown = f"{places * digit:.3g}"
+    shown = f"{places * digit:.{count}g}"
     return f"{float(shown):.0f}" if 1e3 <= abs(float(shown)) < 1e4 else shown
 
 

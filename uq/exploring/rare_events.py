@@ -267,6 +267,11 @@ def _importance(margin: LimitState, samples: int, generators: _Generators) -> _O
     u = generators[0].standard_normal((samples, margin.dimension))
     first = margin(u)
     hits, failed = int((first > 0).sum()), margin.failed
+    if hits == samples:
+        raise InputError(
+            f"no design point to find: all of {samples} rows lie beyond the threshold; 'uq run'"
+            " with this threshold gives its probability"
+        )
     points = design_points(margin, u, first)
     if not len(points):
         raise InputError(

@@ -21,6 +21,7 @@ from uq.outside.folders import Folders, size_of
 from uq.outside.machine_file import (
     FOLDER,
     MachineFile,
+    MachineTable,
     code_files,
     filled,
     read_machine,
@@ -34,6 +35,7 @@ from uq.outside.row_by_row import SEED, OverdueError, RowByRow, model_from
 _LAST = 300  # characters of what a failed program said
 _LOOK_SECONDS = 1.0  # between looks at the size of a folder
 _TRIES = 3  # of a program that is killed, before it is blamed
+_SEEDS = 2**31 - 1  # many programs take more for the largest of 32 bits, and 0 for the clock
 _KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
 _REMEDIES = {
     errno.EACCES: "; make it executable: chmod +x",
@@ -71,9 +73,8 @@ def program_of(path: Path) -> Model:
         name: (Parameter(name, one.unit, one.meaning or name, one.span, one.source), one.nominal)
         for name, one in read.parameters.items()
     }
-    texts = [*read.machine.command, template_of(read.machine, folder)]
-    random = any(f"{{{SEED}" in text for text in texts)
     machine = read.machine
+    random = _takes_seed(machine, folder)
     batch = RowByRow(runner, tuple(fields), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
     return model_from(machine.name, title, machine.version, fields, returned, batch, random)
@@ -83,6 +84,8 @@ def code_of_program(path: Path) -> str:
     """Return a hash of a machine file, its template, its program and the files named in it."""
     read, folder = read_machine(path), path.absolute().parent
     whole = hashlib.sha256(content_of(path))
+    if _takes_seed(read.machine, folder):
+        whole.update(b"%d seeds\n" % _SEEDS)
     files = code_files(read.machine, folder)
     if program := _found(read.machine.command[0], folder):
         files.append(Path(program))
@@ -93,6 +96,11 @@ def code_of_program(path: Path) -> str:
                 whole.update(b"%s %d\n" % (one.name.encode(), len(content)))
                 whole.update(content)
     return whole.hexdigest()[:16]
+
+
+def _takes_seed(machine: MachineTable, folder: Path) -> bool:
+    texts = [*machine.command, template_of(machine, folder)]
+    return any(f"{{{SEED}" in text for text in texts)
 
 
 def _found(program: str, folder: Path) -> str | None:
@@ -149,6 +157,8 @@ class _Program:
     def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
         machine = self.read.machine
         places = {**row, FOLDER: str(self.folder)}
+        if SEED in row:
+            places[SEED] = 1 + int(row[SEED]) % _SEEDS
         if machine.template:
             (folder / machine.input).write_bytes(filled(self.template, places).encode())
         program, *arguments = (filled(part, places) for part in machine.command)

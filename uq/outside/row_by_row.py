@@ -196,6 +196,8 @@ class RowByRow:
                 status[i], messages[i] = Status.TIMED_OUT, str(error)
             except BaseException as error:  # Ctrl-C reaches another thread or process
                 status[i], messages[i] = Status.RAISED, described(error)
+                if self.wants_seed and _is_too_long(error):
+                    messages[i] += "; the seed of a row has 64 bits: shorten it to seed % 2**32"
         self.leave()
         return columns, status, messages
 
@@ -214,3 +216,9 @@ class RowByRow:
             return self.function(**given)
         finally:
             os.chdir(here)
+
+
+def _is_too_long(error: BaseException) -> bool:
+    """Whether a generator of random numbers takes no seed of 64 bits."""
+    text = str(error).lower()
+    return isinstance(error, ValueError | OverflowError) and ("seed" in text or "too large" in text)

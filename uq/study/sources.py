@@ -8,6 +8,7 @@ import ast
 import hashlib
 import os
 import sys
+from codecs import BOM_UTF8
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache, lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
@@ -69,7 +70,7 @@ def sources_of(module: str) -> Sources:
         for ending in _FILES:
             file = Path(f"{home.joinpath(*name.split('.'))}{ending}")
             if name not in found and file.is_file():
-                found[name] = file.read_bytes()
+                found[name] = _without_marks(file)
                 above = name.rpartition(".")[0]
                 within = name if ending == _FILES[0] else above
                 inside = set(_imported(found[name], within)) if ending.endswith(".py") else set()
@@ -78,6 +79,14 @@ def sources_of(module: str) -> Sources:
                 todo |= {above or name, *inside} - seen
         todo = {name for name in todo if name.partition(".")[0] != _PLATFORM}
     return Sources(found, root, others)
+
+
+def _without_marks(file: Path) -> bytes:
+    """Return a source as Python reads it: whatever the editor, it is the same code."""
+    content = file.read_bytes()
+    if file.suffix != ".py":
+        return content
+    return content.removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
 
 
 @cache

@@ -203,6 +203,8 @@ class Statistic:
     by : tuple of callable
         The functions that compute it, whose docstrings state what they estimate and cite the
         source; by default its maker.
+    resolution : float
+        The smallest difference that its digits must show; 0 where five digits suffice.
     """
 
     key: tuple[str, ...]
@@ -224,6 +226,7 @@ class Statistic:
     facts: Mapping[str, Any] = field(default_factory=dict)
     estimator: Estimator | None = None
     by: tuple[Callable[..., Any], ...] = ()
+    resolution: float = 0.0
 
     def is_read_by(self, reader: Reader) -> bool:
         """Whether this reader shows it."""
@@ -240,6 +243,8 @@ class Statistic:
         """Return its value in units of length `per`, or why there is none."""
         value = self.estimate.value
         if isfinite(value):
+            if self.resolution:
+                return number(value / per, self.resolution / per)
             return self.kind.shown(value / per)
         if self.rows_needed is not None:
             never = isinf(self.rows_needed)
@@ -248,6 +253,8 @@ class Statistic:
 
     def interval(self, per: float = 1.0) -> str:
         """Return its interval in units of length `per`; "" where it has none."""
+        if self.resolution:
+            return interval(self.estimate, per, self.resolution)
         return self.kind.ends(self.estimate, per)
 
 
