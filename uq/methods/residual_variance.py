@@ -17,6 +17,7 @@ _FEWEST_LAGS = 4
 _LEAST_PAIRED = 0.1  # share of the pairs of rows some places apart that are of two replicates
 _FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
 _MOST_NEIGHBOURS = 30
+_BENT = 3.0  # standard errors by which fewer lags may differ
 _JUMP = 16.0  # a squared residual from one side this many times that from the other side
 
 Part = NDArray[np.integer] | None
@@ -92,6 +93,7 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     -----
     More lags reduce the noise but widen the range in which the mean must be a few jumps or a
     parabola: their number grows with n, and with the ratio of the variance left to that explained.
+    It is halved where fewer lags give another intercept by more than the noise.
 
     References
     ----------
@@ -141,8 +143,8 @@ def _of_equal(y: Floats, part: Part) -> Residual:
 def _of_neighbours(y: Floats, part: Part) -> Residual:
     """Return the residual variance of rows in the order of the input."""
     number = _number_of_lags(y, part)
-    lags = _lags(number, len(y), part)
-    left = _intercept(y, part, lags)
+    lags = _unbent(y, part, _lags(number, len(y), part))
+    number, left = min(number, len(lags)), _intercept(y, part, lags)
     squares, local, smoothed = _squared_residuals(y, number, left)
     diagonal, noise = np.ones(len(y)), 0.0
     for lag, weight in zip(lags, _weights(lags), strict=True):
@@ -151,8 +153,8 @@ def _of_neighbours(y: Floats, part: Part) -> Residual:
         diagonal[lag : 2 * lag] += weight / 4
         diagonal[-lag:] -= weight / 4
         diagonal[-2 * lag : -lag] += weight / 4
-        used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
-        noise += weight**2 * float(np.mean(squares[lag:] * squares[:-lag])) / used
+        products = float(np.mean(squares[lag:] * squares[:-lag]))
+        noise += weight**2 * products / _used(part, lag)
     excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
     return Residual(left, squares * diagonal, noise, excess)
 
@@ -162,7 +164,7 @@ def _lags(number: int, rows: int, part: Part) -> tuple[int, ...]:
     if part is None:
         return tuple(range(1, number + 1))
     lags = range(1, min(3 * number, rows // 3) + 1)
-    usable = (lag for lag in lags if np.mean(part[lag:] != part[:-lag]) >= _LEAST_PAIRED)
+    usable = (lag for lag in lags if _used(part, lag) >= _LEAST_PAIRED)
     return tuple(islice(usable, number))
 
 
@@ -179,6 +181,38 @@ def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
         return np.nan
     weights = zip(lags, _weights(lags), strict=True)
     return float(sum(weight * _half_square(y, part, lag) for lag, weight in weights))
+
+
+def _used(part: Part, lag: int) -> float:
+    """Return the share of the pairs of rows some places apart that are of two replicates."""
+    return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
+
+
+def _unbent(y: Floats, part: Part, lags: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the lags, or the first half of them where both together follow no parabola.
+
+    Half of them again, and so on [1]_: beyond a jump near an end of the order there are fewer rows
+    than lags, and the number of pairs across it no longer grows with the lag.
+
+    References
+    ----------
+    .. [1] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise", Theory
+       Probab. Appl. 35, 454-466 (1991).
+    """
+    if len(lags) < 2 * LEAST_LAGS:
+        return lags
+    halves = np.array([_half_square(y, part, lag) for lag in lags])
+    used = np.array([_used(part, lag) for lag in lags])
+    steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
+    product = float(np.mean(steps[2:] * steps[:-2]))  # of the variances of neighbours
+    while (half := len(lags) // 2) >= LEAST_LAGS:
+        change = np.array(_weights(lags))
+        change[:half] -= _weights(lags[:half])
+        error = float(np.sqrt(np.sum(change**2 / used[: len(lags)]) * product / len(y)))
+        if abs(float(change @ halves[: len(lags)])) <= _BENT * error:
+            break
+        lags = lags[:half]
+    return lags
 
 
 def _half_square(y: Floats, part: Part, lag: int) -> float:
