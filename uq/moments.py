@@ -23,6 +23,7 @@ from uq.intervals import (
 from uq.jumps import beyond_jumps
 from uq.quantile_functions import normal
 from uq.tails import Tail, heavier_tail
+from uq.wording import counted
 
 LIGHT_ENOUGH = 0.15
 """The interval of a standard deviation needs a fourth moment, which exists for k < 1/4. Measured,
@@ -37,7 +38,13 @@ ENOUGH_ROWS = 200
 value far out, and scatter too little: of an exponential law, the intervals of 50 rows cover 85 %,
 of 100 rows 89 %, of 200 rows 96 %. Whether they are given must not depend on the values."""
 
+DECIDING_ROWS = 5
+"""Fewer rows than this, on which the error of a mean rests, give its interval a caution. Of 100
+rows of which a tenth is exponential and the others are 0, the intervals cover 87 %: 92 % of those
+without this caution."""
+
 _FEWEST = 8  # rows that show a kurtosis
+_LIGHT = 6.0  # kurtosis that a few rows of a normal law seldom exceed
 
 
 class Moments(NamedTuple):
@@ -95,7 +102,7 @@ def moments(
             no_sd,
         ),
         tail,
-        None if tail is None or no_mean else _caution(tail),
+        None if no_mean else _caution(values, replicate, tail),
     )
 
 
@@ -103,13 +110,26 @@ def _mean(values: Floats) -> float:
     return float(values[0] if np.ptp(values) == 0 else values.mean())  # else it may be rounded
 
 
-def _caution(tail: Tail) -> str | None:
-    if tail.k <= SUSPECT:
-        return None
+def _caution(values: Floats, replicate: Replicates, tail: Tail | None) -> str | None:
+    if tail is None or tail.k <= SUSPECT:
+        return _few_decide(values) if replicate is None else None
     return (
         f"the interval of the mean may be too narrow: {_seen(tail)} values does not decide whether"
         " there is a variance (k below 0.5)"
     )
+
+
+def _few_decide(values: Floats) -> str | None:
+    """Return a caution if the error of the mean of independent rows rests on a few of them."""
+    n = len(values)
+    if is_constant(values):
+        return None
+    squares = np.square(sized(values - values.mean())[0])
+    kurtosis = n * float(squares @ squares) / float(squares.sum()) ** 2
+    if kurtosis <= max(n / DECIDING_ROWS, _LIGHT):
+        return None
+    rows = counted(max(round(n / kurtosis), 1), "row")
+    return f"the interval of the mean may be too narrow: its error rests on about {rows}"
 
 
 def _seen(tail: Tail) -> str:

@@ -5,6 +5,7 @@ from scipy import special, stats
 from scipy.stats import qmc
 
 from benchmarks.coverage.tally import Tally
+from uq.conclusions.rankings import unexplained
 from uq.intervals import scatter_interval
 from uq.methods.indices import S1
 from uq.methods.measures import first_order
@@ -12,8 +13,12 @@ from uq.methods.registry import METHODS
 from uq.methods.sample import Sample
 
 ROWS = (100, 300, 1000, 4000)
+COUNTED = 2
+"""Inputs, the first ones, whose own share is counted."""
+
 SLICES = 20
 BALANCE = "random balance, scatter of 8 parts"
+LEFT = "no single input explains"
 RANK = "rank statistic (Gamboa et al. 2022)"
 RATIO = f"correlation ratio, {SLICES} slices (Kelley 1935)"
 
@@ -25,13 +30,13 @@ def _normal(u):
 
 
 def _added(*parts):
-    """Return a sum of functions of one uniform number each, and the shares of the first two."""
+    """Return a sum of functions of one uniform number each, and their shares."""
     variances = [np.var(part(_MID)) for part in parts]
 
     def output(u):
         return sum(part(column) for part, column in zip(parts, u.T, strict=True))
 
-    return output, len(parts), tuple(np.array(variances[:2]) / sum(variances))
+    return output, len(parts), tuple(np.array(variances) / sum(variances))
 
 
 def _scaled(by, of=_normal):
@@ -72,6 +77,7 @@ def _of_event(first, second):
 
 _DEFECT = np.sqrt(0.09 * 1.5 / (0.03 * 0.97))
 _WEAR = _added(_scaled(-0.5), _scaled(0.1))
+_OF_G = 1 / 3 / (1 + np.array([0.0, 1.0, 4.5, 9.0, 99.0])) ** 2
 _CORNER = np.clip(_MID - 0.6, 0, 1)
 
 PROBLEMS = {
@@ -93,16 +99,13 @@ PROBLEMS = {
     "a lognormal input": _added(lambda u: np.exp(0.5 * _normal(u)), _scaled(0.3)),
     "the logarithm of a uniform input": _added(np.log, _scaled(0.3)),
     "uniform inputs": _added(*(lambda u, k=k: k * u for k in (4.0, 3.0, 2.0, 1.0))),
-    "Ishigami": (_ishigami, 3, (0.313905, 0.442411)),
+    "Ishigami": (_ishigami, 3, (0.313905, 0.442411, 0.0)),
     "the g-function": (
         _g_function,
         5,
-        tuple(
-            np.array([1 / 3, 1 / 12])
-            / (np.prod(1 + 1 / 3 / (1 + np.array([0.0, 1.0, 4.5, 9.0, 99.0])) ** 2) - 1)
-        ),
+        tuple(_OF_G / (np.prod(1 + _OF_G) - 1)),
     ),
-    "a product and 0.3 c": (_product, 3, (0.0, 0.0)),
+    "a product and 0.3 c": (_product, 3, (0.0, 0.0, 0.09 / 1.09)),
     "unequal scatter": (_unequal, 2, (1 / 17, 12 / 17)),
     "an event of 8 %": (_event, 2, _of_event(_CORNER, _CORNER)),
     "a ramp's event": (_ramp, 2, _of_event(np.minimum(1, 3 * (1 - _MID)), 1 - _MID / 3)),
@@ -115,7 +118,7 @@ PROBLEMS = {
         ),
     ),
 }
-"""Name -> output of uniform numbers, how many there are, and the shares of the first two."""
+"""Name -> output of uniform numbers, how many there are, and the share of each."""
 
 TIED = {"values of a die": lambda u: np.column_stack([np.ceil(6 * u[:, 0]), u[:, 1:]])}
 """What the first inputs are where they are not the uniform numbers themselves."""
@@ -131,9 +134,9 @@ def rows(n, repetitions):
             y = output(u)
             if np.ptp(y) == 0:
                 continue
-            x = TIED.get(name, lambda u: u)(u)[:, :2]
+            x = TIED.get(name, lambda u: u)(u)
             _count(tally, x, y, shares)
-            for i, share in enumerate(shares):
+            for i, share in enumerate(shares[:COUNTED]):
                 what = f"S1 = {share:.3f}"
                 by = np.nan, np.nan
                 tally.add(what, share, *by, by=RANK, value=rank_statistic(x[:, i], y))
@@ -148,12 +151,15 @@ def rows(n, repetitions):
 
 
 def _count(tally, x, y, shares, replicate=None):
-    inputs = {str(i): x[:, i] for i in range(2)}
+    inputs = {str(i): x[:, i] for i in range(x.shape[1])}
     sample = Sample.plain(y, inputs, replicate=replicate, nulls=False)
-    found = METHODS["first-order"].indices(sample).values[S1]
-    for i, share in enumerate(shares):
-        one = found[str(i)]
-        tally.add(f"S1 = {share:.3f}", share, one.low, one.high, value=one.value)
+    indices = METHODS["first-order"].indices(sample)
+    for i, share in enumerate(shares[:COUNTED]):
+        index = indices.values[S1][str(i)]
+        tally.add(f"S1 = {share:.3f}", share, index.low, index.high, value=index.value)
+    left = 1 - sum(shares)
+    alone = unexplained(indices)
+    tally.add(f"{LEFT} = {left:.3f}", left, alone.low, alone.high, value=alone.value)
 
 
 def replicates(repetitions):
@@ -170,7 +176,7 @@ def replicates(repetitions):
             for seed in range(repetitions):
                 u = np.concatenate([draw(d, 8 * seed + k) for k in range(8)])
                 u = np.clip(u, 1e-12, 1 - 1e-12)
-                _count(tally, u[:, :2], output(u), shares, np.repeat(np.arange(8), 64))
+                _count(tally, u, output(u), shares, np.repeat(np.arange(8), 64))
             lines += tally.lines()
     return lines
 
@@ -193,5 +199,6 @@ FEW = (
     "the error rests on few rows of a skewed law; where their number is below 20, and in most"
     " samples of 300 rows or fewer, there is no interval"
 )
-REASONS = {"S1": FEW}
-WIDE = {"S1": "conservative: the interval of independent rows, of designs that spread more evenly"}
+REASONS = {"S1": FEW, LEFT: FEW}
+EVENLY = "conservative: the interval of independent rows, of designs that spread more evenly"
+WIDE = {"S1": EVENLY, LEFT: EVENLY}

@@ -9,6 +9,7 @@ from scipy import stats
 import uq
 from uq.analysis.findings import Findings
 from uq.analysis.widths import expected_widths
+from uq.conclusions.answer import answer
 from uq.indices.transforms import HEAVY, heaviness, tail_share
 from uq.report.indices import sensitivity_of
 
@@ -130,3 +131,11 @@ def test_variance_between_regimes_names_what_it_is_of():
     shares = [found[name]["between_regimes"]["value"] for name in ("y", "life")]
     assert shares[0] == pytest.approx(shares[1])
     assert list(uq.regimes(asking(ds, outputs=["y", "life"]))["output"]) == ["y", "log(life)"]
+
+
+def test_a_life_whose_logarithm_is_heavy_is_not_told_to_take_its_logarithm():
+    ds = linear(samples=300)
+    lives = np.exp(-np.minimum(stats.pareto(0.8).rvs(300, random_state=2), 300.0))
+    ds = asking(with_output(ds, "life", lives, "lifetime"), outputs=["life"])
+    reason = answer(ds).lead.ranking.reason
+    assert "tail of log(life) is too heavy" in reason and reason.endswith("; ask for rank(life)")

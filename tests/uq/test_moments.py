@@ -39,6 +39,18 @@ def test_a_mean_without_variance_has_no_interval_and_no_sd():
     assert "logarithm" in entry["reasons"]["sd"]
 
 
+def test_a_mean_whose_error_rests_on_few_rows_comes_with_a_caution():
+    """A tenth of 100 rows is exponential, the others are 0: the interval misses in an eighth."""
+    rng = np.random.default_rng(1)
+    rows = [np.where(rng.random(100) < 0.9, 0.0, rng.exponential(size=100)) for _ in range(200)]
+    means = [moments(values) for values in rows]
+    missed = [one for one in means if not one.mean.low <= 0.1 <= one.mean.high]
+    assert len(missed) > 15 and sum(one.caution is None for one in missed) <= len(missed) / 3
+    assert "rests on about" in next(filter(None, (one.caution for one in missed)))
+    normal = [moments(rng.normal(size=30)).caution for _ in range(100)]
+    assert sum(caution is not None for caution in normal) <= 3
+
+
 def test_a_mean_whose_variance_is_open_comes_with_a_caution(capsys):
     """Of 200 such samples the interval misses in a quarter, mostly beside a caution."""
     rng, law = np.random.default_rng(8), stats.pareto(1.5)

@@ -17,9 +17,8 @@ from uq.errors import choices
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs, why_dependent
-from uq.indices.sensitivities import TargetIndices
 from uq.indices.targets import FORMS, Target, split_name
-from uq.methods.indices import S1, ST, IndexKind
+from uq.methods.indices import S1, ST, IndexKind, Indices
 from uq.methods.registry import fed_by
 from uq.rows.elements import replicates_of, study_file_of
 from uq.rows.ranked import ranked_in_words
@@ -114,7 +113,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     behind = (one.index.value for one in measured if one not in groups[0])
     ranking = replace(
         ranking,
-        unexplained=unexplained(found),
+        unexplained=unexplained(found.indices),
         runner_up=max(behind, default=0.0),
         remedy="a 'saltelli' design shows them",
     )
@@ -123,15 +122,14 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     return ranking
 
 
-def unexplained(found: TargetIndices) -> Estimate:
+def unexplained(indices: Indices) -> Estimate:
     """Return the share of the variance that no single input explains.
 
     Parameters
     ----------
-    found : TargetIndices
-        With first-order indices.
+    indices : Indices
+        With first-order indices of all inputs.
     """
-    indices = found.indices
     value = 1 - sum(one.value for one in indices.values[S1].values())
     lacking = any(not one.has_interval for one in indices.values[S1].values())
     if lacking or not indices.half_products:

@@ -225,9 +225,11 @@ def _counts(*whole: Mask, rows: int) -> tuple[int, int]:
 
 def _no_variance(target: Target) -> str:
     name = target.element.name if target.element else target.name
+    logarithm = f"log({name})"
+    others = f"{logarithm}, where all rows are positive, or " * (target.name != logarithm)
     return (
         f"the tail of {target.name} is too heavy for a variance to apportion; ask for"
-        f" log({name}), where all rows are positive, or rank({name})"
+        f" {others}rank({name})"
     )
 
 

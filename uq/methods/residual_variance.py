@@ -17,6 +17,7 @@ _FEWEST_LAGS = 4
 _LEAST_PAIRED = 0.1  # share of the pairs of rows some places apart that are of two replicates
 _FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
 _MOST_NEIGHBOURS = 30
+_BENT = 3.0  # standard errors by which fewer lags may differ
 _JUMP = 16.0  # a squared residual from one side this many times that from the other side
 
 Part = NDArray[np.integer] | None
@@ -97,6 +98,7 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     -----
     More lags reduce the noise but widen the range in which the mean must be a few jumps or a
     parabola: their number grows with n, and with the ratio of the variance left to that explained.
+    It is halved where fewer lags give another intercept by more than the noise.
 
     References
     ----------
@@ -149,8 +151,8 @@ def _of_neighbours(y: Floats, part: Part) -> Residual:
     squares, local, smoothed = _squared_residuals(y, number, left)
     noise = 0.0
     for lag, weight in zip(lags, _weights(lags), strict=True):
-        used = 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
-        noise += weight**2 * float(squares[lag:] @ squares[:-lag]) / (len(y) - lag) / used
+        products = float(squares[lag:] @ squares[:-lag]) / (len(y) - lag)
+        noise += weight**2 * products / _used(part, lag)
     excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
     return Residual(left, squares * _times_used(lags, len(y)), noise, excess)
 
@@ -159,7 +161,12 @@ def _extrapolated(y: Floats, part: Part) -> tuple[int, tuple[int, ...], float]:
     """Return the number of lags, the lags, and the residual variance that they lead to."""
     number = _number_of_lags(y, part)
     lags = _lags(number, len(y), part)
-    return number, lags, _intercept(y, part, lags)
+    if len(lags) < _FEWEST_LAGS:
+        return number, lags, np.nan
+    halves = np.array([_half_square(y, part, lag) for lag in lags])
+    lags = _unbent(y, part, lags, halves)
+    left = float(np.array(_weights(lags)) @ halves[: len(lags)])
+    return min(number, len(lags)), lags, left
 
 
 def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
@@ -182,7 +189,7 @@ def _lags(number: int, rows: int, part: Part) -> tuple[int, ...]:
     if part is None:
         return tuple(range(1, number + 1))
     lags = range(1, min(3 * number, rows // 3) + 1)
-    usable = (lag for lag in lags if np.mean(part[lag:] != part[:-lag]) >= _LEAST_PAIRED)
+    usable = (lag for lag in lags if _used(part, lag) >= _LEAST_PAIRED)
     return tuple(islice(usable, number))
 
 
@@ -199,6 +206,37 @@ def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
         return np.nan
     weights = zip(lags, _weights(lags), strict=True)
     return float(sum(weight * _half_square(y, part, lag) for lag, weight in weights))
+
+
+def _used(part: Part, lag: int) -> float:
+    """Return the share of the pairs of rows some places apart that are of two replicates."""
+    return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
+
+
+def _unbent(y: Floats, part: Part, lags: tuple[int, ...], halves: Floats) -> tuple[int, ...]:
+    """Return the lags, or the first half of them where both together follow no parabola.
+
+    Half of them again, and so on [1]_: beyond a jump near an end of the order there are fewer rows
+    than lags, and the number of pairs across it no longer grows with the lag.
+
+    References
+    ----------
+    .. [1] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise", Theory
+       Probab. Appl. 35, 454-466 (1991).
+    """
+    if len(lags) < 2 * LEAST_LAGS:
+        return lags
+    used = np.array([_used(part, lag) for lag in lags])
+    steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
+    product = float(np.mean(steps[2:] * steps[:-2]))  # of the variances of neighbours
+    while (half := len(lags) // 2) >= LEAST_LAGS:
+        change = np.array(_weights(lags))
+        change[:half] -= _weights(lags[:half])
+        error = float(np.sqrt(np.sum(change**2 / used[: len(lags)]) * product / len(y)))
+        if abs(float(change @ halves[: len(lags)])) <= _BENT * error:
+            break
+        lags = lags[:half]
+    return lags
 
 
 def _half_square(y: Floats, part: Part, lag: int) -> float:
