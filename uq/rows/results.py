@@ -8,6 +8,7 @@ clock, the host, chunks or workers.
 """
 
 import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -182,8 +183,9 @@ def _opened(path: Path) -> xr.Dataset:
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or 'not a readable netCDF file'}") from None
     try:
-        # No cache: a large result, read on use, does not come to be in memory bit by bit.
-        ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
+        with warnings.catch_warnings(action="ignore"):  # they would print names from the file
+            # No cache: a large result, read on use, does not come to be in memory bit by bit.
+            ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
         if ds.nbytes > most_bytes(path):
             ds.close()
             raise InputError(f"{path}: not a sound result: it claims {ds.nbytes / 1e9:.3g} GB")

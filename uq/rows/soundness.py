@@ -9,11 +9,13 @@ import xarray as xr
 
 from uq.contract import Kind
 from uq.designs.registry import DESIGNS
-from uq.literals import read_toml
-from uq.rows.weights import WEIGHT, has_weights
+from uq.literals import read_toml, without_control
+from uq.rows.sound_values import value_faults
+from uq.rows.sound_weights import weight_faults
 
-_TEXTS = ("title", "source", "study", "study_identity", "design")
+_TEXTS = ("title", "source", "study", "study_identity", "design", "model", "model_version")
 _NUMBERS = ("samples", "replicates")
+_OPTIONAL_NUMBERS = ("seed", "second_order", "random")
 _PLACES = ("replicate", "group", "block", "status")
 _ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
 
@@ -30,6 +32,12 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
     for number in _NUMBERS:
         if not isinstance(ds.attrs.get(number), int | np.integer) or ds.attrs[number] < 1:
             yield f"attribute '{number}' is not a positive number"
+    for number in _OPTIONAL_NUMBERS:
+        if not isinstance(ds.attrs.get(number, 0), int | np.integer) or ds.attrs.get(number, 0) < 0:
+            yield f"attribute '{number}' is not a number"
+    for name in ds.variables:
+        if without_control(str(name)) != name:
+            yield f"the name of '{name}' has control characters"
     if ds.attrs.get("design") not in DESIGNS:
         yield "its design is unknown"
     if not ds.sizes.get("sample", 0):
@@ -40,11 +48,11 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
     yield from _place_faults(ds)
     yield from _nesting_faults(ds)
     yield from _study_faults(ds)
-    if fault := _weight_fault(ds):
-        yield fault
     for flag in ("block", "status"):
         if fault := _flag_fault(ds[flag]):
             yield fault
+    if "rerun" in ds.variables:
+        yield from _rerun_faults(ds["rerun"])
     for name, variable in ds.data_vars.items():
         role = variable.attrs.get("role")
         if role not in _ROLES:
@@ -64,6 +72,8 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
                 yield f"'{name}' lacks the attribute '{attribute}'"
         if role == "output":
             yield from _output_faults(str(name), variable)
+    yield from value_faults(ds)
+    yield from weight_faults(ds)
 
 
 def _place_faults(ds: xr.Dataset) -> Iterator[str]:
@@ -74,6 +84,24 @@ def _place_faults(ds: xr.Dataset) -> Iterator[str]:
     for place, most in (("replicate", ds.attrs["replicates"]), ("group", 2**53)):
         if ((ds[place].values < 0) | (ds[place].values >= most)).any():
             yield f"'{place}' is out of range"
+
+
+def _rerun_faults(variable: xr.DataArray) -> Iterator[str]:
+    """Yield what is wrong with the settings of rows that were computed again."""
+    if variable.dims != ("sample",) or variable.dtype.kind not in "iu":
+        yield "'rerun' is not one integer per row"
+    if fault := _flag_fault(variable):
+        yield fault
+    for name, text in variable.attrs.items():
+        if name.startswith("changed_") and not _is_table(text):
+            yield f"attribute '{name}' of 'rerun' is not a table"
+
+
+def _is_table(text: Any) -> bool:
+    try:
+        return isinstance(read_toml(f"settings = {text}")["settings"], dict)
+    except (ValueError, OverflowError, RecursionError):
+        return False
 
 
 def _study_faults(ds: xr.Dataset) -> Iterator[str]:
@@ -146,16 +174,6 @@ def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
     for dim in variable.dims[1:]:
         if dim not in variable.coords:
             yield f"'{name}' lacks the coordinate '{dim}'"
-
-
-def _weight_fault(ds: xr.Dataset) -> str:
-    if not has_weights(ds):
-        return ""
-    weight = ds[WEIGHT]
-    if weight.dims != ("sample",) or weight.dtype.kind != "f":
-        return f"'{WEIGHT}' is not one number per row"
-    sound = np.isfinite(weight.values).all() and (weight.values >= 0).all() and weight.values.any()
-    return "" if sound else f"'{WEIGHT}' is negative, infinite or zero throughout"
 
 
 def _flag_fault(variable: xr.DataArray) -> str:
