@@ -42,8 +42,13 @@ IMPOSSIBLE = {
     "an input beyond its bounds": (lambda ds: with_value(ds, "rate", -1e-9), "'rate' is not"),
     "no fixed value": (lambda ds: ds.assign(threshold=ds["threshold"] * np.nan), "not a number"),
     "a model of numbers": (lambda ds: ds.assign_attrs(model=np.zeros(2)), "'model' is not text"),
+    "code of numbers": (lambda ds: ds.assign_attrs(code=np.zeros(2)), "'code' is not text"),
     "a seed of text": (lambda ds: ds.assign_attrs(seed="1"), "'seed' is not a number"),
     "an escape in a name": (lambda ds: ds.assign({"\x1b[2J": 1.0}), "control characters"),
+    "an output that is asked for": (
+        lambda ds: with_attribute(ds, "life", role="kept"),
+        "its study asks for 'life', which it does not hold",
+    ),
     "a rerun with code": (
         lambda ds: ds.assign(
             rerun=ds["status"].assign_attrs(role="rerun", changed_0="{a = __import__('os')}")

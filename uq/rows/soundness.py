@@ -10,12 +10,14 @@ import xarray as xr
 from uq.contract import Kind
 from uq.designs.registry import DESIGNS
 from uq.literals import read_toml, without_control
+from uq.provenance import provenance
 from uq.rows.sound_values import value_faults
 from uq.rows.sound_weights import weight_faults
 
 _TEXTS = ("title", "source", "study", "study_identity", "design", "model", "model_version")
 _NUMBERS = ("samples", "replicates")
 _OPTIONAL_NUMBERS = ("seed", "second_order", "random")
+_OF_OUTPUTS = ("thresholds", "joint_bounds")  # tables of [analysis] whose keys are outputs
 _PLACES = ("replicate", "group", "block", "status")
 _ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
 
@@ -28,6 +30,9 @@ def unsound(ds: xr.Dataset) -> str:
 def _faults(ds: xr.Dataset) -> Iterator[str]:
     for text in _TEXTS:
         if not isinstance(ds.attrs.get(text), str):
+            yield f"attribute '{text}' is not text"
+    for text in ("code", "study_sha256", *provenance()):
+        if not isinstance(ds.attrs.get(text, ""), str):
             yield f"attribute '{text}' is not text"
     for number in _NUMBERS:
         if not isinstance(ds.attrs.get(number), int | np.integer) or ds.attrs[number] < 1:
@@ -105,14 +110,29 @@ def _is_table(text: Any) -> bool:
 
 
 def _study_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield which inputs of the study are not in the result."""
+    """Yield which inputs and outputs of the study are not in the result."""
     try:
-        uncertain = read_toml(ds.attrs["study"]).get("uncertain", {})
+        study = read_toml(ds.attrs["study"])
     except (ValueError, OverflowError, RecursionError):
         return  # who needs the study says what is wrong with it
-    for name in uncertain if isinstance(uncertain, dict) else ():
-        if name not in ds.data_vars or ds[name].attrs.get("role") != "input":
-            yield f"its study varies '{name}', which it does not hold"
+    analysis = _table(study, "analysis")
+    shown = analysis.get("outputs", [])
+    named = (
+        [*_table(study, "uncertain")],
+        [
+            *(shown if isinstance(shown, list) else []),
+            *(name for key in _OF_OUTPUTS for name in _table(analysis, key)),
+        ],
+    )
+    for verb, role, names in zip(("varies", "asks for"), ("input", "output"), named, strict=True):
+        for name in map(str, names):
+            if name not in ds.data_vars or ds[name].attrs.get("role") != role:
+                yield f"its study {verb} '{name}', which it does not hold"
+
+
+def _table(tables: Any, key: str) -> dict[str, Any]:
+    table = tables.get(key, {})
+    return table if isinstance(table, dict) else {}
 
 
 def _attribute_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
