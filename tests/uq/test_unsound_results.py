@@ -40,6 +40,7 @@ IMPOSSIBLE = {
     "no life": (lambda ds: with_value(ds, "life", np.nan), "'life' is nan, in a row"),
     "no input": (lambda ds: with_value(ds, "rate", np.nan), "'rate' is not within"),
     "an input beyond its bounds": (lambda ds: with_value(ds, "rate", -1e-9), "'rate' is not"),
+    "an infinite input": (lambda ds: with_value(ds, "rate", np.inf), "'rate' is not within"),
     "no fixed value": (lambda ds: ds.assign(threshold=ds["threshold"] * np.nan), "not a number"),
     "a model of numbers": (lambda ds: ds.assign_attrs(model=np.zeros(2)), "'model' is not text"),
     "code of numbers": (lambda ds: ds.assign_attrs(code=np.zeros(2)), "'code' is not text"),

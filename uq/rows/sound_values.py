@@ -39,8 +39,8 @@ def value_faults(ds: xr.Dataset) -> Iterator[str]:
 def _input_fault(variable: xr.DataArray) -> str:
     low, high = map(float, variable.attrs.get("admissible", (-np.inf, np.inf)))
     values = variable.values
-    slack = _ROUNDING * np.abs(values)
-    if not ((low - slack <= values) & (values <= high + slack)).all():
+    least, most = low - _ROUNDING * abs(low), high + _ROUNDING * abs(high)
+    if not ((least <= values) & (values <= most)).all():
         return f"is not within {low:g} to {high:g} in each row"
     return ""
 
