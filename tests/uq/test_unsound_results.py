@@ -41,6 +41,8 @@ IMPOSSIBLE = {
     "no input": (lambda ds: with_value(ds, "rate", np.nan), "'rate' is not within"),
     "an input beyond its bounds": (lambda ds: with_value(ds, "rate", -1e-9), "'rate' is not"),
     "an infinite input": (lambda ds: with_value(ds, "rate", np.inf), "'rate' is not within"),
+    "rows at one place": (lambda ds: with_value(ds, "group", 0), "several rows have one place"),
+    "more samples than rows": (lambda ds: ds.assign_attrs(samples=2**40), "40 rows are fewer"),
     "no fixed value": (lambda ds: ds.assign(threshold=ds["threshold"] * np.nan), "not a number"),
     "a model of numbers": (lambda ds: ds.assign_attrs(model=np.zeros(2)), "'model' is not text"),
     "code of numbers": (lambda ds: ds.assign_attrs(code=np.zeros(2)), "'code' is not text"),
@@ -100,6 +102,10 @@ WEIGHTS = {
     "an odd largest weight": (
         lambda ds: with_attribute(ds, "weight", largest_possible="x"),
         "'largest_possible' of 'weight'",
+    ),
+    "a negative life before": (
+        lambda ds: with_value(ds, "prior_life", -1.0),
+        "'prior_life' is -1.0",
     ),
     "lives before, of another shape": (
         lambda ds: ds.assign(prior_life=((), 1.0, ds["prior_life"].attrs)),

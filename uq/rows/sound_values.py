@@ -29,11 +29,14 @@ def value_faults(ds: xr.Dataset) -> Iterator[str]:
                 yield f"the coordinate '{dim}' has no distinct labels"
         if output.is_category:
             continue
-        for values, is_complete in _pieces(ds[name], complete):
-            absent = output.is_absent(values) & ~(output.may_be_undefined & np.isnan(values))
-            if absent[is_complete].any():
-                value = values[is_complete][absent[is_complete]][0]
-                yield f"'{name}' {output.absence(value)}, in a row that did not fail"
+        for kept in (name, f"prior_{name}"):
+            if kept not in ds.data_vars or ds[kept].dims != ds[name].dims:
+                continue
+            for values, is_complete in _pieces(ds[kept], complete):
+                absent = output.is_absent(values) & ~(output.may_be_undefined & np.isnan(values))
+                if absent[is_complete].any():
+                    value = values[is_complete][absent[is_complete]][0]
+                    yield f"'{kept}' {output.absence(value)}, in a row that did not fail"
 
 
 def _input_fault(variable: xr.DataArray) -> str:

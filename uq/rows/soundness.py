@@ -13,6 +13,7 @@ from uq.literals import read_toml, without_control
 from uq.provenance import provenance
 from uq.rows.sound_values import value_faults
 from uq.rows.sound_weights import weight_faults
+from uq.rows.weights import has_rounds
 
 _TEXTS = ("title", "source", "study", "study_identity", "design", "model", "model_version")
 _NUMBERS = ("samples", "replicates")
@@ -52,6 +53,8 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
             yield f"'{place}' is not one integer per row"
     yield from _place_faults(ds)
     yield from _nesting_faults(ds)
+    if fault := _repeated_places(ds):
+        yield fault
     yield from _study_faults(ds)
     for flag in ("block", "status"):
         if fault := _flag_fault(ds[flag]):
@@ -86,9 +89,24 @@ def _place_faults(ds: xr.Dataset) -> Iterator[str]:
     numbers = ds["sample"].values
     if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
         yield "'sample' does not number the rows in order"
-    for place, most in (("replicate", ds.attrs["replicates"]), ("group", 2**53)):
+    samples, replicates = int(ds.attrs["samples"]), int(ds.attrs["replicates"])
+    if samples * replicates > len(numbers):
+        yield f"its {len(numbers)} rows are fewer than its samples"
+    for place, most in (("replicate", replicates), ("group", 2**53)):
         if ((ds[place].values < 0) | (ds[place].values >= most)).any():
             yield f"'{place}' is out of range"
+
+
+def _repeated_places(ds: xr.Dataset) -> str:
+    """Return that rows share one place in the design, or ""; those of a sampler may."""
+    if has_rounds(ds):
+        return ""
+    place = np.zeros(ds.sizes["sample"], dtype=np.int64)
+    for name in ("group", "replicate", "block", "unit", "repeat"):
+        if name in ds.variables:
+            _, code = np.unique(ds[name].values, return_inverse=True)
+            place = np.unique(place * (int(code.max()) + 1) + code, return_inverse=True)[1]
+    return "" if place.max() == len(place) - 1 else "several rows have one place in the design"
 
 
 def _rerun_faults(variable: xr.DataArray) -> Iterator[str]:
