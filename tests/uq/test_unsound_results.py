@@ -46,6 +46,14 @@ IMPOSSIBLE = {
     "no fixed value": (lambda ds: ds.assign(threshold=ds["threshold"] * np.nan), "not a number"),
     "a model of numbers": (lambda ds: ds.assign_attrs(model=np.zeros(2)), "'model' is not text"),
     "code of numbers": (lambda ds: ds.assign_attrs(code=np.zeros(2)), "'code' is not text"),
+    "a role of numbers": (
+        lambda ds: with_attribute(ds, "threshold", role=np.zeros(2)),
+        "attribute 'role' of 'threshold' is not text",
+    ),
+    "a kind of numbers": (
+        lambda ds: with_attribute(ds, "life", kind=np.zeros(2)),
+        "attribute 'kind' of 'life' is not text",
+    ),
     "a seed of text": (lambda ds: ds.assign_attrs(seed="1"), "'seed' is not a number"),
     "an escape in a name": (lambda ds: ds.assign({"\x1b[2J": 1.0}), "control characters"),
     "an output that is asked for": (
@@ -153,6 +161,22 @@ def test_warnings_of_readers_do_not_reach_the_terminal(uq, result):
     with netCDF4.Dataset(result, "a") as file:
         file["y"].setncattr("_Unsigned", "true")
     assert "Warning" not in uq("summary", result).err
+
+
+def test_a_version_of_several_numbers_is_refused(rows, tmp_path):
+    write_result(rows.assign_attrs(schema_version=np.ones(2)), tmp_path / "x.nc")
+    with pytest.raises(InputError, match=r"schema version \[1\. 1\.\]"):
+        open_result(tmp_path / "x.nc")
+
+
+def test_a_failure_of_the_system_is_not_called_a_damaged_file(uq, result, monkeypatch):
+    def fail(*arguments, **options):
+        raise OSError(24, "Too many open files", "out.nc")
+
+    monkeypatch.setattr("uq.cli.altered.is_intact", fail)
+    assert "has changed" not in uq("summary", result).err
+    monkeypatch.setattr("uq.rows.results.xr.open_dataset", fail)
+    assert "out.nc: cannot be read: Too many open files;" in uq("summary", result).err
 
 
 def test_a_variable_without_a_role_is_left_alone(uq, result):

@@ -15,7 +15,7 @@ def warn_if_altered(path: Path) -> None:
         return
     try:
         altered = is_intact(path) is False
-    except UNREADABLE:
-        altered = True
+    except UNREADABLE as error:
+        altered = getattr(error, "errno", None) is None or error.errno < 0  # else of the system
     if altered:
         streams.complain(f"{path}: has changed since it was written: its checksum is wrong")

@@ -193,8 +193,14 @@ def _opened(path: Path) -> xr.Dataset:
             with ds:
                 ds.load()
         return ds
-    except UNREADABLE:
-        raise InputError(f"{path}: not a readable netCDF file") from None
+    except UNREADABLE as error:
+        raise InputError(f"{path}: {_of_the_system(error)}") from None
+
+
+def _of_the_system(error: Exception) -> str:
+    """Return why a file cannot be read; numbers of errors of netCDF itself are negative."""
+    fails = isinstance(error, OSError) and (error.errno or 0) > 0
+    return f"cannot be read: {error.strerror}" if fails else "not a readable netCDF file"
 
 
 def _legible(ds: xr.Dataset) -> xr.Dataset:
@@ -235,7 +241,7 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
     version = ds.attrs.get("schema_version")
     if version is None or "study" not in ds.attrs or "status" not in ds:
         raise InputError(f"{path}: not a result of 'uq run'")
-    if version != SCHEMA_VERSION:
+    if np.ndim(version) or version != SCHEMA_VERSION:
         raise InputError(
             f"{path}: written with schema version {version}; this version of vibrolife reads "
             f"{SCHEMA_VERSION}: run the study again, or read it with xarray"
