@@ -16,6 +16,7 @@ def warn_if_altered(path: Path) -> None:
     try:
         altered = is_intact(path) is False
     except UNREADABLE as error:
-        altered = getattr(error, "errno", None) is None or error.errno < 0  # else of the system
+        of_the_system = isinstance(error, OSError) and (error.errno or 0) > 0
+        altered = not of_the_system
     if altered:
         streams.complain(f"{path}: has changed since it was written: its checksum is wrong")

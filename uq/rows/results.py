@@ -199,8 +199,9 @@ def _opened(path: Path) -> xr.Dataset:
 
 def _of_the_system(error: Exception) -> str:
     """Return why a file cannot be read; numbers of errors of netCDF itself are negative."""
-    fails = isinstance(error, OSError) and (error.errno or 0) > 0
-    return f"cannot be read: {error.strerror}" if fails else "not a readable netCDF file"
+    if isinstance(error, OSError) and (error.errno or 0) > 0:
+        return f"cannot be read: {error.strerror}"
+    return "not a readable netCDF file"
 
 
 def _legible(ds: xr.Dataset) -> xr.Dataset:

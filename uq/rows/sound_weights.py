@@ -109,10 +109,10 @@ def _attribute_faults(ds: xr.Dataset) -> Iterator[str]:
         yield f"attribute '{WORLDS}' is not a positive number"
     if INSPECTED not in ds.coords or ds[INSPECTED].dtype.kind not in "OU":
         yield f"'{INSPECTED}' does not name the units"
-    name: Any = ds.attrs.get(INTEGRATED)
-    if not isinstance(name, str) or (name and UNIT_SCALE not in ds.variables):
+    integrated: Any = ds.attrs.get(INTEGRATED)
+    if not isinstance(integrated, str) or (integrated and UNIT_SCALE not in ds.variables):
         yield f"attribute '{INTEGRATED}' names no input with '{UNIT_SCALE}'"
-    elif name and (name not in ds.data_vars or ds[name].attrs.get("role") != "input"):
+    elif integrated and not _is_input(ds, integrated):
         yield f"attribute '{INTEGRATED}' names no input"
     for kept, variable in ds.data_vars.items():
         if variable.attrs.get("role") == "prior":
@@ -150,7 +150,11 @@ def _are_weights(values: Any) -> bool:
 
 
 def _is_count(value: Any) -> bool:
-    return isinstance(value, int | np.integer) and value >= 1
+    return isinstance(value, int | np.integer) and bool(value >= 1)
+
+
+def _is_input(ds: xr.Dataset, name: str) -> bool:
+    return name in ds.data_vars and ds[name].attrs.get("role") == "input"
 
 
 def _is_number(value: Any, least: float) -> bool:

@@ -29,9 +29,9 @@ def unsound(ds: xr.Dataset) -> str:
 
 
 def _faults(ds: xr.Dataset) -> Iterator[str]:
-    for name, variable in ds.variables.items():
+    for name in ds.variables:
         for text in ("role", "kind"):
-            if not isinstance(variable.attrs.get(text, ""), str):
+            if not isinstance(ds[name].attrs.get(text, ""), str):
                 yield f"attribute '{text}' of '{name}' is not text"
     for text in _TEXTS:
         if not isinstance(ds.attrs.get(text), str):
