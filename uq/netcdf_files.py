@@ -23,7 +23,8 @@ _LARGEST_CHUNK = 200_000_000  # bytes; each is read as a whole
 _ID, _SIZE, _INT = ctypes.c_int64, ctypes.c_size_t, ctypes.c_int
 _HARD_LINK, _DATASET, _CHUNKED, _VIRTUAL = 0, 1, 2, 3
 _KINDS = {0: "a group", 2: "a type of its own"}
-_NUMBERS, _TEXT = (0, 1), 3  # classes of types
+_NUMBERS = {0: (1, 2, 4, 8), 1: (4, 8)}  # classes of integers and floats: their sizes [bytes]
+_TEXT = 3
 _BUILT_IN_FILTERS = range(1, 7)  # any other is loaded from a library
 _OF_DIMENSIONS = ("DIMENSION_LIST", "REFERENCE_LIST")  # netCDF's own references
 _INFO_BYTES, _TYPE_AT, _COUNT_AT = 128, 24, 64  # of H5O_info2_t
@@ -191,6 +192,8 @@ def _values(
         size, of = library.H5Tget_size(kind), library.H5Tget_class(kind)
         if of not in _NUMBERS and of != _TEXT:
             raise ValueError(f"{label} has neither numbers nor text")
+        if of != _TEXT and size not in _NUMBERS[of]:
+            raise ValueError(f"{label} has numbers of {size} bytes, which netCDF has not")
         if of == _TEXT and library.H5Tis_variable_str(kind) > 0:
             size = max((most - _SLACK) // _INFLATION, 1)  # all may be one and the same long text
     _refuse_size(count * size, most)

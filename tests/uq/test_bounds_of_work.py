@@ -2,6 +2,7 @@
 
 import os
 import stat
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import netCDF4
@@ -69,6 +70,18 @@ def test_a_format_and_a_pattern_that_explode_are_refused(folder, monkeypatch):
     (folder / "out").write_text("a" * 40 + "!")
     with pytest.raises(WrongReturnError, match="takes too long"):
         value_in(folder, "y", OutputTable(file="out", pattern="((?:a+)+)$"))
+
+
+def test_a_pattern_that_explodes_is_ended_in_a_thread_too(folder, monkeypatch):
+    """Threads of a served model search without the interpreter, which others need meanwhile."""
+    monkeypatch.setattr(results_of_programs, "_SEARCH_SECONDS", 3.0)
+    Path("out").write_text(f"life = 2.5\n{'a' * 60}!")
+    with ThreadPoolExecutor(1) as threads:
+        life = threads.submit(value_in, folder, "y", OutputTable(file="out", pattern="= (.*)$"))
+        assert life.result() == 2.5
+        endless = OutputTable(file="out", pattern="((?:a+)+)$")
+        with pytest.raises(WrongReturnError, match="takes too long to search for"):
+            threads.submit(value_in, folder, "y", endless).result()
 
 
 def test_a_figure_is_whole_or_absent(folder):

@@ -18,7 +18,7 @@ from uq.running import runner
 ROWS = 24
 ID = ctypes.c_int64
 HDF5 = ctypes.CDLL(netCDF4._netCDF4.__file__)
-for function in ("H5Fopen", "H5Screate_simple", "H5Pcreate", "H5Dcreate2"):
+for function in ("H5Fopen", "H5Tcopy", "H5Screate_simple", "H5Pcreate", "H5Dcreate2"):
     getattr(HDF5, function).restype = ID
 
 
@@ -44,7 +44,19 @@ def stored_outside(file, how):
     HDF5.H5Dclose(ID(made))
 
 
+def half_precision(file):
+    """Add numbers of two bytes, which netCDF takes for pointers to text."""
+    kind = ID(HDF5.H5Tcopy(ID.in_dll(HDF5, "H5T_IEEE_F32LE_g")))
+    assert HDF5.H5Tset_fields(kind, *map(ctypes.c_size_t, (15, 10, 5, 0, 10))) >= 0
+    assert HDF5.H5Tset_size(kind, ctypes.c_size_t(2)) >= 0
+    space = ID(HDF5.H5Screate_simple(1, (ctypes.c_uint64 * 1)(ROWS), None))
+    made = HDF5.H5Dcreate2(file, b"w", kind, space, ID(0), ID(0), ID(0))
+    assert made > 0
+    HDF5.H5Dclose(ID(made))
+
+
 TRICKS = {
+    "half precision": (half_precision, "'w' has numbers of 2 bytes"),
     "external storage": (lambda file: stored_outside(file, "external"), "in another file"),
     "virtual": (lambda file: stored_outside(file, "virtual"), "in another file"),
     "soft link": (lambda f: HDF5.H5Lcreate_soft(b"/", f, b"w", ID(0), ID(0)), "is a link"),

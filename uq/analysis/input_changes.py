@@ -91,7 +91,7 @@ def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str]
 def _inputs(sides: list[Side]) -> Iterator[Change]:
     first, second = (ds for ds, _ in sides)
     for name, variable in first.data_vars.items():
-        if variable.attrs["role"] in ("input", "fixed") and name in second:
+        if variable.attrs.get("role") in ("input", "fixed") and name in second:
             one, other = (_stated(*side, str(name)) for side in sides)
             if one != other:
                 yield Change("input", str(name), one[0], other[0])

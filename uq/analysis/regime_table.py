@@ -70,7 +70,7 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     inputs = {
         str(name): variable.values
         for name, variable in rows.data_vars.items()
-        if variable.attrs["role"] == "input"
+        if variable.attrs.get("role") == "input"
     }
     plain = one_of_each_sample(rows)
     own = {name: plain[name].values for name in inputs}

@@ -61,6 +61,9 @@ def main() -> NoReturn:
         if not streams.are_lost():
             streams.complain(_of_the_system(error))
         code = 1
+    except MemoryError as error:
+        streams.complain(f"uq: not enough memory: {one_line(error) or 'none is left'}")
+        code = 1
     except Exception as error:
         streams.complain(_unforeseen(error))
         code = 1

@@ -15,7 +15,8 @@ def warn_if_altered(path: Path) -> None:
         return
     try:
         altered = is_intact(path) is False
-    except UNREADABLE:
-        altered = True
+    except UNREADABLE as error:
+        of_the_system = isinstance(error, OSError) and (error.errno or 0) > 0
+        altered = not of_the_system
     if altered:
         streams.complain(f"{path}: has changed since it was written: its checksum is wrong")

@@ -78,7 +78,7 @@ def _show(found: RowAgain, rows: int) -> None:
         [
             (name, quantity(value, unit))
             for name, value in one.values.items()
-            if found.there[name].attrs["role"] == "input"
+            if found.there[name].attrs.get("role") == "input"
             for unit in [found.there[name].attrs["units"]]
         ]
     )

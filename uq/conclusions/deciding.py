@@ -165,7 +165,7 @@ def starts_alike(ds: xr.Dataset) -> str:
         for name, one in ds.variables.items()
         if one.attrs.get("role") in ("input", "fixed") and "initial" in one.attrs
     ]
-    if not starts or any(ds[name].attrs["role"] == "input" for name in starts):
+    if not starts or any(ds[name].attrs.get("role") == "input" for name in starts):
         return ""
     named = joined([called(str(name)) for name in starts])
     verb = "is" if len(starts) == 1 else "are"

@@ -13,12 +13,12 @@ from uq.learning.inspections import MOST_CV, Inspection
 from uq.learning.ledger import Given, all_of, read
 from uq.learning.looks import as_named, quantities_of
 from uq.learning.posterior import posterior
-from uq.learning.result import MODEL_ERROR, as_result, prior_of
+from uq.learning.result import as_result, prior_of
 from uq.learning.trust import censoring, distrust
 from uq.rows.elements import independent_rows, why_no_statistics
 from uq.rows.results import open_result
 from uq.rows.sampling import rows_per_sample
-from uq.rows.weights import has_weights
+from uq.rows.weights import MODEL_ERROR, has_weights
 from uq.running.loading import load_study
 from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study

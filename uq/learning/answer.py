@@ -16,7 +16,6 @@ from uq.learning.inspections import Inspection
 from uq.learning.posterior import Posterior, posterior
 from uq.learning.remaining import ANY, Remaining, remaining
 from uq.learning.result import (
-    MODEL_ERROR,
     as_table,
     inspections_of,
     prior_of,
@@ -26,7 +25,7 @@ from uq.learning.strangeness import STRANGE, strangeness
 from uq.learning.taught import Taught, taught
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import independent_rows
-from uq.rows.weights import has_weights
+from uq.rows.weights import MODEL_ERROR, has_weights
 from uq.wording import percent
 
 

@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
 from uq.rows.nesting import is_nested, nesting_of
-from uq.rows.weights import IMPORTANCE, ROUND, has_rounds
+from uq.rows.weights import IMPORTANCE, OWN_SIZE, ROUND, has_rounds
 
 REPETITIONS = 8
 """Independent repetitions of the sampler, where the design has no replicates of its own."""
-
-_OWN = "own_samples_and_replicates"
 
 
 class Importance(NamedTuple):
@@ -60,7 +58,7 @@ def own_rows(rows: xr.Dataset) -> xr.Dataset:
         return rows
     found = rows.isel(sample=importance_of(rows).own).drop_vars([IMPORTANCE, ROUND])
     attrs = dict(found.attrs)
-    samples, replicates = map(int, attrs.pop(_OWN))
+    samples, replicates = map(int, attrs.pop(OWN_SIZE))
     found.attrs = attrs | {"samples": samples, "replicates": replicates}
     if replicates > 1:
         return found
@@ -128,7 +126,7 @@ def with_rounds(
     return found.assign_coords(
         sample=found["sample"].copy(data=np.arange(found.sizes["sample"])),
         replicate=found["replicate"].copy(data=repetition),
-    ).assign_attrs({"samples": len(repetition) // count, "replicates": count, _OWN: size})
+    ).assign_attrs({"samples": len(repetition) // count, "replicates": count, OWN_SIZE: size})
 
 
 def _places(own: xr.Dataset, count: int) -> dict[str, NDArray[np.integer]]:

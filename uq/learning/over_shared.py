@@ -7,11 +7,10 @@ from uq.contract import Floats
 from uq.designs.levels import SHARED
 from uq.learning.inputs_learnt import quantiles
 from uq.learning.integrated import free_scales
-from uq.learning.result import INTEGRATED, WORLDS
 from uq.population.scaling import inputs_of
 from uq.rows.element import Element
 from uq.rows.nesting import levels_of
-from uq.rows.weights import WEIGHT
+from uq.rows.weights import INTEGRATED, WEIGHT, WORLDS
 
 ENDS = (0.025, 0.975)
 

@@ -22,28 +22,34 @@ from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import (
     INPUT,
+    INSPECTIONS,
+    INTEGRATED,
     LAW_FOLLOWS,
     LAW_PULLS,
     LAW_SCORES,
+    LEDGER,
+    MODEL_ERROR,
     MOST,
+    NEW_ROWS,
     OF_UNIT,
     ONLY_INSPECTED,
     ROWS,
     SCALE_SCORES,
+    SCORE,
+    UNIT_MOST,
+    UNIT_PULLS,
+    UNIT_SCALE,
+    UNIT_SCORES,
+    UNIT_WEIGHT,
     WEIGHT,
+    WORLDS,
     has_weights,
 )
 from uq.wording import counted
 
 PRIOR = "prior_"
-UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
-UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
-UNIT_PULLS = "unit_law_pulls"
 _LAW = (LAW_PULLS, UNIT_PULLS, LAW_FOLLOWS, LAW_SCORES)
 _WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
-INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
-MODEL_ERROR, NEW_ROWS = "model_error", "new_rows"
-WORLDS = "worlds"
 _NESTING = ("world", "unit", "repeat")
 _COMPRESSED = {"zlib": True, "complevel": 1}
 """Most rows stand for one of the inspected units, and say the same of all others."""

@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 
 from uq.literals import plain_line
 
-LONGEST = 10_000_000
+LONGEST = 1_000_000
 """Most bytes of a request's body."""
 
 _SECONDS = 10.0  # for which a request is waited for, from its first byte to its last
@@ -108,7 +108,7 @@ def json_server(
             host, origin = self.headers.get("Host"), self.headers.get("Origin")
             if host is None or not _is_this(host, listening):
                 raise RequestError(403, "Forbidden", f"Host: {host} is not this server")
-            if origin is not None and urlsplit(origin).netloc != host:
+            if origin is not None and _site_of(origin) != host:
                 raise RequestError(403, "Forbidden", f"Origin: {origin} is another site")
 
         def _body(self) -> dict[str, Any]:
@@ -175,6 +175,13 @@ def _is_this(host: str, listening: str) -> bool:
         return bool(ip_address(name))
     except ValueError:
         return False
+
+
+def _site_of(origin: str) -> str:
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:
+        return ""
 
 
 def _no_constant(name: str) -> float:

@@ -4,6 +4,8 @@ import csv
 import json
 import re
 import signal
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -104,19 +106,44 @@ def _in_csv(text: str, column: str) -> float:
 
 
 def _matched(text: str, pattern: str) -> float:
-    with _stopped_after(_SEARCH_SECONDS, f"its pattern {pattern} takes too long to search for"):
-        found = re.findall(pattern, text, re.MULTILINE)
+    found = _last_match(text, pattern)
     if not found:
         raise ValueError(f"no match of its pattern {pattern}")
-    return _real(found[-1])
+    return _real(found[0])
+
+
+_SEARCH = """
+import json, re, sys
+pattern, text = json.load(sys.stdin)
+json.dump(re.findall(pattern, text, re.MULTILINE)[-1:], sys.stdout)
+"""
+
+
+def _last_match(text: str, pattern: str) -> list[str]:
+    """Return the last match of a pattern, or none.
+
+    Raises
+    ------
+    ValueError
+        When the search takes too long. A signal ends it in the main thread; no other thread gets
+        one, nor the interpreter, so a process of its own searches then.
+    """
+    sentence = f"its pattern {pattern} takes too long to search for"
+    if threading.current_thread() is threading.main_thread():
+        with _stopped_after(_SEARCH_SECONDS, sentence):
+            return re.findall(pattern, text, re.MULTILINE)[-1:]
+    command = [sys.executable, "-I", "-c", _SEARCH]
+    both, seconds = json.dumps([pattern, text]), _SEARCH_SECONDS
+    try:
+        done = subprocess.run(command, input=both, capture_output=True, text=True, timeout=seconds)
+        return list(json.loads(done.stdout))
+    except subprocess.TimeoutExpired:
+        raise ValueError(sentence) from None
 
 
 @contextmanager
 def _stopped_after(seconds: float, sentence: str) -> Iterator[None]:
-    """Raise a `ValueError` when a search takes longer; it can, in the main thread of a process."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
+    """Raise a `ValueError` when a search in the main thread takes longer."""
 
     def stop(number: int, frame: object) -> None:
         raise ValueError(sentence)

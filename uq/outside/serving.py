@@ -64,8 +64,11 @@ class _Offered:
         """Return the inputs of a row, in declared order."""
         names = self.model.parameter_names
         try:
-            x = np.concatenate([np.asarray(vector, float).ravel() for vector in vectors])
-        except (ValueError, TypeError, OverflowError):
+            numbers = [number for vector in vectors for number in vector]
+            if not {type(number) for number in numbers} <= {int, float}:
+                raise TypeError
+            x = np.array(numbers, dtype=float)
+        except (TypeError, OverflowError):
             raise invalid("'input' is not a list of lists of numbers") from None
         if len(x) != len(names):
             raise invalid(f"{counted(len(x), 'input')}, expected {len(names)}")

@@ -51,7 +51,7 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
 
 def fixed_inputs(ds: xr.Dataset) -> Table | None:
     """Return the table of fixed inputs, None where there are none."""
-    fixed = [name for name in ds.data_vars if ds[name].attrs["role"] == "fixed"]
+    fixed = [name for name in ds.data_vars if ds[name].attrs.get("role") == "fixed"]
     by_study = study_file_of(ds).fixed
     lines = [_fixed(ds, str(name), name in by_study) for name in fixed]
     header = ("input", "value", "known", "source")

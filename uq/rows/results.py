@@ -8,6 +8,7 @@ clock, the host, chunks or workers.
 """
 
 import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -182,8 +183,9 @@ def _opened(path: Path) -> xr.Dataset:
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or 'not a readable netCDF file'}") from None
     try:
-        # No cache: a large result, read on use, does not come to be in memory bit by bit.
-        ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
+        with warnings.catch_warnings(action="ignore"):  # they would print names from the file
+            # No cache: a large result, read on use, does not come to be in memory bit by bit.
+            ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
         if ds.nbytes > most_bytes(path):
             ds.close()
             raise InputError(f"{path}: not a sound result: it claims {ds.nbytes / 1e9:.3g} GB")
@@ -191,8 +193,15 @@ def _opened(path: Path) -> xr.Dataset:
             with ds:
                 ds.load()
         return ds
-    except UNREADABLE:
-        raise InputError(f"{path}: not a readable netCDF file") from None
+    except UNREADABLE as error:
+        raise InputError(f"{path}: {_of_the_system(error)}") from None
+
+
+def _of_the_system(error: Exception) -> str:
+    """Return why a file cannot be read; numbers of errors of netCDF itself are negative."""
+    if isinstance(error, OSError) and (error.errno or 0) > 0:
+        return f"cannot be read: {error.strerror}"
+    return "not a readable netCDF file"
 
 
 def _legible(ds: xr.Dataset) -> xr.Dataset:
@@ -233,7 +242,7 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
     version = ds.attrs.get("schema_version")
     if version is None or "study" not in ds.attrs or "status" not in ds:
         raise InputError(f"{path}: not a result of 'uq run'")
-    if version != SCHEMA_VERSION:
+    if np.ndim(version) or version != SCHEMA_VERSION:
         raise InputError(
             f"{path}: written with schema version {version}; this version of vibrolife reads "
             f"{SCHEMA_VERSION}: run the study again, or read it with xarray"

@@ -9,11 +9,16 @@ import xarray as xr
 
 from uq.contract import Kind
 from uq.designs.registry import DESIGNS
-from uq.literals import read_toml
-from uq.rows.weights import WEIGHT, has_weights
+from uq.literals import read_toml, without_control
+from uq.provenance import provenance
+from uq.rows.sound_values import value_faults
+from uq.rows.sound_weights import weight_faults
+from uq.rows.weights import has_rounds
 
-_TEXTS = ("title", "source", "study", "study_identity", "design")
+_TEXTS = ("title", "source", "study", "study_identity", "design", "model", "model_version")
 _NUMBERS = ("samples", "replicates")
+_OPTIONAL_NUMBERS = ("seed", "second_order", "random")
+_OF_OUTPUTS = ("thresholds", "joint_bounds")  # tables of [analysis] whose keys are outputs
 _PLACES = ("replicate", "group", "block", "status")
 _ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
 
@@ -24,12 +29,25 @@ def unsound(ds: xr.Dataset) -> str:
 
 
 def _faults(ds: xr.Dataset) -> Iterator[str]:
+    for name in ds.variables:
+        for text in ("role", "kind"):
+            if not isinstance(ds[name].attrs.get(text, ""), str):
+                yield f"attribute '{text}' of '{name}' is not text"
     for text in _TEXTS:
         if not isinstance(ds.attrs.get(text), str):
+            yield f"attribute '{text}' is not text"
+    for text in ("code", "study_sha256", *provenance()):
+        if not isinstance(ds.attrs.get(text, ""), str):
             yield f"attribute '{text}' is not text"
     for number in _NUMBERS:
         if not isinstance(ds.attrs.get(number), int | np.integer) or ds.attrs[number] < 1:
             yield f"attribute '{number}' is not a positive number"
+    for number in _OPTIONAL_NUMBERS:
+        if not isinstance(ds.attrs.get(number, 0), int | np.integer) or ds.attrs.get(number, 0) < 0:
+            yield f"attribute '{number}' is not a number"
+    for name in ds.variables:
+        if without_control(str(name)) != name:
+            yield f"the name of '{name}' has control characters"
     if ds.attrs.get("design") not in DESIGNS:
         yield "its design is unknown"
     if not ds.sizes.get("sample", 0):
@@ -39,12 +57,14 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
             yield f"'{place}' is not one integer per row"
     yield from _place_faults(ds)
     yield from _nesting_faults(ds)
-    yield from _study_faults(ds)
-    if fault := _weight_fault(ds):
+    if fault := _repeated_places(ds):
         yield fault
+    yield from _study_faults(ds)
     for flag in ("block", "status"):
         if fault := _flag_fault(ds[flag]):
             yield fault
+    if "rerun" in ds.variables:
+        yield from _rerun_faults(ds["rerun"])
     for name, variable in ds.data_vars.items():
         role = variable.attrs.get("role")
         if role not in _ROLES:
@@ -64,6 +84,8 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
                 yield f"'{name}' lacks the attribute '{attribute}'"
         if role == "output":
             yield from _output_faults(str(name), variable)
+    yield from value_faults(ds)
+    yield from weight_faults(ds)
 
 
 def _place_faults(ds: xr.Dataset) -> Iterator[str]:
@@ -71,20 +93,68 @@ def _place_faults(ds: xr.Dataset) -> Iterator[str]:
     numbers = ds["sample"].values
     if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
         yield "'sample' does not number the rows in order"
-    for place, most in (("replicate", ds.attrs["replicates"]), ("group", 2**53)):
+    samples, replicates = int(ds.attrs["samples"]), int(ds.attrs["replicates"])
+    if samples * replicates > len(numbers):
+        yield f"its {len(numbers)} rows are fewer than its samples"
+    for place, most in (("replicate", replicates), ("group", 2**53)):
         if ((ds[place].values < 0) | (ds[place].values >= most)).any():
             yield f"'{place}' is out of range"
 
 
-def _study_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield which inputs of the study are not in the result."""
+def _repeated_places(ds: xr.Dataset) -> str:
+    """Return that rows share one place in the design, or ""; those of a sampler may."""
+    if has_rounds(ds):
+        return ""
+    place = np.zeros(ds.sizes["sample"], dtype=np.int64)
+    for name in ("group", "replicate", "block", "unit", "repeat"):
+        if name in ds.variables:
+            _, code = np.unique(ds[name].values, return_inverse=True)
+            place = np.unique(place * (int(code.max()) + 1) + code, return_inverse=True)[1]
+    return "" if place.max() == len(place) - 1 else "several rows have one place in the design"
+
+
+def _rerun_faults(variable: xr.DataArray) -> Iterator[str]:
+    """Yield what is wrong with the settings of rows that were computed again."""
+    if variable.dims != ("sample",) or variable.dtype.kind not in "iu":
+        yield "'rerun' is not one integer per row"
+    if fault := _flag_fault(variable):
+        yield fault
+    for name, text in variable.attrs.items():
+        if name.startswith("changed_") and not _is_table(text):
+            yield f"attribute '{name}' of 'rerun' is not a table"
+
+
+def _is_table(text: Any) -> bool:
     try:
-        uncertain = read_toml(ds.attrs["study"]).get("uncertain", {})
+        return isinstance(read_toml(f"settings = {text}")["settings"], dict)
+    except (ValueError, OverflowError, RecursionError):
+        return False
+
+
+def _study_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield which inputs and outputs of the study are not in the result."""
+    try:
+        study = read_toml(ds.attrs["study"])
     except (ValueError, OverflowError, RecursionError):
         return  # who needs the study says what is wrong with it
-    for name in uncertain if isinstance(uncertain, dict) else ():
-        if name not in ds.data_vars or ds[name].attrs.get("role") != "input":
-            yield f"its study varies '{name}', which it does not hold"
+    analysis = _table(study, "analysis")
+    shown = analysis.get("outputs", [])
+    named = (
+        [*_table(study, "uncertain")],
+        [
+            *(shown if isinstance(shown, list) else []),
+            *(name for key in _OF_OUTPUTS for name in _table(analysis, key)),
+        ],
+    )
+    for verb, role, names in zip(("varies", "asks for"), ("input", "output"), named, strict=True):
+        for name in map(str, names):
+            if name not in ds.data_vars or ds[name].attrs.get("role") != role:
+                yield f"its study {verb} '{name}', which it does not hold"
+
+
+def _table(tables: Any, key: str) -> dict[str, Any]:
+    table = tables.get(key, {})
+    return table if isinstance(table, dict) else {}
 
 
 def _attribute_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
@@ -146,16 +216,6 @@ def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
     for dim in variable.dims[1:]:
         if dim not in variable.coords:
             yield f"'{name}' lacks the coordinate '{dim}'"
-
-
-def _weight_fault(ds: xr.Dataset) -> str:
-    if not has_weights(ds):
-        return ""
-    weight = ds[WEIGHT]
-    if weight.dims != ("sample",) or weight.dtype.kind != "f":
-        return f"'{WEIGHT}' is not one number per row"
-    sound = np.isfinite(weight.values).all() and (weight.values >= 0).all() and weight.values.any()
-    return "" if sound else f"'{WEIGHT}' is negative, infinite or zero throughout"
 
 
 def _flag_fault(variable: xr.DataArray) -> str:

@@ -29,11 +29,22 @@ MOST = "largest_possible"
 """Its attribute: the largest weight that a row can have, where that is known."""
 
 
+UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
+UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
+UNIT_PULLS, INSPECTED = "unit_law_pulls", "inspected"
+"""Variables of each inspected unit, and the dimension of these units."""
+
+INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
+MODEL_ERROR, NEW_ROWS, WORLDS = "model_error", "new_rows", "worlds"
+"""Attributes of a result: what the inspections were, and how they were used."""
+
 IMPORTANCE, ROUND = "importance", "round"
 """Variables of each row, if a sampler has added rows to those of a design: how much it counts
 before any inspection, of mean 1 in expectation; and the round in which it was drawn, 0 by the
 design."""
 
+OWN_SIZE = "own_samples_and_replicates"
+"""Attribute of a result: of the design, without the rows that a sampler has added."""
 
 _SAME = 1e-9  # relative difference of weights that only rounding tells apart
 
