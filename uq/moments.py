@@ -124,7 +124,8 @@ def _few_decide(values: Floats) -> str | None:
     n = len(values)
     if is_constant(values):
         return None
-    squares = np.square(sized(values - values.mean())[0])
+    numbers = sized(values)[0]  # their squares are neither 0 nor infinite
+    squares = np.square(sized(numbers - numbers.mean())[0])
     kurtosis = n * float(squares @ squares) / float(squares.sum()) ** 2
     if kurtosis <= max(n / DECIDING_ROWS, _LIGHT):
         return None

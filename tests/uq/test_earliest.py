@@ -86,6 +86,7 @@ def test_where_no_input_differs_the_answer_says_so():
     )
 
 
+@pytest.mark.slow
 def test_inputs_without_effect_are_seldom_named():
     rng, named, inputs = np.random.default_rng(1), 0, linear(samples=400)
     for _ in range(100):

@@ -145,6 +145,7 @@ def test_bands_of_units_that_end_together():
         assert one.low < truth < one.high
 
 
+@pytest.mark.slow
 def test_a_shared_input_that_depends_on_another_is_integrated():
     """Given the other, whether the units' own inputs are integrated or counted."""
     shared = {"b": B_SHARED, "c": B_SHARED}

@@ -118,6 +118,7 @@ def test_a_posterior_in_two_regimes():
     assert share == pytest.approx(exact, abs=0.08)
 
 
+@pytest.mark.slow
 def test_several_units_of_a_sample():
     """Two units, far off each in its own way, whose depth is shared and integrated."""
     lives = [1.5e7, 2e7]
@@ -143,6 +144,7 @@ def test_designs_with_replicates(method):
     assert own_rows(prior_of(found)).identical(ds)
 
 
+@pytest.mark.slow
 def test_an_input_that_is_a_multiple_of_another():
     tables = {
         "study": {"name": "multiple", "model": "exponential-wear"},

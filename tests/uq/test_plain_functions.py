@@ -190,6 +190,7 @@ def test_simulate_shows_what_a_function_prints(write_function):
     assert ended.stderr == "here I am\n" and json.loads(ended.stdout)["outputs"] == {"y": 1.0}
 
 
+@pytest.mark.slow
 def test_a_new_machine_passes_as_it_is_written(uq, folder):
     name = "a_new_machine"
     ended = uq("init", "--machine", name)

@@ -70,6 +70,7 @@ def test_failed_rows_within_the_event_have_a_bound_of_their_own():
     assert np.isnan(rare_event(linear(), "y", 9.0, samples=500)["failed_high"])
 
 
+@pytest.mark.slow
 def test_rows_that_kill_their_process_are_failed_rows():
     of = linear(settings={"fail_above": 0.98, "fail_how": "exit"})
     ds = rare_event(of, "y", 1.0, below=True, samples=100, replicates=1)

@@ -48,6 +48,7 @@ def test_an_angle_is_in_degrees_and_its_probability_of_the_magnitude(printed):
     assert cells(lines, "psi [°]")
     assert float(cells(lines, "P(|psi| > 12°)")[0]) == pytest.approx(0.4, abs=0.03)
     ds["psi"][:16] = np.nan
+    ds["psi"].attrs["may_be_undefined"] = 1
     lines = printed("summary", asking(ds, outputs=["psi"], thresholds={"psi": "12 degrees"}))
     assert cells(lines, "P(|psi| > 12°)")[-1] == "25.0 % undefined"
 

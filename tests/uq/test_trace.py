@@ -93,6 +93,7 @@ def test_every_number_of_every_kind_is_traced_and_equal(verb):
     check(crossed(), verb)
 
 
+@pytest.mark.slow
 def test_options_are_part_of_a_key():
     ds = every_kind()
     check(ds, "summary", {"regime": "fast"}, every=17)
@@ -187,6 +188,7 @@ def keys_in(text):
     return [key for several in found for key in html.unescape(several).split("\n")]
 
 
+@pytest.mark.slow
 def test_the_numbers_of_each_sentence_lead_to_themselves():
     ds = kinds(samples=400, analysis=ASKED)
     found = api.answer(ds)
@@ -254,6 +256,7 @@ def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
 LAW = 'distribution = "uniform", lower = 1e-10, upper = 9e-10'
 
 
+@pytest.mark.slow
 def test_numbers_of_weighted_rows_are_traced_too():
     ds = update(wear(samples=2000, analysis={"thresholds": {"life": [5.2e5]}}), measured(5e5))
     check(ds, "summary", every=4)
@@ -273,6 +276,7 @@ def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
     assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
 
 
+@pytest.mark.slow
 def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
     kind = "sample_models:KINDS"
     uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")

@@ -76,6 +76,7 @@ def test_without_rows_of_their_own_they_have_no_life():
     assert not any(why in note for note in summarise(as_unit(ds, "A")).notes)
 
 
+@pytest.mark.slow
 def test_fleets_of_units_that_share_only_what_is_integrated():
     """All rows then count alike: what is shared is narrower, and the units are as before."""
     lives = np.array([6e5, 7e5, 5e5])

@@ -81,6 +81,7 @@ def test_time_scales_with_the_wear_coefficient_and_the_area():
     assert (first[:, 2] > 1.5 * first[:, 1]).all() and (first > 0).all()
 
 
+@pytest.mark.slow
 def test_a_random_load_wears_by_each_depth_in_its_life():
     x = rows(random_force_level=0.05)
     depths = (2e-5, 4e-5)

@@ -213,6 +213,7 @@ def test_a_load_too_fast_for_the_steps_is_refused_and_followed_with_more():
     assert system.steps >= 16 * 3000 / 57.1042
 
 
+@pytest.mark.slow
 def test_steps_finer_than_the_ladder_under_a_random_load_give_the_same_work_rate():
     work = []
     for steps in (200, 2000):
