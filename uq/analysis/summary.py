@@ -230,7 +230,7 @@ def _described(
     parts = {name: tuple(STATISTICS[name](element, context)) for name in wanted}
     if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
         for name in _OF_VALUES & parts.keys():
-            parts[name] = tuple(replace(one, resolution=step) for one in parts[name])
+            parts[name] = tuple(replace(statistic, resolution=step) for statistic in parts[name])
     fitted = fits_of(element, context.replicate is None) if fits and element.is_lifetime else {}
     return Described(element.units, parts, fitted)
 

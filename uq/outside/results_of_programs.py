@@ -106,10 +106,10 @@ def _in_csv(text: str, column: str) -> float:
 
 
 def _matched(text: str, pattern: str) -> float:
-    found = _last_match(text, pattern)
-    if not found:
+    match = _last_match(text, pattern)
+    if not match:
         raise ValueError(f"no match of its pattern {pattern}")
-    return _real(found[0])
+    return _real(match[0])
 
 
 _SEARCH = """
