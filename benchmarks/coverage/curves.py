@@ -80,10 +80,9 @@ def bands(repetitions):
 LEAVING = {
     "exponentially": stats.expon(),
     "early": stats.weibull_min(0.5),
-    "uniformly": stats.uniform(),
     "all at one time": stats.uniform(1.0, 1e-9),
 }
-CENSORED = (0.5, 0.8, 0.89, 0.95)
+CENSORED = (0.5, 0.8, 0.95)
 
 
 def censored_bands(rows, repetitions):
