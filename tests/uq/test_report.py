@@ -133,11 +133,13 @@ def test_where_all_rows_failed_the_report_says_why():
 @pytest.mark.parametrize(
     "ds",
     [
-        linear(samples=1),
+        pytest.param(linear(samples=1), marks=pytest.mark.slow),
         kinds(samples=1),
         linear("morris", samples=8, replicates=2),
-        linear("saltelli", samples=16, replicates=4, second_order=True),
-        linear("sobol", samples=16),
+        pytest.param(
+            linear("saltelli", samples=16, replicates=4, second_order=True), marks=pytest.mark.slow
+        ),
+        pytest.param(linear("sobol", samples=16), marks=pytest.mark.slow),
         asking(kinds(samples=50), outputs=["regime"]),
         asking(with_output(linear(), "odd", np.full(64, np.inf), "lifetime"), outputs=["odd"]),
     ],

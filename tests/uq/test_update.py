@@ -77,6 +77,7 @@ def test_what_is_shared_is_learnt_from_all_units(three_units):
         assert of_unit["mean"] == pytest.approx(law.mean(), rel=0.02)
 
 
+@pytest.mark.slow
 def test_an_integrated_input_that_all_share_is_exact():
     lives = [6e5, 1e6, 1.2e6]
     ds = wear(rate="own", depth="shared", samples=2000, units=3)
@@ -269,7 +270,7 @@ def test_what_survival_taught_where_units_share_an_input():
 
 
 def test_strange_inspections_come_with_a_warning():
-    ds = wear(rate="own", depth="shared", samples=2000, units=3)
+    ds = wear(rate="own", depth="shared", samples=400, units=3)
     found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
     assert found.strangeness < 0.01
     assert any(note.startswith("Warning: inspections as improbable") for note in found.notes)
