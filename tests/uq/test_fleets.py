@@ -176,7 +176,7 @@ def test_the_noise_of_units_is_no_spread():
     assert single.refusal == ONE_UNIT
 
 
-def test_python_terminal_json_and_report_agree(uq, tmp_path):
+def test_python_terminal_json_and_report_agree(uq, tmp_path, no_other_figures):
     path, result = tmp_path / "fleet.toml", tmp_path / "fleet.nc"
     path.write_text(fleet_study(units=2, samples=40).text)
     assert uq("run", path, "-o", result, "--workers", "0").code == 0

@@ -97,7 +97,7 @@ def test_a_report_needs_no_network_and_no_other_file(text):
     assert "link" not in Page(text).tags
 
 
-def test_numbers_are_written_as_one_reads_them():
+def test_numbers_are_written_as_one_reads_them(no_other_figures):
     tables = {
         "study": {"name": "angles", "model": "linear"},
         "design": {"method": "monte-carlo", "samples": 40},
@@ -118,7 +118,7 @@ def test_a_column_of_numbers_may_begin_with_an_empty_cell():
     assert [table.has_numbers(column) for column in (0, 1)] == [False, True]
 
 
-def test_where_all_rows_failed_the_report_says_why():
+def test_where_all_rows_failed_the_report_says_why(no_other_figures):
     ds = kinds(samples=20)
     lost = {name: ds[name] * np.nan for name in ("work", "life", "angle")}
     lost |= {"regime": ds["regime"] * 0 - 1, "life_censored": ds["life_censored"] * 0}

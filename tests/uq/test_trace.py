@@ -285,7 +285,7 @@ def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
 
 
 @pytest.mark.slow
-def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
+def test_neither_the_model_nor_its_code_is_needed(uq, write_study, no_other_figures):
     kind = "sample_models:KINDS"
     uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
     ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")

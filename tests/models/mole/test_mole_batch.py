@@ -129,7 +129,7 @@ def test_a_bar_at_rest_has_settled_once_the_current_has():
     assert APERIODIC <= machines.periods(np.array([0]))[0] < 2 * APERIODIC
 
 
-@pytest.mark.parametrize("frequency", [8.0, 8.3])
+@pytest.mark.parametrize("frequency", [8.0, pytest.param(8.3, marks=pytest.mark.slow)])
 def test_a_bar_pressed_on_the_stop_rests_there(frequency):
     """With and without a common period; with less friction it hammers on the stop."""
     pressed = {"spring_rest": 0.05, "stop_gap": -0.03, "initial_displacement": -0.0295}
