@@ -270,7 +270,7 @@ def test_what_survival_taught_where_units_share_an_input():
 
 
 def test_strange_inspections_come_with_a_warning():
-    ds = wear(rate="own", depth="shared", samples=400, units=3)
+    ds = wear(rate="own", depth="shared", samples=2000, units=3)
     found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
     assert found.strangeness < 0.01
     assert any(note.startswith("Warning: inspections as improbable") for note in found.notes)
