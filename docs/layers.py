@@ -57,13 +57,19 @@ def reading_order(package: str) -> list[str]:
 
 
 @cache
+def _tree(path: Path) -> ast.Module:
+    """Return the syntax tree of a module, parsed once for all packages that it is in."""
+    return ast.parse(path.read_text())
+
+
+@cache
 def modules(package: str) -> tuple[tuple[str, ast.Module], ...]:
     """Return the dotted name and the syntax tree of every module of a package."""
     found = []
     for path in sorted((HOUSE / package).rglob("*.py")):
         parts = path.relative_to(HOUSE).with_suffix("").parts
         name = ".".join(part for part in parts if part != "__init__")
-        found.append((name, ast.parse(path.read_text())))
+        found.append((name, _tree(path)))
     return tuple(found)
 
 
