@@ -6,6 +6,7 @@ The tests refuse an import that these forbid; the picture of the house is drawn 
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 HOUSE = Path(__file__).parents[1]
@@ -55,11 +56,21 @@ def reading_order(package: str) -> list[str]:
     return re.findall(r"^ {4}(\w+) {2,}\S", said, re.MULTILINE)
 
 
-def modules(package: str) -> Iterator[tuple[str, ast.Module]]:
-    """Yield the dotted name and the syntax tree of every module of a package."""
+@cache
+def _tree(path: Path) -> ast.Module:
+    """Return the syntax tree of a module, parsed once for all packages that it is in."""
+    return ast.parse(path.read_text())
+
+
+@cache
+def modules(package: str) -> tuple[tuple[str, ast.Module], ...]:
+    """Return the dotted name and the syntax tree of every module of a package."""
+    found = []
     for path in sorted((HOUSE / package).rglob("*.py")):
         parts = path.relative_to(HOUSE).with_suffix("").parts
-        yield ".".join(part for part in parts if part != "__init__"), ast.parse(path.read_text())
+        name = ".".join(part for part in parts if part != "__init__")
+        found.append((name, _tree(path)))
+    return tuple(found)
 
 
 def imports(tree: ast.AST, when_loaded: bool = False) -> Iterator[str]:
@@ -80,11 +91,13 @@ def imports(tree: ast.AST, when_loaded: bool = False) -> Iterator[str]:
             yield from imports(node, when_loaded)
 
 
+@cache
 def edges(package: str, when_loaded: bool = False) -> dict[str, set[str]]:
     """Return module -> names it imports, for one package."""
     return {name: set(imports(tree, when_loaded)) for name, tree in modules(package)}
 
 
+@cache
 def place_of(dotted: str) -> tuple[str, int]:
     """Return the package of ``uq`` that a dotted name is in, and the number of its layer."""
     name = dotted.split(".")[1]

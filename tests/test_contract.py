@@ -27,6 +27,16 @@ def settings(model):
     return model.settings()
 
 
+def but_slowly(*names):
+    """Take each model; these among the slow tests."""
+    return pytest.mark.parametrize(
+        "model",
+        [pytest.param(one, marks=[pytest.mark.slow] * (one in names)) for one in model_names()],
+        indirect=True,
+        scope="module",
+    )
+
+
 def near_nominal(model, rows, seed=1):
     """Return rows within a fifth of the nominal values, the first one nominal."""
     rng = np.random.default_rng(seed)
@@ -150,15 +160,19 @@ def test_outputs_along_optional_coordinates_leave_the_others_as_they_are(model):
     assert few == {name: many[name] for name in few}
 
 
-def test_a_row_does_not_depend_on_its_neighbours(model):
+@pytest.mark.parametrize(
+    ("rows", "apart"), [(4, (0, 3)), pytest.param(7, (0, 3, 6), marks=pytest.mark.slow)]
+)
+def test_a_row_does_not_depend_on_its_neighbours(model, rows, apart):
     settings = with_all_outputs(model)
-    x, seed = near_nominal(model, 7)
+    x, seed = near_nominal(model, rows)
     whole = run(model, settings, x, seed)
-    for i in (0, 3, 6):
+    for i in apart:
         alone = run(model, settings, x[i : i + 1], seed[i : i + 1])
         assert bits(alone) == bits({name: column[i : i + 1] for name, column in whole.items()})
 
 
+@but_slowly("beam", "mole")
 def test_permuted_rows_permute_the_results(model):
     settings = with_all_outputs(model)
     x, seed = near_nominal(model, 2 * min(model.block, 16) + 3, seed=2)
@@ -253,6 +267,7 @@ def test_scales_are_exact(model, far):
             assert cut[censored_name(name)][ended].all()
 
 
+@but_slowly("mole")
 @pytest.mark.parametrize("rows", [2, pytest.param(16, marks=pytest.mark.slow)])
 def test_corners_of_the_bounds_end_with_a_status(model, settings, rows):
     rng = np.random.default_rng(4)

@@ -144,7 +144,9 @@ def test_a_sensitivity_method_is_accepted_explained_and_documented(toy_method, u
     assert "| how well a straight line fits | `correlation` | a plain" in generated.questions()
 
 
-def test_a_study_of_both_is_run_and_shown(toy_design, toy_method, uq, write_study):
+def test_a_study_of_both_is_run_and_shown(
+    toy_design, toy_method, no_other_figures, uq, write_study
+):
     path = asking(write_study, "mirrored", "correlation")
     ended = uq("run", path, "-o", "out.nc", "--workers", "0", "--chunk-rows", "7")
     assert ended.code == 0 and "mirrored, 64 rows" in ended.out

@@ -228,6 +228,7 @@ def test_all_mistakes_are_reported_at_once():
     assert len(refused.value.lines) == 3
 
 
+@pytest.mark.slow
 def test_the_two_attractors_of_the_paper_at_47_rad_s():
     """Ho, Nguyen & Woo 2011, figure 11: from (-0.022, 0) and from (-0.045, -1)."""
     ds = uq.basins(

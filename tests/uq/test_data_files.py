@@ -40,7 +40,7 @@ def test_a_result_needs_no_file(springs):
     assert row_block(again, 0, 64).x.tobytes() == row_block(study, 0, 64).x.tobytes()
 
 
-def test_a_result_is_reported_and_compared_without_the_file(springs):
+def test_a_result_is_reported_and_compared_without_the_file(springs, no_other_figures):
     ds = computed(load_study(springs / "study.toml"))
     (springs / "springs.csv").unlink()
     other = computed(study_from_text(as_text(tables({"x1": UNIFORM, "x2": UNIFORM}))))

@@ -115,6 +115,7 @@ def test_where_fewer_than_five_per_cent_end_these_are_the_earliest():
     assert nothing.earliest is None
 
 
+@pytest.mark.slow
 def test_replicates_show_what_differs_and_one_design_alone_does_not():
     law = lambda x1, x4: np.exp(-4 * x4)  # noqa: E731
     ds = lived(law, 64, "saltelli", replicates=8)

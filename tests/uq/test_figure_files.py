@@ -90,25 +90,42 @@ def test_the_same_result_gives_the_same_bytes(tmp_path, ds, included):
 def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     draw, drawn = Figure.draw, []
     monkeypatch.setattr(Figure, "draw", lambda *given: (drawn.append(given), draw(*given)))
-    ds = linear(samples=16)
+    ds = linear("morris", samples=8, replicates=2)
     paths = plots.save_all(ds, tmp_path)
     assert len(drawn) == len(paths) == 3 * len(files(ds))
 
 
-def test_a_notebook_shows_figures_without_pyplot():
-    ds = kinds(samples=40)
-    drawn = [plots.lifetime(ds, "life"), plots.scatter(ds, "angle"), plots.pairs(ds)]
-    drawn += [plots.inputs(ds), plots.quantile_table(ds, "work")]
-    for figure in drawn:
-        shown, _ = DisplayFormatter().format(figure)
-        assert imread(io.BytesIO(shown["image/png"])).std() > 0.05
+@pytest.mark.parametrize(
+    ("figure", "of"),
+    [
+        ("lifetime", ["life"]),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in (
+                ("scatter", ["angle"]),
+                ("pairs", []),
+                ("inputs", []),
+                ("quantile_table", ["work"]),
+            )
+        ),
+    ],
+)
+def test_a_notebook_shows_figures_without_pyplot(figure, of):
+    shown, _ = DisplayFormatter().format(getattr(plots, figure)(kinds(samples=40), *of))
+    assert imread(io.BytesIO(shown["image/png"])).std() > 0.05
 
 
-def test_categories_alone_have_the_indices_of_each(tmp_path):
+def test_categories_alone_have_the_indices_of_each():
     ds = kinds(analysis={"outputs": ["regime"]})
     assert list(sensitivities(ds)["outputs"]) == ["P(regime=slow)", "P(regime=fast)"]
+    assert {"pairs", "first-order-P_regime_slow", "first-order-P_regime_fast"} <= files(ds)
+
+
+@pytest.mark.slow
+def test_categories_alone_are_drawn(tmp_path):
+    ds = kinds(analysis={"outputs": ["regime"]})
     stems = {path.stem for path in plots.save_all(ds, tmp_path)}
-    assert {"pairs", "first-order-P_regime_slow", "first-order-P_regime_fast"} <= stems == files(ds)
+    assert stems == files(ds)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):

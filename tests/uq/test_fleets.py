@@ -38,14 +38,14 @@ def test_many_worlds_are_computed_in_blocks(monkeypatch):
 
 
 def test_lives_as_computed_where_nothing_is_to_be_integrated():
-    ds = fleet_result(units=20)
+    ds = fleet_result(units=6, samples=50)
     found = fleet_of(ds, 5, [5e5], allow=1, plain=True)
     assert found.integrated == ()
     element = next(elements_of(ds, ["life"]))
-    ended = (element.values < 5e5).astype(float).reshape(200, 20, 1)
+    ended = (element.values < 5e5).astype(float).reshape(50, 6, 1)
     assert found.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
-    with pytest.raises(InputError, match="set units = 21; .* depth is not"):
-        fleet_of(ds, 21, plain=True)
+    with pytest.raises(InputError, match="set units = 7; .* depth is not"):
+        fleet_of(ds, 7, plain=True)
 
 
 def test_no_power_of_the_mean():
@@ -126,6 +126,7 @@ def test_a_horizon_before_the_time_is_refused():
     assert found.by[9e5][1].estimate.value == fleet_of(ds, 3, [9e5]).by[9e5][1].estimate.value
 
 
+@pytest.mark.slow
 def test_failed_rows_are_taken_at_best_and_at_worst():
     ds = fleet_result(units=4, samples=100, depth=LISTED)
     status, life = ds["status"].values.copy(), ds["life"].values.copy()
@@ -175,7 +176,7 @@ def test_the_noise_of_units_is_no_spread():
     assert single.refusal == ONE_UNIT
 
 
-def test_python_terminal_json_and_report_agree(uq, tmp_path):
+def test_python_terminal_json_and_report_agree(uq, tmp_path, no_other_figures):
     path, result = tmp_path / "fleet.toml", tmp_path / "fleet.nc"
     path.write_text(fleet_study(units=2, samples=40).text)
     assert uq("run", path, "-o", result, "--workers", "0").code == 0

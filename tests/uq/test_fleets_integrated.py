@@ -42,6 +42,7 @@ def test_units_and_the_exact_law_agree():
     assert exact.by[5e5][0].estimate.value == pytest.approx(5 * p.mean(), abs=0.1)
 
 
+@pytest.mark.slow
 def test_what_is_shared_is_integrated_outside_the_product():
     """With all scatter integrated the probability is exact, in each world the same."""
     model = {"study": {"name": "fleet", "model": "scaled"}, "analysis": {"outputs": ["life"]}}

@@ -85,14 +85,25 @@ def renamed(result, name, in_study=False):
 NAMES = ("hostile.py", "./hostile.py:MODEL", "hostile:MODEL", "hostile.toml", "http://{}/MODEL")
 
 
+TAKE_A_MODEL = ("extend", "verify")
+"""Verbs of which one computes rows and the other computes some again."""
+
+
 @pytest.mark.parametrize(
-    ("name", "in_study"), [*((name, False) for name in NAMES), (NAMES[0], True)]
+    ("name", "in_study", "verbs"),
+    [
+        (NAMES[0], False, ON_A_RESULT),
+        *((name, False, TAKE_A_MODEL) for name in NAMES[1:]),
+        (NAMES[0], True, TAKE_A_MODEL),
+        *(pytest.param(name, False, ON_A_RESULT, marks=pytest.mark.slow) for name in NAMES[1:]),
+        pytest.param(NAMES[0], True, ON_A_RESULT, marks=pytest.mark.slow),
+    ],
 )
-def test_no_verb_runs_what_a_result_names(uq, result, folder, telephone, name, in_study):
+def test_no_verb_runs_what_a_result_names(uq, result, folder, telephone, name, in_study, verbs):
     renamed(result, name.format(f"127.0.0.1:{telephone.getsockname()[1]}"), in_study)
     sent = result.read_bytes()
-    for verb, ways in ON_A_RESULT.items():
-        for more in ways:
+    for verb in verbs:
+        for more in ON_A_RESULT[verb]:
             result.write_bytes(sent)  # 'uq extend' writes it anew
             ended = uq(verb.replace("_", "-"), result, *more)
             assert ended.code in (0, 1, 2) and "Traceback" not in ended.err, (verb, ended)

@@ -4,7 +4,9 @@ import pytest
 from computed import linear, summarised
 
 
-@pytest.mark.parametrize("method", ["sobol", "latin-hypercube"])
+@pytest.mark.parametrize(
+    "method", [pytest.param("sobol", marks=pytest.mark.slow), "latin-hypercube"]
+)
 def test_the_mean_of_a_function_that_jumps_is_within_its_interval(method):
     """All replicates often have the same number of rows beyond the jump."""
     place, held = 19.1 / 64, 0

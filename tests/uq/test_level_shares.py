@@ -75,7 +75,7 @@ def test_rows_that_do_not_follow_the_laws_have_no_shares():
         by_level(ds)
 
 
-def test_python_terminal_json_and_report_agree(uq, tmp_path):
+def test_python_terminal_json_and_report_agree(uq, tmp_path, no_other_figures):
     path, result = tmp_path / "nested.toml", tmp_path / "nested.nc"
     path.write_text(nested(samples=20).text)
     assert uq("run", path, "-o", result, "--workers", "0").code == 0

@@ -33,7 +33,7 @@ def test_a_negative_life_is_a_failed_row(uq, write_function, life):
     assert "a life cannot be negative" in ds["status"].attrs["example_non_finite"]
 
 
-def test_zero_is_a_life(uq, write_function):
+def test_zero_is_a_life(uq, write_function, no_other_figures):
     _, ds = run(uq, write_function, "max(stop - 2.0, 0.0)")
     assert (ds["status"] == Status.OK).all() and (ds["life"] == 0).any()
     for verb in ("summary", "sensitivity", "report"):

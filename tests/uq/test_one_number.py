@@ -21,7 +21,7 @@ def life(monkeypatch):
     return asking(lifetime()[0], tolerance={"coverage": 0.95, "confidence": 0.95})
 
 
-def test_a_share_is_the_same_in_table_answer_and_json(life):
+def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
     table = sensitivity_json(sensitivities(life))["outputs"]["log(life)"]["S1"]
     ranking = answer_json(answer(life))["quantities"]["life"]["ranking"]
     shares = {k: v for one in ranking["contributions"] for k, v in one["inputs"].items()}

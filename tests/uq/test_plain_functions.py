@@ -31,6 +31,7 @@ def test_a_function_becomes_a_machine_with_units_bounds_lives_and_arrays(uq, wri
     assert ds["load"].attrs["units"] == "N" and ds["load"].attrs["long_name"] == "force on the pad"
 
 
+@pytest.mark.slow
 def test_rows_are_equal_to_the_bit_in_processes_of_their_own(uq, write_function):
     file = write_function(WEAR)
     uq("run", "own.toml", "--model", file, "-o", "here.nc", "--quiet", "--workers", "0")
@@ -39,6 +40,7 @@ def test_rows_are_equal_to_the_bit_in_processes_of_their_own(uq, write_function)
     assert "equal to the bit" in uq("verify", "there.nc", "--model", file).out
 
 
+@pytest.mark.slow
 def test_a_long_array_is_described_at_some_places_unless_it_is_named(
     uq, write_function, monkeypatch
 ):
@@ -71,7 +73,7 @@ def test_a_seed_is_that_of_the_row(uq, write_function):
     assert noise.attrs["random"] == 1
 
 
-@pytest.mark.parametrize("workers", [0, 2])
+@pytest.mark.parametrize("workers", [0, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_row_that_leaves_the_program_or_its_folder_costs_that_row_only(
     uq, write_function, workers
 ):

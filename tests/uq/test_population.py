@@ -91,7 +91,10 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, marks=[pytest.mark.slow] * (case == "signs mixed")) for case in CASES],
+)
 def test_a_few_rows_say_what_very_many_say(case):
     """The mean law of the rows is the distribution of many plain rows."""
     uncertain, tables, wanted = CASES[case]
@@ -219,7 +222,16 @@ def test_every_level_is_integrated_in_probabilities_quantiles_and_curves(levels)
     assert float(line["survival"][40]) == pytest.approx(1 - below(time), abs=1e-9)
 
 
-@pytest.mark.parametrize("case", ["one", "truncated", "multiple", "correlated", "against"])
+@pytest.mark.parametrize(
+    "case",
+    [
+        "correlated",
+        *(
+            pytest.param(case, marks=pytest.mark.slow)
+            for case in ("one", "truncated", "multiple", "against")
+        ),
+    ],
+)
 def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
     """By quadrature of the probability that the life of each row is shorter."""
     inputs, tables, _ = CASES[case]

@@ -69,6 +69,7 @@ def test_a_template_keeps_its_line_ends(uq, write_program, folder):
     assert "exit code 5" not in str(ds["status"].attrs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["machine.toml", "deck"])
 def test_a_byte_order_mark_changes_neither_rows_nor_what_they_are_of(
     uq, write_program, folder, name

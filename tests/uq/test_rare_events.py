@@ -60,7 +60,10 @@ def test_subset_simulation_agrees_with_that_of_openturns(names, beyond):
     assert ours == pytest.approx(theirs, rel=0.5)
 
 
-@pytest.mark.parametrize(("of", "output", "threshold", "below", "truth"), KNOWN[:-1])
+@pytest.mark.parametrize(
+    ("of", "output", "threshold", "below", "truth"),
+    [pytest.param(*event, marks=[pytest.mark.slow] * (event[1] == "y")) for event in KNOWN[:-1]],
+)
 def test_importance_sampling_finds_known_probabilities(of, output, threshold, below, truth):
     ds = rare_event(of, output, threshold, below, method="importance")
     assert close(ds, truth)

@@ -97,7 +97,7 @@ def test_a_report_needs_no_network_and_no_other_file(text):
     assert "link" not in Page(text).tags
 
 
-def test_numbers_are_written_as_one_reads_them():
+def test_numbers_are_written_as_one_reads_them(no_other_figures):
     tables = {
         "study": {"name": "angles", "model": "linear"},
         "design": {"method": "monte-carlo", "samples": 40},
@@ -118,7 +118,7 @@ def test_a_column_of_numbers_may_begin_with_an_empty_cell():
     assert [table.has_numbers(column) for column in (0, 1)] == [False, True]
 
 
-def test_where_all_rows_failed_the_report_says_why():
+def test_where_all_rows_failed_the_report_says_why(no_other_figures):
     ds = kinds(samples=20)
     lost = {name: ds[name] * np.nan for name in ("work", "life", "angle")}
     lost |= {"regime": ds["regime"] * 0 - 1, "life_censored": ds["life_censored"] * 0}
@@ -133,11 +133,13 @@ def test_where_all_rows_failed_the_report_says_why():
 @pytest.mark.parametrize(
     "ds",
     [
-        linear(samples=1),
+        pytest.param(linear(samples=1), marks=pytest.mark.slow),
         kinds(samples=1),
         linear("morris", samples=8, replicates=2),
-        linear("saltelli", samples=16, replicates=4, second_order=True),
-        linear("sobol", samples=16),
+        pytest.param(
+            linear("saltelli", samples=16, replicates=4, second_order=True), marks=pytest.mark.slow
+        ),
+        pytest.param(linear("sobol", samples=16), marks=pytest.mark.slow),
         asking(kinds(samples=50), outputs=["regime"]),
         asking(with_output(linear(), "odd", np.full(64, np.inf), "lifetime"), outputs=["odd"]),
     ],

@@ -19,7 +19,7 @@ from uq.store.files import write_result
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
 
 
-def test_report_on_the_command_line(uq, folder, monkeypatch):
+def test_report_on_the_command_line(uq, folder, monkeypatch, no_other_figures):
     write_result(linear("morris", samples=8, replicates=2), folder / "out.nc")
     ended = uq("report", "out.nc")
     assert (ended.code, ended.out, ended.err) == (0, "out.html\n", "")

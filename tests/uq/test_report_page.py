@@ -60,7 +60,7 @@ def test_nothing_on_a_page_acts_where_it_is_copied_to(text):
     assert text.isprintable()
 
 
-def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
+def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples(no_other_figures):
     text = page(linear("sobol", samples=16), "out.nc")
     assert "uq run linear.toml\n" in text
     assert "Truncated" not in text and "were recomputed" not in text
@@ -72,7 +72,7 @@ def test_the_name_that_begins_a_remark_keeps_its_case():
     assert "The intervals" in remark("the intervals are pointwise")
 
 
-def test_a_symbol_has_its_index_below_the_line():
+def test_a_symbol_has_its_index_below_the_line(no_other_figures):
     ds = linear(samples=16)
     ds["x1"].attrs |= {"symbol": "k_tra", "long_name": "stiffness <1>"}
     assert "k<sub>tra</sub>: stiffness &lt;1&gt;" in page(ds, "OUT.nc")

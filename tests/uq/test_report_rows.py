@@ -135,13 +135,13 @@ def weighted_rows():
     ],
     ids=["failed", "categories", "weighted", "morris"],
 )
-def test_a_page_that_cannot_compute_with_its_rows_says_why(ds, why):
+def test_a_page_that_cannot_compute_with_its_rows_says_why(ds, why, no_other_figures):
     text = unescape(page(ds(), "a.nc"))
     section = text.partition('<section id="explore">')[2].partition("</section>")[0]
     assert why in section and "<script" not in section and 'id="rows"' not in text
 
 
-def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path):
+def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path, no_other_figures):
     found = [
         {"unit": "A", "output": "y", "kind": "measured", "time": 2.0, "value": 0.1, "sd": 1e-3},
         {"unit": "B", "output": "y", "kind": "above", "time": 2.0, "value": 7.0},

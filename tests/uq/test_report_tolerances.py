@@ -77,7 +77,13 @@ def asked_of_python(browser, ds):
     return changes, answer(ds, changes)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=[pytest.mark.slow] * (case in ("product", "replicates")))
+        for case in CASES
+    ],
+)
 def test_a_slider_finds_what_python_finds(shown, case):
     name, laws, design, ranks = CASES[case]
     ds = scaled(laws, ranks, **design)

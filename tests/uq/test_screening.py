@@ -59,9 +59,14 @@ FED = [
 ]
 
 
+def samples_of(design):
+    """Return how many: trajectories that lie far apart take long to choose."""
+    return 32 if design == "morris-optimised" else 256
+
+
 @pytest.mark.parametrize(("design", "method"), FED)
 def test_one_lacking_value_changes_little_and_zeroes_nothing(design, method):
-    ds = linear(design, 256, 4)
+    ds = linear(design, samples_of(design), 4)
     full = found(ds, method=method)
     assert "refused" not in full
     y = ds["y"].values.copy()
@@ -80,7 +85,8 @@ def test_one_lacking_value_changes_little_and_zeroes_nothing(design, method):
 
 @pytest.mark.parametrize(("design", "method"), FED)
 def test_seed_zero_is_a_seed(design, method):
-    once, again, other = (found(linear(design, 256, 4, seed=s), method=method) for s in (0, 0, 1))
+    n = samples_of(design)
+    once, again, other = (found(linear(design, n, 4, seed=s), method=method) for s in (0, 0, 1))
     assert once == again and "refused" not in once
     if design not in ("morris", "morris-optimised"):  # which know a linear function exactly
         assert once != other

@@ -120,6 +120,7 @@ def raising(*arguments, **named):
     raise Killed
 
 
+@pytest.mark.slow
 def test_a_wish_for_more_goes_on_where_the_run_stopped(folder):
     first = runner.run(study(0.2), "out.nc")
     reports = []
@@ -133,6 +134,7 @@ def whole_of(study, folder):
     return whole(folder / "other.nc")
 
 
+@pytest.mark.slow
 def test_extending_gives_as_many_as_are_asked_for_whatever_is_known(folder):
     of = study(0.2, samples=1000)
     stopped = runner.run(of, "out.nc").attrs["samples"]

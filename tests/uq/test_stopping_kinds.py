@@ -220,7 +220,9 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind == "shapley")) for kind in KINDS]
+)
 def test_a_run_killed_between_looks_ends_as_one_that_was_not(tmp_path, kind):
     until, more = KINDS[kind]
     of = study_of(tables({"output": "y", **until}, **more))

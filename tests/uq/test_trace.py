@@ -47,6 +47,10 @@ def every_kind():
     return kinds(samples=64, analysis=ASKED)
 
 
+def slow(*case):
+    return pytest.param(*case, marks=pytest.mark.slow)
+
+
 def check(ds, verb, options=None, every=1):
     """Trace the numbers of a verb, all of them or one of so many."""
     options = options or {}
@@ -104,19 +108,22 @@ def test_options_are_part_of_a_key():
     check(update(wear(400), measured(5e5)), "update", {"by": "600000.0"}, every=11)
 
 
-def test_weighted_rows_are_traced_to_estimators_of_weighted_rows():
-    key = "what-if[uncertain.x1.upper=0.8]/"
-    for ds, path, estimator in (
-        (every_kind(), "outputs/angle/thresholds/0.5/above", "Population.above"),
-        (every_kind(), "outputs/angle/quantiles/0.5", "Population.quantile"),
-        (every_kind(), "outputs/angle/effective_rows", "smoothing.effective_rows"),
-        (every_kind(), "regime/slow", "means.weighted_share"),
-        (linear(), "outputs/y/mean", "means.weighted_moments"),
-    ):
-        what_if, *others = traced(ds, key + path).estimators
-        assert what_if.code.endswith("what_if") and others[0].code.endswith(estimator)
-        plain = [one.code for one in traced(ds, path).estimators] if "effective" not in path else []
-        assert not {one.code for one in others} & {*plain}
+@pytest.mark.parametrize(
+    ("make", "path", "estimator"),
+    [
+        slow(every_kind, "outputs/angle/thresholds/0.5/above", "Population.above"),
+        slow(every_kind, "outputs/angle/quantiles/0.5", "Population.quantile"),
+        (every_kind, "outputs/angle/effective_rows", "smoothing.effective_rows"),
+        slow(every_kind, "regime/slow", "means.weighted_share"),
+        (linear, "outputs/y/mean", "means.weighted_moments"),
+    ],
+)
+def test_weighted_rows_are_traced_to_estimators_of_weighted_rows(make, path, estimator):
+    ds, key = make(), "what-if[uncertain.x1.upper=0.8]/"
+    what_if, *others = traced(ds, key + path).estimators
+    assert what_if.code.endswith("what_if") and others[0].code.endswith(estimator)
+    plain = [one.code for one in traced(ds, path).estimators] if "effective" not in path else []
+    assert not {one.code for one in others} & {*plain}
 
 
 def test_numbers_of_a_design_without_statistics_are_traced():
@@ -176,9 +183,10 @@ def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
     assert found.equal and found.numbers["value"] == api.enough(ds).loc["y", "sampling"]
 
 
-def test_numbers_of_an_inspected_unit_are_traced_and_equal():
+@pytest.mark.parametrize("every", [60, pytest.param(9, marks=pytest.mark.slow)])
+def test_numbers_of_an_inspected_unit_are_traced_and_equal(every):
     after = update(wear(150, units=2, rate="shared"), measured(5e5, 8e5))
-    check(as_unit(after, "B"), "summary", every=9)
+    check(as_unit(after, "B"), "summary", every=every)
     assert traced(as_unit(after, "A"), MEDIAN).numbers != traced(after, MEDIAN).numbers
 
 
@@ -277,7 +285,7 @@ def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
 
 
 @pytest.mark.slow
-def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
+def test_neither_the_model_nor_its_code_is_needed(uq, write_study, no_other_figures):
     kind = "sample_models:KINDS"
     uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
     ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")

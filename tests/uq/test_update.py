@@ -77,6 +77,7 @@ def test_what_is_shared_is_learnt_from_all_units(three_units):
         assert of_unit["mean"] == pytest.approx(law.mean(), rel=0.02)
 
 
+@pytest.mark.slow
 def test_an_integrated_input_that_all_share_is_exact():
     lives = [6e5, 1e6, 1.2e6]
     ds = wear(rate="own", depth="shared", samples=2000, units=3)

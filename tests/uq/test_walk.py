@@ -43,6 +43,7 @@ ROWS = {
     "rbd-fast": 512,
     "shapley": 256,
     "fast": 257,
+    "morris": 32,
 }
 """Other methods have enough in 128 samples."""
 
@@ -92,6 +93,27 @@ def damaged(ds, how, outputs=("y", "flat", "life")):
 DAMAGES = ["none", "one failed row", "one infinite life", "all failed", "interrupted"]
 
 
+def case(*parameters, quick):
+    return pytest.param(*parameters, marks=[] if quick else [pytest.mark.slow])
+
+
+PLAIN = {(design, "first-order") for design in ("latin-hypercube", "sobol", "halton", "rbd-fast")}
+ALIKE = PLAIN | {
+    ("monte-carlo", "hdmr"),
+    ("monte-carlo", "hsic-target"),
+    ("shapley", "shapley"),
+    ("morris-optimised", "morris"),
+}
+"""Designs whose rows are like those of another, and methods that take long."""
+
+WALKED = {
+    "one failed row": ALIKE - {("monte-carlo", "hdmr")},
+    "one infinite life": {("sobol", "first-order")},
+    "interrupted": {("latin-hypercube", "first-order")},
+}
+"""Damage -> those of them that meet it among the quick tests."""
+
+
 def strict(found):
     """Return what is printed as JSON; a number that is not finite is a mistake."""
     return json.loads(json.dumps(found, allow_nan=False))
@@ -100,8 +122,10 @@ def strict(found):
 @pytest.mark.parametrize(
     ("design", "method", "damage"),
     [
-        pytest.param(*one, damage, marks=[pytest.mark.slow] * (one[1] == "hdmr" and i < 2))
-        for i, damage in enumerate(DAMAGES[1:])
+        case(
+            *one, damage, quick=damage == "all failed" or one not in ALIKE or one in WALKED[damage]
+        )
+        for damage in DAMAGES[1:]
         for one in FED
     ],
 )
@@ -137,10 +161,20 @@ def test_sensitivity(design, method, damage):
     assert all(len(sentence) > 20 for sentence in refused.values())
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("design", DRAWN)
+EVERY_DAMAGE = ("monte-carlo", "latin-hypercube", "sobol")
+"""Designs that meet each damage among the quick tests; the others a failed row."""
+
+
+@pytest.mark.parametrize(
+    ("design", "damage"),
+    [
+        case(design, damage, quick=design in EVERY_DAMAGE or damage == "one failed row")
+        for design in DRAWN
+        for damage in DAMAGES
+    ],
+)
 def test_summary_survival_fits_and_regimes(design, damage):
-    ds = damaged(result(design), damage)
+    ds = damaged(result(design, 256 if DESIGNS[design].follows_laws else ROWS["morris"]), damage)
     found = strict(summarised(ds, fits=True))
     y, life, flat = (found["outputs"][name] for name in ("y", "life", "flat"))
     curve = uq.survival(ds, "life")
@@ -179,8 +213,18 @@ def test_summary_survival_fits_and_regimes(design, damage):
 # Methods that compute more rows, or look at fewer ------------------------------------------------
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("design", ["monte-carlo", "sobol", "saltelli", "shapley"])
+OF_CROSSED = ("one failed row", "interrupted")
+"""Damages that drop groups of rows of a crossed design, or let it be refused."""
+
+
+@pytest.mark.parametrize(
+    ("design", "damage"),
+    [
+        *((design, damage) for design in ("monte-carlo", "sobol") for damage in DAMAGES),
+        *(case("saltelli", damage, quick=damage in OF_CROSSED) for damage in DAMAGES),
+        *(case("shapley", damage, quick=damage not in OF_CROSSED) for damage in DAMAGES),
+    ],
+)
 def test_running_estimates_and_whether_it_is_enough(design, damage):
     ds = damaged(result(design), damage)
     try:

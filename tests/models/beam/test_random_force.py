@@ -80,7 +80,13 @@ def analytic_deviation(p):
     return np.sqrt(p.random_force_level[0] * whole) / p.initial_gap[0]
 
 
-@pytest.mark.parametrize("low", [2.0, 20.0], ids=["all modes", "not the first mode"])
+@pytest.mark.parametrize(
+    "low",
+    [
+        pytest.param(2.0, id="all modes"),
+        pytest.param(20.0, id="not the first mode", marks=pytest.mark.slow),
+    ],
+)
 def test_without_contact_the_tip_varies_as_the_integral_of_the_spectrum_says(low):
     n = 64
     p = nominal(n, mass_damping=20.0, random_force_low=low, **PURE)

@@ -58,6 +58,7 @@ def test_lives_cover_what_other_seeds_give():
     assert (off < error).mean() > 0.8
 
 
+@pytest.mark.slow
 def test_a_seed_is_a_row_s_own_and_does_not_matter_without_random_load():
     x = np.vstack([rows(2, mass_damping=60.0, **PURE), rows(2, forcing_frequency=54.797)])
     seed = np.array([1, 2, 1, 2], np.uint64)
@@ -172,6 +173,7 @@ def test_a_site_much_faster_than_the_other_keeps_a_gap_of_known_size():
     assert grown[0, 1] == pytest.approx(0.1 + 3e-12)
 
 
+@pytest.mark.slow
 def test_a_stiff_contact_that_hardly_ends_does_not_feed_on_its_steps():
     stiff = [
         *(18.4133, 165.819, 0.282995, 5194780.0, 6814.32, 4845627.0, 21.7748, 99.4254, 4.06674e-3),

@@ -34,7 +34,7 @@ def test_the_exact_speed_is_the_limit_of_differences(values):
     np.testing.assert_allclose(few, v[FINE // 200 - 1 :: FINE // 200], rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("values", [SHARP, RANDOM])
+@pytest.mark.parametrize("values", [SHARP, pytest.param(RANDOM, marks=pytest.mark.slow)])
 def test_the_speed_of_the_steps_is_the_exact_one_up_to_their_error(values):
     _, v = motion(exact, 400, 4, values)
     assert np.abs(motion(lanes, 400, 4, values)[1] - v).max() < 0.01 * np.abs(v).max()

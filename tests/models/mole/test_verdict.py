@@ -55,6 +55,7 @@ def test_codes_of_files_written_before_keep_their_meaning():
     assert REGIMES[ON_STOP] == "resting-on-stop"
 
 
+@pytest.mark.slow
 def test_a_short_look_at_chaos_is_lengthened():
     """Over 100 control periods nine of ten exponents at 29.5 rad/s hide in their errors."""
     starts = [ALONE._replace(initial_displacement=u) for u in np.linspace(-0.05, 0.005, 16)]
@@ -79,6 +80,7 @@ def test_a_long_look_decides():
     assert abs(long["lyapunov_exponent"] + 0.107) < 3 * long["lyapunov_exponent_error"] < 0.1
 
 
+@pytest.mark.slow
 def test_a_look_does_not_depend_on_its_neighbours():
     some = [ALONE, Params(), ALONE._replace(initial_displacement=-0.03), Params(stop_gap=0.06)]
     settings = {"formulation": "as-printed", "transient": 100, "duration": 20}

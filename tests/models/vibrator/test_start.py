@@ -299,6 +299,7 @@ def test_synchronisation_ends_where_the_fourth_equation_says():
     assert fold_of_synchronous_orbits(p) == pytest.approx((moment / slope)[0], rel=0.02)
 
 
+@pytest.mark.slow
 def test_motors_weaker_than_the_synchronising_moment_show_hysteresis():
     # K > p M_zn: synchronous running goes on beyond (4), but is not reached from rest.
     p = fleet(stiffness_x=2.07e6, support_offset=0.0, rated_torque_1=30.0, rated_torque_2=30.0)

@@ -90,7 +90,9 @@ def test_it_agrees_with_the_exact_propagator_under_gravity():
     assert np.all(scaled_errors(state, ends) < 1e-8)
 
 
-@pytest.mark.parametrize(("order", "per_turn"), [(5, (10, 14, 20)), (8, (4, 6, 9))])
+@pytest.mark.parametrize(
+    ("order", "per_turn"), [(5, (10, 14, 20)), pytest.param(8, (4, 6, 9), marks=pytest.mark.slow)]
+)
 def test_its_errors_fall_with_the_order_of_the_method(start, ends, order, per_turn):
     """The machines' geometric mean."""
     errors = [
