@@ -235,9 +235,11 @@ def check(n, seed, **settings):
     assert np.all(np.isin(status, [Status.OK, Status.OUT_OF_BUDGET, Status.NON_FINITE]))
     done = status == Status.OK
     struck = done & (outputs["impacts_per_period"] > 0)
+    often = done & (outputs["impacts_per_period"] > 0.2)  # not all blows within one batch
     for name, values in outputs.items():
         blow = name.startswith(("impact_impulse", "impact_energy"))
-        assert np.all(np.isfinite(values[struck if blow else done])), name
+        least = often if blow and name.endswith("_error") else struck
+        assert np.all(np.isfinite(values[least if blow else done])), name
     assert np.all(outputs["regime"][~done] == -1)
     assert np.all(outputs["regime"][done] >= 0)
     return done.mean()
