@@ -20,6 +20,7 @@ INCREMENTS = 12  # of the faster gap, up to the last depth
 _OVERTIME = 3  # times as many for the slower gap
 _LONGEST = 82  # over the accuracy: periods at each increment
 _ANY = 1e9  # accuracy of a mean of given length
+_STRIDE = 1.5  # growth of a worn gap from node to node while the other stop is not met
 _MEMORY = 0.3  # weight of the newest node in the sites' shares of wear
 
 
@@ -89,7 +90,7 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
 
     The faster of the unfinished sites advances to its next grid point; the grid is finer at small
     growth. A finished site may be very much faster still: its growth, plus the last depth, at most
-    doubles. It advances itself where the unfinished one is not touched.
+    doubles. It advances itself, in strides, where the unfinished one is not touched.
     """
     head_start = growths[:, :1] / 2
     whole = log1p(growths[:, -1:] / head_start)
@@ -101,6 +102,7 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
     here, top = (np.take_along_axis(a, fast, axis=1) for a in (grown, control))
     point = log1p(here / head_start) / whole * INCREMENTS
     goal = head_start * expm1((np.floor(point + 1e-6) + 1) / INCREMENTS * whole)
+    goal = np.where(waiting[:, None], np.maximum(goal, _STRIDE * here), goal)
     with np.errstate(invalid="ignore", divide="ignore"):
         step = (goal - here) * rate / top
         most = grown.max(axis=1, keepdims=True) + growths[:, -1:]
@@ -119,27 +121,49 @@ def _note(
     instants: Array,
     silent: bool,
 ) -> None:
-    """Record the lives and depths of beam i from growth and wear rates of its sites at nodes."""
+    """Record the lives and depths of beam i from growth and wear rates of its sites at nodes.
+
+    The wear of a site is fitted from its first contact to the last depth: once worn, a gap may be
+    followed to many times that depth, where it hardly wears. A stop that is met late has waited
+    while the other gap grew.
+    """
     if np.isnan(rate).any():
         return
+
+    def wear_of(site: int, begin: int, end: int) -> FittedWear:
+        nodes = slice(begin, end + 1)
+        return FittedWear(grown[nodes, site], rate[nodes, site], doubt[nodes, site])
+
     at = np.full((2, len(growths)), np.nan)
     simulated = 0.0
     for site in range(2):
         x = grown[:, site]
-        later = x[-1] if silent or x[-1] >= growths[-1] * (1 - 1e-9) else np.nan
+        worn = x >= growths[-1] * (1 - 1e-9)
+        later = x[-1] if silent or worn[-1] else np.nan
         out.depth[i, site] = np.where(instants > 0, later, 0.0)
         if x[-1] == 0:
             continue
-        wear = FittedWear(x, rate[:, site], doubt[:, site])
-        whole, _ = wear.life(x[-1])
+        met = int((rate[:, site] > 0).argmax())
+        end = int(worn.argmax()) if worn[-1] else len(x) - 1
+        wear = wear_of(site, met, end)
+        wait, doubt_of_wait = 0.0, 0.0
+        if met:
+            path, other = wear_of(1 - site, 0, met), grown[:, 1 - site]
+            (early, _), (late, noise) = path.life(other[met - 1]), path.life(other[met])
+            # The stop is met at an unknown growth between two nodes.
+            wait, doubt_of_wait = (early + late) / 2, np.hypot(noise, (late - early) / np.sqrt(12))
+        whole = wait + wear.life(x[end])[0]
         for k in np.flatnonzero((instants > 0) & (instants < whole)).tolist():
-            out.depth[i, site, k] = wear.grown(instants[k])
+            out.depth[i, site, k] = wear.grown(instants[k] - wait)
+        if end < len(x) - 1:
+            whole = wait + wear_of(site, met, len(x) - 1).life(x[-1])[0]
         simulated = max(simulated, whole if np.isfinite(whole) else 0.0)
         for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
             life, uncertainty = wear.life(growths[depth])
-            if not np.isfinite(life):  # a fit of negligible wear
+            if not np.isfinite(wait + life):  # a fit of negligible wear
                 break
-            out.time[i, site, depth], out.error[i, site, depth] = life, uncertainty
+            out.time[i, site, depth] = wait + life
+            out.error[i, site, depth] = np.hypot(uncertainty, doubt_of_wait)
             out.reached[i, site, depth] = True
             at[site, depth] = np.interp(growths[depth], x, np.arange(len(x)))
     out.time[i, :2][~out.reached[i, :2]] = np.inf if silent else simulated

@@ -10,7 +10,8 @@ from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.averages import NINE_IN_TEN
 from models.beam.response.settling import settle
 from models.beam.wear.fitted_wear import FittedWear, fit
-from models.beam.wear.random_lives import _step
+from models.beam.wear.lives import Lives
+from models.beam.wear.random_lives import _note, _step
 from uq.contract import Status
 
 
@@ -221,3 +222,39 @@ def test_a_band_above_the_first_mode_gives_every_seed_the_same_work_rate():
     outputs, _ = MODEL.batch(x, np.arange(8, dtype=np.uint64), settings)
     work = outputs["work_rate"].mean(axis=1)
     assert work.std(ddof=1) < 0.15 * work.mean()
+
+
+def test_a_worn_gap_followed_to_where_it_hardly_wears_keeps_its_life():
+    """The slow site's path must not bend the fit of the fast one's wear."""
+    x = np.concatenate([np.linspace(0.0, 1.0, 13), 1.5 ** np.arange(1, 9)])
+    rate = np.stack([np.where(x <= 1.0, 1.0, 1e-6), np.full(len(x), 1e-12)], axis=1)
+    grown = np.stack([x, 1e-9 * x], axis=1)
+    out = Lives.nothing(1, 1, 0)
+    _note(0, out, np.ones(2), grown, rate, 0.1 * rate, np.ones(1), np.zeros(0), False)
+    assert out.reached[0].tolist() == [[True], [False], [True]]
+    assert out.time[0, 0, 0] == pytest.approx(1.0, rel=0.01)
+    assert out.error[0, 0, 0] < 0.02
+
+
+def test_a_stop_that_is_met_late_has_waited_while_the_other_gap_grew():
+    grown = np.array([[x, max(0.0, x - 3.0)] for x in np.arange(0.0, 5.0, 0.5)])
+    rate = np.stack([np.ones(10), np.where(grown[:, 0] < 3.0, 0.0, 1.0)], axis=1)
+    instants = np.array([1.0, 3.25])
+    out = Lives.nothing(1, 1, 2)
+    _note(0, out, np.ones(2), grown, rate, 0.1 * rate, np.ones(1), instants, False)
+    assert out.time[0, :, 0] == pytest.approx([1.0, 3.75, 1.0], rel=1e-6)
+    # From a node to the next, half a unit of time later.
+    assert 0.14 < out.error[0, 1, 0] < 0.3
+    assert out.depth[0, 1] == pytest.approx([0.0, 0.5], abs=1e-6)
+
+
+@pytest.mark.slow
+def test_the_life_of_one_stop_under_a_random_load_is_finite_and_the_other_s_is_not():
+    """The far stop is 12 standard deviations of the free tip away."""
+    x = rows(4, force_amplitude=0.0, random_force_level=1e-4, initial_gap=5e-3, gap_asymmetry=1.9)
+    settings = Settings(depths=(1.25e-4,), accuracy=0.1)
+    outputs, status = MODEL.batch(x, np.arange(4, dtype=np.uint64), settings)
+    assert (status == Status.OK).all()
+    life, error = outputs["time_to_depth"][:, :, 0], outputs["time_to_depth_error"][:, :, 0]
+    assert np.isposinf(life[:, 0]).all()
+    assert (error[:, 1] < 0.2 * life[:, 1]).all()
