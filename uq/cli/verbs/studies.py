@@ -190,12 +190,13 @@ def rare_event(
 ) -> int:
     """Estimate the probability of a rare event."""
     from uq.cli.progress import say
-    from uq.cli.rare_event import limit, show
+    from uq.cli.rare_event import limit, show, warn
     from uq.exploring import rare_events
     from uq.running.loading import load_study
 
     loaded = load_study(study, model, say)
     threshold, is_below = limit(loaded, output, above, below)
+    warn(loaded, output)
     say_when_interrupted("interrupted; nothing was written")
     ds = rare_events.rare_event(
         loaded, output, threshold, is_below, method, samples, replicates, workers, scheduler
