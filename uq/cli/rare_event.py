@@ -30,7 +30,7 @@ def limit(study: Study, output: str, above: str | None, below: str | None) -> tu
 
 
 def warn(study: Study, output: str) -> None:
-    """Print on standard error if the output bears the name of a life, but is not declared as one."""
+    """Print on standard error if an output has the name of a life, but is not declared as one."""
     name = output.partition("[")[0]
     if name in study.model.outputs:
         for sentence in undeclared_lives(study.model, (name,)):

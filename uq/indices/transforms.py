@@ -136,8 +136,8 @@ def rate(element: Element) -> Transformed:
             " ask for P(T < t) by a threshold in [analysis], or lengthen the horizon"
         )
     elif too_short := int((inverse > LARGEST_VALUE).sum()):
-        rows = counted(too_short, "row has", "rows have")
-        refused = f"{rows} lifetime zero or below {1 / LARGEST_VALUE:g} {element.declared.unit}: no rate"
+        rows, unit = counted(too_short, "row has", "rows have"), element.declared.unit
+        refused = f"{rows} lifetime zero or below {1 / LARGEST_VALUE:g} {unit}: no rate"
     else:
         refused = ""
     return Transformed(inverse, refused)
