@@ -21,6 +21,9 @@ Mask = NDArray[np.bool_]
 
 Kind = Literal["value", "lifetime", "angle", "category"]
 
+LARGEST_VALUE = 1e300
+"""An output beyond it counts as missing: sums and differences of several could overflow."""
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -148,13 +151,17 @@ class Output:
         if self.is_category:
             return values < 0
         if self.is_lifetime:
-            return np.isnan(values) | (values < 0)
-        return ~np.isfinite(values)
+            return ~(((values >= 0) & (values <= LARGEST_VALUE)) | np.isposinf(values))
+        return ~(np.abs(values) <= LARGEST_VALUE)
 
     def absence(self, value: float) -> str:
         """Return why a value is absent, as the predicate of a sentence."""
-        negative = self.is_lifetime and -np.inf < value < 0
-        return f"is {value}" + ": a life cannot be negative" * bool(negative)
+        why = ""
+        if self.is_lifetime and -np.inf < value < 0:
+            why = ": a life cannot be negative"
+        elif np.isfinite(value):
+            why = f": the sum of several numbers beyond {LARGEST_VALUE:g} may overflow"
+        return f"is {value}{why}"
 
     def for_thresholds(self, values: Floats) -> Floats:
         """Return the numbers compared with thresholds: the magnitude of an angle, else `values`."""

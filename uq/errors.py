@@ -1,6 +1,7 @@
 """Errors for the user: plain lines, never a traceback."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
 
 
@@ -23,6 +24,24 @@ class InputError(Exception):
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
+
+
+@contextmanager
+def first_fault_alone() -> Iterator[None]:
+    """Shorten what is wrong with a part of a result to one line: nobody edits it there.
+
+    Raises
+    ------
+    InputError
+        The first of several faults, and the number of others.
+    """
+    try:
+        yield
+    except InputError as error:
+        first, *others = error.lines
+        if not others:
+            raise
+        raise InputError(f"{first}; and {len(others)} more") from None
 
 
 class RunError(Exception):

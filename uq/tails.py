@@ -17,6 +17,7 @@ import numpy as np
 from scipy import special
 
 from uq.contract import Floats
+from uq.intervals import sized
 from uq.quantile_functions import normal
 
 MIN_TAIL = 20
@@ -174,6 +175,7 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
     -------
     shape, scale : float
     """
+    excess, size = sized(excess)
     n = len(excess)
     points = 30 + int(np.sqrt(n))
     quartile = excess[int(n / 4 + 0.5) - 1]
@@ -184,7 +186,7 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
     weights = np.exp(likelihood - likelihood.max())
     mean = float(theta @ weights / weights.sum())
     shape = float(np.log1p(-mean * excess).mean())
-    return shape, -shape / mean
+    return shape, -shape / mean * size
 
 
 def _distance(excess: Floats, shape: float, scale: float) -> float:

@@ -11,13 +11,14 @@ import inspect
 import itertools
 import secrets
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 from numba.core.bytecode import FunctionIdentity
+from numba.core.caching import Cache
 from numba.core.targetconfig import TargetConfig
 
 from models.numerics.cache import folder_of
@@ -52,7 +53,20 @@ def _compare_options_quickly() -> None:
     patched.values = values
 
 
+def _do_without_cache_on_full_disks() -> None:
+    """Prevent a row from failing because its compiled code cannot be kept for the next process."""
+    save: Any = Cache.save_overload
+
+    def saved(self: Any, signature: Any, data: Any) -> None:
+        with suppress(OSError):
+            save(self, signature, data)
+
+    patched: Any = Cache
+    patched.save_overload = saved
+
+
 _name_functions_apart()
+_do_without_cache_on_full_disks()
 _compare_options_quickly()
 
 

@@ -162,3 +162,11 @@ def test_a_negative_life_fails_with_a_sentence_and_a_life_of_zero_is_a_life():
     chunk = broken("life", -0.5)
     assert list(chunk.status) == [Status.OK, Status.NON_FINITE]
     assert chunk.failures["non-finite"] == (1, "'life' is -0.5: a life cannot be negative")
+
+
+@pytest.mark.parametrize("output", ["work", "life"])
+def test_a_number_whose_sums_may_overflow_fails_with_a_sentence(output):
+    assert list(broken(output, 1e300).status) == [Status.OK, Status.OK]
+    chunk = broken(output, 1.1e300)
+    assert list(chunk.status) == [Status.OK, Status.NON_FINITE]
+    assert "1.1e+300: the sum of several numbers beyond 1e+300" in chunk.failures["non-finite"][1]

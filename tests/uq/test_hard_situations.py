@@ -23,6 +23,7 @@ from rare_studies import linear as rare_linear
 from sample_models import SIDES, ok, simple
 
 import uq as package
+from uq.analysis.effects import effects
 from uq.analysis.summary import summarise
 from uq.contract import Output
 from uq.errors import InputError
@@ -112,6 +113,31 @@ def test_an_output_far_from_zero_shows_the_digits_that_tell_rows_apart():
     for end in (likely.low, likely.high):
         shown = float(likely.unit.number(end.value)) * likely.unit.per
         assert shown == pytest.approx(end.value, abs=0.06)
+
+
+@pytest.mark.parametrize("size", [2.0**990, 2.0**-600])
+def test_squares_that_overflow_or_vanish_change_no_number(size):
+    plain = linear(samples=200)
+    ds = of_values(size * plain["y"].values)
+    np.testing.assert_array_equal(package.levels(ds, "z")["share"], package.levels(plain)["share"])
+    change = {"uncertain.x1.upper": 0.9}
+    found, expected = (package.what_if(one, change)["sd"].item() for one in (ds, plain))
+    assert found == size * expected
+    screened = linear(method="morris", samples=20)
+    large = with_output(screened, "z", size * screened["y"].values)
+    found, expected = (
+        sensitivities(one, output=name)["outputs"][name]
+        for one, name in ((large, "z"), (screened, "y"))
+    )
+    for kind in ("mu", "sigma"):
+        assert values(found, kind) == [size * value for value in values(expected, kind)]
+    replicated = linear(method="latin-hypercube", samples=32, replicates=4)
+    inputs = {name: replicated[name].values for name in ("x1", "x2", "x3", "x4")}
+    found, expected = (
+        effects(factor * replicated["y"].values, inputs, replicated["replicate"].values)["x1"].slope
+        for factor in (size, 1.0)
+    )
+    assert (found.low, found.high) == (size * expected.low, size * expected.high)
 
 
 def test_ends_and_censoring_that_are_tied():

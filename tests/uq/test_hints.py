@@ -4,6 +4,7 @@ import pytest
 from own_study import own_study
 
 from uq.errors import RunError
+from uq.exploring import rare_events
 from uq.running import runner
 from uq.running.loading import load_study
 from uq.study.hints import hints, undeclared_lives
@@ -124,6 +125,23 @@ def test_check_and_run_say_it_before_anything_is_computed(uq, write_function, mo
     assert LIFE in first and "replicates = 1:" in second and last == "nothing was computed"
     quiet = uq("run", "own.toml", "--model", file, "--quiet")
     assert quiet.err == "nothing was computed\n"
+
+
+@pytest.mark.slow
+def test_other_verbs_say_what_concerns_them(uq, write_function, monkeypatch, folder):
+    text = PAD.replace("NAME", "life").replace("RETURNED", "'1'")
+    study = own_study("pad", "load", lower=0.5, samples=64).replace("monte-carlo", "sobol")
+    file = write_function(text, study)
+    (folder / "seen.csv").write_text("unit,output,kind,time\nA,life,survived,2\n")
+    (simulated,) = uq("simulate", file).err.splitlines()
+    assert simulated.startswith(f"output 'life' {LIFE}")
+    monkeypatch.setattr(runner, "carry_out", nothing)
+    monkeypatch.setattr(rare_events, "rare_event", nothing)
+    asked = ("own.toml", "--output", "life", "--below", 3, "--model", file)
+    assert uq("rare-event", *asked).err == f"{simulated}\nnothing was computed\n"
+    updated = uq("update", "own.toml", "seen.csv", "-o", "p.nc", "--model", file)
+    first, second, _ = updated.err.splitlines()
+    assert first == simulated and "replicates = 1:" in second
 
 
 def nothing(*arguments):

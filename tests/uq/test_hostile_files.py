@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 
 import netCDF4
@@ -89,6 +90,16 @@ def test_texts_of_a_result_do_nothing_to_the_terminal(uq, result, verbs):
         assert ended.code in (0, 1)  # its checksum no longer holds
         assert not set("\x1b\x07\x9b\u202e") & set(ended.out + ended.err)
         assert "Traceback" not in ended.err
+
+
+@pytest.mark.parametrize("verb", ["summary", "what-if", "twin", "verify"])
+def test_a_broken_study_in_a_result_is_one_line(uq, result, verb):
+    with netCDF4.Dataset(result, "a") as file:
+        file.study = file.study.replace("lower", "lowr").replace("saltelli", "salteli")
+    ended = uq(verb, result, *["--set", "uncertain.x1.upper=2"] * (verb == "what-if"))
+    assert ended.code == 2
+    assert re.search(r"\[design\] method.*'saltelli'.*; and \d+ more$", ended.err.splitlines()[-1])
+    assert "lowr" not in ended.err
 
 
 def test_a_truncated_result_is_refused_in_one_line(uq, result):

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from own_study import own_study
 from wordings import sentence
 
 from uq.running.workers import quiet
@@ -173,6 +174,25 @@ def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
         child.kill()
     assert alive == []
     shutil.rmtree("results")
+
+
+FORKING = """
+import os, signal, time, uq
+@uq.machine(returns={"y": "1"})
+def forking(x1: float = 0.0):
+    if (child := os.fork()) == 0:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(60)
+    return {"y": os.waitpid(child, 0)[1]}
+"""
+
+
+@pytest.mark.slow
+def test_a_process_that_a_row_has_forked_undoes_nothing(write_function):
+    file = write_function(FORKING, own_study("forking", samples=3))
+    command = [sys.executable, "-m", "uq", "run", "own.toml", "--model", file, "--workers", "0"]
+    ended = subprocess.run([*command, "--quiet"], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
 
 
 @pytest.mark.slow

@@ -2,6 +2,8 @@
 
 import json
 import socket
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -10,6 +12,20 @@ import uq.outside.json_requests
 from models.analytic import EXPONENTIAL_WEAR as WEAR
 from uq.outside.serving import server_of
 
+FAILING = """
+import uq
+@uq.machine(returns={{"y": "1"}})
+def failing(x1: float = 0.0):
+    raise {}
+"""
+PRINTING = """
+import uq
+@uq.machine(returns={"y": "1"})
+def printing(x1: float = 0.0):
+    if x1:
+        print("x" * 100_000)
+    return {"y": x1}
+"""
 OK = {"name": "exponential-wear", "input": [[1e-9, 1e-4, 0]]}
 
 
@@ -89,3 +105,25 @@ def test_a_life_that_never_ends_is_null_and_named_beside(sent):
     assert code == 200
     assert answer == {"output": [[None]], "never": [[0]]}
     assert sent(post(OK, host="localhost:80", more="Origin: http://localhost:80\r\n"))[0] == 200
+
+
+@pytest.mark.parametrize("raised", ["OSError(28, 'No space left on device')", "SystemExit(3)"])
+def test_a_model_whose_nominal_row_fails_is_not_served(uq, write_function, raised):
+    file = write_function(FAILING.format(raised))
+    ended = uq("serve", file, "--port", 0)
+    assert (ended.code, ended.out, ended.err.count("\n")) == (2, "", 1)
+    assert ended.err.startswith("model 'failing': its nominal row: ")
+
+
+@pytest.mark.slow
+def test_a_row_prints_after_the_reader_of_the_address_has_left(folder, write_function):
+    file = write_function(PRINTING)
+    served = [sys.executable, "-m", "uq", "serve", file, "--port", "0"]
+    with subprocess.Popen(served, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        host, port = process.stdout.readline().decode().split("/")[2].split(":")
+        process.stdout.close()
+        with socket.create_connection((host, int(port)), timeout=20) as connection:
+            connection.sendall(post({"name": "printing", "input": [[0.5]]}))
+            reply = b"".join(iter(lambda: connection.recv(65536), b""))
+        process.terminate()
+    assert b'{"output": [[0.5]]' in reply

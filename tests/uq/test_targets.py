@@ -112,6 +112,12 @@ def test_lives_of_zero_have_no_logarithm_and_no_rate():
     assert "are not positive" in zero["refused"]
 
 
+def test_lives_whose_rate_overflows_are_refused():
+    ds = lives(lambda y: 1e-308 * (1 + y))
+    rate = indices(ds, output="rate(life)")["outputs"]["rate(life)"]
+    assert "lifetime zero or below 1e-300 s: no rate" in rate["refused"]
+
+
 def test_events_are_named_with_spaces_and_units_and_others_are_refused():
     ds = asking(kinds("saltelli", replicates=4), thresholds={"work": 0.5, "life": 1.0})
     element = "work[side=left]"

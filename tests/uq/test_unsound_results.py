@@ -1,5 +1,7 @@
 """What no run leaves behind is refused when a result is opened, not computed with."""
 
+import json
+
 import netCDF4
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from learnt_studies import measured, wear
 
 from uq.errors import InputError
 from uq.exploring.updating import update
-from uq.learning.result import as_unit
+from uq.learning.result import as_unit, inspections_of
 from uq.rows.results import open_result
 from uq.rows.soundness import unsound
 from uq.running import runner
@@ -127,6 +129,13 @@ def test_what_no_inspections_leave_behind_is_unsound(posterior, kind):
     change, words = WEIGHTS[kind]
     assert unsound(posterior) == ""
     assert words in unsound(change(posterior))
+
+
+def test_wrong_inspections_in_a_result_are_one_line(posterior):
+    entries = json.dumps([{"unit": "A", "hours": 3.0}, {"unit": 5}])
+    with pytest.raises(InputError, match=r"inspection 1: .*; and \d+ more") as refused:
+        inspections_of(posterior.assign_attrs(inspections=entries))
+    assert len(refused.value.lines) == 1
 
 
 def test_posteriors_and_their_units_are_sound(posterior, tmp_path):

@@ -11,6 +11,7 @@ from uq.contract import Floats
 from uq.designs.levels import CHANCE, LEVELS, OWN, SHARED
 from uq.designs.registry import several
 from uq.estimate import Estimate
+from uq.intervals import sized
 from uq.nested_variance import nested_shares
 from uq.rows.nesting import samples_have
 
@@ -107,11 +108,12 @@ def shares_of(
     replicate, weights = (None if one is None else one[:, 0, 0] for one in of_each)
     errors = None if errors is None else _reduced(errors, names)
     empty = int(np.isnan(table).all(axis=(1, 2)).sum())
-    table = _reduced(table, names)
+    table, size = sized(_reduced(table, names))  # neither squares nor their sums overflow
+    errors = None if errors is None else errors / size
     added = np.zeros((3, *table.shape))
     for place, levels in enumerate(places):
         for level in known.keys() & set(levels):
-            added[place] += _reduced(known[level], names)
+            added[place] += _reduced(known[level], names) / size / size
     found = nested_shares(table, errors, replicate, added, weights)
     shares = {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
     if found.variance > 0:
@@ -119,7 +121,7 @@ def shares_of(
         for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
             shares |= _of_levels(levels, share, design)
     left_out = found.left_out if SHARED in names else empty
-    return LevelShares(shares | {SOLVER: found.error}, found.variance, left_out)
+    return LevelShares(shares | {SOLVER: found.error}, found.variance * size * size, left_out)
 
 
 def _reduced(table: Any, names: Collection[str]) -> Any:

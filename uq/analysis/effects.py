@@ -14,6 +14,7 @@ from uq.intervals import (
     by_replicate,
     interval_of_mean,
     is_constant,
+    sized,
 )
 from uq.methods.slices import has_many_equal
 
@@ -103,7 +104,7 @@ def effects(
         if len(own) and np.isfinite(own).all() and not is_constant(own):
             logarithmic[name] = _suits_logarithm(own)
             columns[name] = np.log(own) if logarithmic[name] else own
-    y = values[kept]
+    y, unit = sized(values[kept])  # squares neither overflow nor vanish
     if not columns or len(y) < ROWS_PER_INPUT * (len(columns) + 1) or is_constant(y):
         return {}
     sizes = {name: float(column.std()) for name, column in columns.items()}
@@ -124,7 +125,7 @@ def effects(
         slope = float(slopes[i + 1])
         low, high = _interval(slope, slope + influence[:, i + 1], part)
         size = sizes[name]
-        of_input = Estimate(slope / size, float(low) / size, float(high) / size)
+        of_input = Estimate(*(unit * float(number) / size for number in (slope, low, high)))
         turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
         found[name] = Effect(
             of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])

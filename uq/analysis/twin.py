@@ -16,7 +16,7 @@ from uq.analysis.control_variate import FEWEST, controlled_mean, controlled_shar
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics.thresholds import SIDES, event, share_of
 from uq.contract import Floats
-from uq.errors import InputError
+from uq.errors import InputError, first_fault_alone
 from uq.estimate import Estimate
 from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
@@ -122,7 +122,8 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
 def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
     """Return the estimates of `two_fidelities` as records."""
     refuse_weights(ds, "estimates with a twin")
-    study = study_from_text(ds.attrs["study"], "study of this result", model)
+    with first_fault_alone():
+        study = study_from_text(ds.attrs["study"], "study of this result", model)
     twin = study.analysis.twin
     if not twin:
         cheap = ", ".join(study.model.cheap) or "none"

@@ -7,6 +7,7 @@ import gc
 import os
 import signal
 import sys
+from functools import partial
 from types import FrameType
 from typing import Any, NoReturn
 
@@ -42,7 +43,7 @@ it: libraries would make a folder ``~`` in the current one for a ``~`` that no s
 def main() -> NoReturn:
     """Run the command line and end the process."""
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _stop)
+        signal.signal(number, partial(_stop, os.getpid()))
     gc.set_threshold(_ALLOCATIONS)
     if sys.argv[1:2] and sys.argv[1] in _READERS:
         sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # "not installed"
@@ -121,9 +122,15 @@ def _run(arguments: list[str]) -> int:
         raise InputError(f"uq: {line} '{command} --help'") from None
 
 
-def _stop(number: int, frame: FrameType | None) -> NoReturn:
-    """End at once, leaving nothing behind; no exception that could be caught on the way."""
+def _stop(process: int, number: int, frame: FrameType | None) -> NoReturn:
+    """End at once, leaving nothing behind; no exception that could be caught on the way.
+
+    A process that a model has forked from this one ends without a word: what is pending here is not
+    its own to undo.
+    """
     signal.signal(number, signal.SIG_IGN)
+    if os.getpid() != process:
+        os._exit(128 + number)
     try:
         undo_all()
         os.write(2, f"{_when_interrupted}\n".encode())

@@ -8,9 +8,12 @@ import numpy as np
 import xarray as xr
 
 from uq.cli.printing import grid, heading, note, number, print_json
+from uq.cli.progress import say
 from uq.contract import Model
 from uq.errors import InputError
+from uq.literals import plain_line
 from uq.study.definition import Study
+from uq.study.hints import undeclared_lives
 from uq.wording import quantity
 from uq.wording import threshold as threshold_in_words
 from uq.written import read_threshold
@@ -24,6 +27,14 @@ def limit(study: Study, output: str, above: str | None, below: str | None) -> tu
     units = study.model.outputs[name].unit if name in study.model.outputs else "1"
     option, text = ("--above", above) if above is not None else ("--below", str(below))
     return read_threshold(option, text, name, units), above is None
+
+
+def warn(study: Study, output: str) -> None:
+    """Print on standard error if an output has the name of a life, but is not declared as one."""
+    name = output.partition("[")[0]
+    if name in study.model.outputs:
+        for sentence in undeclared_lives(study.model, (name,)):
+            say(plain_line(sentence))
 
 
 def show(ds: xr.Dataset, json: bool, study: Study, threshold: float) -> int:

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uq.cli.printing import duration, grid, heading, number, print_json
-from uq.cli.progress import say_compiling
+from uq.cli.progress import say, say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
 from uq.greek import readable
-from uq.literals import read_number, read_toml
+from uq.literals import plain_line, read_number, read_toml
 from uq.places import file_behind
 from uq.rows.one_row import Row
 from uq.running.alone import run_alone
 from uq.running.loading import load_model
+from uq.study.hints import undeclared_lives
 from uq.units import typical, unit_of
 from uq.wording import in_brackets
 
@@ -41,6 +42,8 @@ def simulate(
         row = run_alone(reference, given, chosen, compiling=say_compiling)
         if output or plot:
             _keep(row, output, plot)
+    for sentence in undeclared_lives(row.model):
+        say(plain_line(sentence))
     print_json(as_json(row)) if json else _show(row)
     return 1 if row.failed else 0
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uq.contract import LARGEST_VALUE
 from uq.order_statistics import mid_ranks
 from uq.rows.elements import Element, Floats
 from uq.tails import heavier_tail
@@ -127,15 +128,16 @@ def rank(element: Element) -> Transformed:
 
 def rate(element: Element) -> Transformed:
     """Return the inverse of a life, 0 if it never ends; refused if a row has none."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         inverse = 1 / element.values
     if censored := int(element.censored.sum()):
         refused = (
             f"{counted(censored, 'lifetime is', 'lifetimes are')} censored, and the rate not known;"
             " ask for P(T < t) by a threshold in [analysis], or lengthen the horizon"
         )
-    elif zero := int(np.isinf(inverse).sum()):
-        refused = f"{counted(zero, 'row has', 'rows have')} lifetime zero: no rate"
+    elif too_short := int((inverse > LARGEST_VALUE).sum()):
+        rows, unit = counted(too_short, "row has", "rows have"), element.declared.unit
+        refused = f"{rows} lifetime zero or below {1 / LARGEST_VALUE:g} {unit}: no rate"
     else:
         refused = ""
     return Transformed(inverse, refused)

@@ -10,7 +10,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from uq.contract import Floats
-from uq.errors import InputError, choices, nearest
+from uq.errors import InputError, choices, first_fault_alone, nearest
 from uq.inputs.conditioning import cdf_within
 from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated import free_scales
@@ -243,7 +243,8 @@ def _law_of_unit(ds: xr.Dataset, rows: xr.Dataset, place: int) -> dict[str, Any]
 
 def inspections_of(ds: xr.Dataset) -> list[Inspection]:
     """Return the inspections that a posterior rests on."""
-    return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
+    with first_fault_alone():
+        return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
 
 
 def as_table(one: Inspection) -> dict[str, object]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from uq.designs.trajectories import STEP
-from uq.intervals import ROUNDING, is_constant
+from uq.intervals import ROUNDING, is_constant, sized
 from uq.methods.groups import Values, pooled_with_intervals
 from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.method import NO_EFFECT
@@ -48,7 +48,7 @@ def morris_indices(sample: Sample) -> Indices:
     F. Campolongo, J. Cariboni, A. Saltelli, "An effective screening design for sensitivity analysis
     of large models", Environ. Model. Softw. 22, 1509-1518 (2007).
     """
-    y, whole = sample.grouped, sample.whole
+    (y, unit), whole = sized(sample.grouped), sample.whole  # squares neither overflow nor vanish
     if is_constant(y[whole]):
         raise RefusedError(NO_EFFECT)
     # A step within one of several discrete values changes no input, and has no effect.
@@ -67,7 +67,8 @@ def morris_indices(sample: Sample) -> Indices:
             MU_STAR: np.abs(effects).mean(axis=0),
         }
         return {
-            kind: dict(zip(sample.inputs, own.tolist(), strict=True)) for kind, own in found.items()
+            kind: dict(zip(sample.inputs, (unit * own).tolist(), strict=True))
+            for kind, own in found.items()
         }
 
     return Indices(*pooled_with_intervals(measures, effects[whole], replicates, "effects", lacking))

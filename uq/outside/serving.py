@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Floats, Model, Status
+from uq.errors import InputError, described
 from uq.outside.json_requests import RequestError, finite, invalid, json_server
 from uq.outside.um_bridge import DESCRIBED, NEVER, VERSION
 from uq.wording import counted
@@ -28,12 +29,16 @@ def server_of(model: Model, host: str = "127.0.0.1", port: int = 4242) -> Thread
 
     Raises
     ------
-    OSError
-        When it cannot be reached there.
+    InputError
+        When its nominal row fails, or nothing can listen there.
     """
     place: Any
-    family, _, _, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-    return json_server(place, family, _Offered(model).answer)
+    offered = _Offered(model)
+    try:
+        family, _, _, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        return json_server(place, family, offered.answer)
+    except OSError as error:
+        raise InputError(f"uq: {host}:{port}: {error.strerror or error}") from None
 
 
 def address_of(host: str, port: int, name: str) -> str:
@@ -48,7 +53,12 @@ class _Offered:
         self._settings = model.settings()
         self.model = model.given(self._settings)
         self._one_at_a_time = Lock()
-        row = self._row(np.array(list(model.nominal.values()), float), 0)
+        try:
+            row = self._row(np.array(list(model.nominal.values()), float), 0)
+        except RequestError as error:
+            raise InputError(f"model '{model.name}': its nominal row: {error}") from None
+        except Exception as error:
+            raise InputError(f"model '{model.name}': its nominal row: {described(error)}") from None
         self._sizes = {name: values.size for name, values in row.items()}
 
     def _row(self, x: Floats, seed: int) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from uq.intervals import (
     Replicates,
     is_constant,
     scatter_interval,
+    sized,
     upper_probability,
     wilson_interval,
 )
@@ -189,20 +190,22 @@ def moments_of_rows(
     ----------
     .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 9.2.
     """
+    values, unit = sized(values)  # their squares neither overflow nor vanish
     mean = float(np.average(values, weights=weights))
     if len(values) == 1:
-        return Estimate(mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
-    squares = (values - mean) ** 2 + within
+        return Estimate(unit * mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
+    squares = (values - mean) ** 2 + within / unit / unit
     variance = float(np.average(squares, weights=weights))
     of_rows = isinstance(part, EvenReplicates) and not is_constant(weights)
     influence, found = _influence(values, weights), pulls(values, weights, part)
     ends = _beyond_outliers(mean, found, mean + influence if of_rows else found)
     ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
-    of_mean = Estimate(mean, *ends)
+    of_mean = Estimate(*(unit * number for number in (mean, *ends)))
     size = max(variance, 1e-300)
     relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
     away = np.asarray(_beyond_outliers(1.0, relative, 1.0 + rows if of_rows else relative)) - 1.0
-    return of_mean, Estimate(variance**0.5, *(variance**0.5 * np.exp(away / 2)).tolist())
+    sd = unit * variance**0.5
+    return of_mean, Estimate(sd, *(sd * np.exp(away / 2)).tolist())
 
 
 def weighted_moments(

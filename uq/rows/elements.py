@@ -1,7 +1,7 @@
 """The elements of a result's outputs, and what the result says of its rows."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache, partial
+from functools import partial
 from math import inf, prod
 from typing import Any
 
@@ -33,7 +33,7 @@ from uq.rows.weights import (
     row_weights,
 )
 from uq.study.file import AnalysisTable, StudyFile
-from uq.study.reading import read_study_text
+from uq.study.reading import study_of_result
 
 
 def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
@@ -47,12 +47,7 @@ def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
 
 def study_file_of(ds: xr.Dataset) -> StudyFile:
     """Return the study in a result."""
-    return _read(ds.attrs["study"])
-
-
-@lru_cache(maxsize=2)
-def _read(study: str) -> StudyFile:
-    return read_study_text(study, "study of this result")
+    return study_of_result(ds.attrs["study"])
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:

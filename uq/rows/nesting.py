@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from uq.contract import Floats
 from uq.designs.levels import CHANCE, LEVELS
 from uq.study.file import Tied
-from uq.study.reading import read_study_text
+from uq.study.reading import study_of_result
 from uq.wording import counted
 
 
@@ -150,7 +150,7 @@ def levels_that_vary(ds: xr.Dataset, without: Collection[str] = ()) -> Sequence[
 
 def _placed(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
     """Return of each input the one that it equals (or itself), and the level."""
-    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
+    entries = study_of_result(ds.attrs["study"]).uncertain
     leaders = {name: one.equals if isinstance(one, Tied) else name for name, one in entries.items()}
     laws = {name: one for name, one in entries.items() if not isinstance(one, Tied)}
     return {name: (leader, laws[leader].level) for name, leader in leaders.items()}

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from uq.contract import Status, censored_name
-from uq.errors import InputError
+from uq.errors import InputError, first_fault_alone
 from uq.inputs.values import fault_lines, read_settings
 from uq.rows.one_row import Row, computed
 from uq.rows.sampling import row_block
@@ -80,7 +80,8 @@ def settings_by_row(ds: xr.Dataset, study: Study, places: np.ndarray) -> dict[in
     for changes, rows in by_settings(ds):
         own = places[rows[places]].tolist()
         if own:
-            found |= dict.fromkeys(own, changed_settings(study, changes))
+            with first_fault_alone():
+                found |= dict.fromkeys(own, changed_settings(study, changes))
     return found
 
 

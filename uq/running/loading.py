@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uq.contract import Model
-from uq.errors import InputError
+from uq.errors import InputError, first_fault_alone
 from uq.outside.descendants import end_with_descendants
 from uq.outside.returned import Returned, as_plain, from_plain, joined
 from uq.outside.row_by_row import RowByRow
@@ -85,10 +85,15 @@ def load_study(
 
 
 def study_of_text(text: str, source: str, model: str | None) -> "Study":
-    """Check the text of a study of a result; see `load_study`."""
+    """Check the text of a study of a result; see `load_study`. Its faults are one line."""
     from uq.study.definition import study_from_text
 
-    return _known(study_from_text(text, source, model and located(model)))
+    reference = model and located(model)
+    if reference:
+        model_at(reference)  # the faults of a user's own model are listed in full
+    with first_fault_alone():
+        study = study_from_text(text, source, reference)
+    return _known(study)
 
 
 def load_model(reference: str) -> Model:

@@ -1,11 +1,12 @@
 """From the text of a study file to its tables: syntax and shape, one line per fault."""
 
+from functools import lru_cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from uq.designs.registry import IMPORTED
-from uq.errors import InputError, nearest, one_line
+from uq.errors import InputError, first_fault_alone, nearest, one_line
 from uq.inputs.faults import MISSING, Fault, fault_of, unknown
 from uq.inputs.law import Law
 from uq.inputs.registry import LAWS
@@ -39,6 +40,13 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
     if faults := shape_faults(data):
         raise InputError(*(f"{source}: {fault.line}" for fault in faults))
     return StudyFile.model_validate(data)
+
+
+@lru_cache(maxsize=2)
+@first_fault_alone()
+def study_of_result(text: str) -> StudyFile:
+    """Return the study that a result carries; raise `InputError` with one line."""
+    return read_study_text(text, "study of this result")
 
 
 def parse(text: str, source: str) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numba
 import numpy as np
+from numba.core import caching
 from numba.core.compiler import Flags
 from numba.core.registry import CPUDispatcher
 
@@ -103,3 +104,15 @@ def test_no_source_asks_for_more():
             for word in node.keywords
         }
         assert not asked & {"fastmath", "parallel"}, path
+
+
+def test_a_full_disk_does_not_fail_a_kernel(monkeypatch):
+    def full(*arguments):
+        raise OSError(28, "No space left on device")
+
+    @kernel
+    def doubled(x):
+        return 2.0 * x
+
+    monkeypatch.setattr(caching.IndexDataCacheFile, "save", full)
+    assert doubled(1.5) == 3.0

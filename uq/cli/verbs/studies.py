@@ -1,5 +1,7 @@
 """The verbs that take a model or a study file."""
 
+import sys
+from contextlib import redirect_stdout
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -98,14 +100,12 @@ def serve(
     from uq.running.loading import load_model
 
     found = load_model(model)
-    try:
-        server = server_of(found, host, port)
-    except OSError as error:
-        raise InputError(f"uq: {host}:{port}: {error.strerror or error}") from None
+    server = server_of(found, host, port)
     say_when_interrupted("stopped")
     with server:
         print(address_of(host, server.server_address[1], found.name), flush=True)
-        server.serve_forever()
+        with redirect_stdout(sys.stderr):  # who reads the address may leave before a row prints
+            server.serve_forever()
 
 
 def schema(
@@ -190,12 +190,13 @@ def rare_event(
 ) -> int:
     """Estimate the probability of a rare event."""
     from uq.cli.progress import say
-    from uq.cli.rare_event import limit, show
+    from uq.cli.rare_event import limit, show, warn
     from uq.exploring import rare_events
     from uq.running.loading import load_study
 
     loaded = load_study(study, model, say)
     threshold, is_below = limit(loaded, output, above, below)
+    warn(loaded, output)
     say_when_interrupted("interrupted; nothing was written")
     ds = rare_events.rare_event(
         loaded, output, threshold, is_below, method, samples, replicates, workers, scheduler
