@@ -61,7 +61,7 @@ def hall_interval(estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
     >>> import numpy as np
     >>> values = np.random.default_rng(1).lognormal(size=200)
     >>> low, high = hall_interval(values)
-    >>> high - values.mean() > 1.2 * (values.mean() - low)
+    >>> bool(high - values.mean() > 1.2 * (values.mean() - low))
     True
     """
     estimates, size = sized(estimates)
