@@ -110,7 +110,8 @@ def mean_interval(
     -------
     low, high : float
         Student's t [1]_ of the rows, or of the means of the replicates, with the error of jumps
-        that these do not show (`uq.jumps`).
+        that these do not show (`uq.jumps`). Of independent rows or samples it allows for two more
+        outliers (`beyond_outliers`).
 
     References
     ----------
@@ -118,7 +119,44 @@ def mean_interval(
     """
     if len(values) < 2 or is_constant(values):
         return UNKNOWN
-    return interval_of_mean(float(values.mean()), values, replicate, confidence)
+    mean = float(values.mean())
+    ends = interval_of_mean(mean, values, replicate, confidence)
+    if not parts_are_independent(replicate):
+        return ends
+    parts = values if replicate is None else by_replicate(values, replicate)
+    return beyond_outliers(mean, ends, parts)
+
+
+def parts_are_independent(replicate: Replicates) -> bool:
+    """Whether rows, or samples of several rows, are independent, not parts of an even design."""
+    return replicate is None or isinstance(replicate, Clusters) and replicate.are_samples
+
+
+def beyond_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
+    """Return an interval that allows for more estimates as far out as the farthest.
+
+    Parameters
+    ----------
+    value : float
+    ends : tuple of float
+        Student's interval of the estimates about the value.
+    estimates : ndarray, shape (n,)
+    more : int, optional
+        How many more.
+
+    Returns
+    -------
+    low, high : float
+        The end on the side of the farther outlier is moved: of skewed laws, samples without
+        outliers scatter too little, and their mean lies too far from that side.
+    """
+    move = outlier_shift(value, estimates, more)
+    return ends[0] + min(move, 0.0), ends[1] + max(move, 0.0)
+
+
+def outlier_shift(value: float, estimates: Floats, more: int = 2) -> float:
+    """Return by how much more estimates as far out as the farthest on one side move a mean."""
+    return float(more * ((estimates.max() - value) - (value - estimates.min())) / len(estimates))
 
 
 def interval_of_mean(

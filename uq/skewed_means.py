@@ -1,32 +1,55 @@
 """The interval of a mean whose coverage skewness does not lower."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from uq.clusters import Clusters
 from uq.contract import Floats
-from uq.intervals import CONFIDENCE, Ends, Replicates, by_replicate, sized, upper_probability
+from uq.intervals import CONFIDENCE, Ends, by_replicate, sized, upper_probability
 from uq.jumps import beyond_jumps
 from uq.quantile_functions import student
 
 
 def corrected_mean_interval(
-    values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+    values: Floats, replicate: NDArray[np.integer], confidence: float = CONFIDENCE
 ) -> Ends:
     """Return the interval of the mean, corrected for the skewness of its error.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite, not all equal.
-    replicate : ndarray of int, shape (n,), optional
+        Finite.
+    replicate : ndarray of int, shape (n,)
+        Whose means are not all equal.
     confidence : float, optional
 
     Returns
     -------
     low, high : float
-        By the cubic transformation of Student's t whose skewness vanishes [1]_, with the skewness
-        of the rows, or of the means of the replicates; without skewness it is Student's interval.
-        Replicates allow for jumps that they do not show (`uq.jumps`).
+        `hall_interval` of the means of the replicates, which allows for jumps that they do not
+        show (`uq.jumps`), and for one more row as far out as the farthest.
+    """
+    means = by_replicate(values, replicate)
+    ends = hall_interval(means, confidence)
+    low, high = beyond_jumps(float(means.mean()), ends, values, replicate, confidence)
+    away = values - values.mean()
+    moved = float(away[np.abs(away).argmax()]) / len(values)
+    return low + min(moved, 0.0), high + max(moved, 0.0)
+
+
+def hall_interval(estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
+    """Return the interval of the mean of independent estimates, corrected for their skewness.
+
+    Parameters
+    ----------
+    estimates : ndarray, shape (n,)
+        Finite, not all equal.
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        By the cubic transformation of Student's t whose skewness vanishes [1]_; without skewness
+        it is Student's interval.
 
     References
     ----------
@@ -37,23 +60,18 @@ def corrected_mean_interval(
     --------
     >>> import numpy as np
     >>> values = np.random.default_rng(1).lognormal(size=200)
-    >>> low, high = corrected_mean_interval(values)
-    >>> high - values.mean() > 1.2 * (values.mean() - low)
+    >>> low, high = hall_interval(values)
+    >>> bool(high - values.mean() > 1.2 * (values.mean() - low))
     True
     """
-    estimates, size = sized(values if replicate is None else by_replicate(values, replicate))
+    estimates, size = sized(estimates)
     n, mean = len(estimates), float(estimates.mean())
     away = estimates - mean
     skewness = float((away**3).mean() / (away**2).mean() ** 1.5)
     error = float(estimates.std(ddof=1)) / n**0.5
     t = student(upper_probability(confidence), n - 1)
     low, high = (mean - error * _untransformed(end, skewness / n**0.5) for end in (t, -t))
-    low, high = beyond_jumps(size * mean, (size * low, size * high), values, replicate, confidence)
-    if replicate is None or isinstance(replicate, Clusters) and replicate.are_samples:
-        return low, high
-    away = values - values.mean()
-    moved = float(away[np.abs(away).argmax()]) / len(values)
-    return low + min(moved, 0.0), high + max(moved, 0.0)
+    return size * low, size * high
 
 
 def _untransformed(x: float, skewness: float) -> float:

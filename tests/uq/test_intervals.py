@@ -5,17 +5,29 @@ from scipy import stats
 from uq import intervals
 from uq.intervals import mean_interval, share_interval
 from uq.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
-from uq.skewed_means import corrected_mean_interval
+from uq.skewed_means import corrected_mean_interval, hall_interval
 
 RNG = np.random.default_rng(3)
 VALUES = RNG.lognormal(size=200)
 REPLICATE = np.arange(200) % 8
 
 
-def test_mean_of_independent_rows_is_students_interval():
+def test_mean_of_independent_rows_is_students_interval_beyond_two_more_outliers():
     scale = VALUES.std(ddof=1) / np.sqrt(200)
-    expected = stats.t.interval(0.95, 199, loc=VALUES.mean(), scale=scale)
-    assert mean_interval(VALUES) == pytest.approx(expected)
+    low, high = stats.t.interval(0.95, 199, loc=VALUES.mean(), scale=scale)
+    more = 2 * (VALUES.max() + VALUES.min() - 2 * VALUES.mean()) / 200
+    assert more > 0
+    assert mean_interval(VALUES) == pytest.approx((low, high + more))
+    assert mean_interval(-VALUES) == pytest.approx((-high - more, -low))
+
+
+@pytest.mark.parametrize("law", [stats.lognorm(1.0), stats.norm(), stats.gamma(0.2), stats.t(5)])
+def test_the_mean_of_a_skewed_law_is_covered(law):
+    """Student's interval of 100 lognormal rows covers 91 %, of 100 rows of gamma(0.2) 92 %."""
+    rng = np.random.default_rng(5)
+    ends = np.array([mean_interval(law.rvs(100, random_state=rng)) for _ in range(600)])
+    held = ((ends[:, 0] <= law.mean()) & (law.mean() <= ends[:, 1])).mean()
+    assert 0.94 < held < 0.985
 
 
 def test_mean_of_replicates_is_students_interval_of_their_means():
@@ -28,22 +40,22 @@ def test_mean_of_replicates_is_students_interval_of_their_means():
 def test_a_corrected_mean_leaves_no_skewness_of_first_order(values):
     n, error = len(values), stats.sem(values)
     s = stats.skew(values) / np.sqrt(n)
-    for sign, end in zip((-1, 1), corrected_mean_interval(values), strict=True):
+    for sign, end in zip((-1, 1), hall_interval(values), strict=True):
         t = (values.mean() - end) / error  # transformed, it is the end of Student's interval
         transformed = t + s * t**2 / 3 + s**2 * t**3 / 27 + s / 6
         assert transformed == pytest.approx(-sign * stats.t.isf(0.025, n - 1))
-    opposite = corrected_mean_interval(-values)
-    assert opposite == pytest.approx([-end for end in reversed(corrected_mean_interval(values))])
+    opposite = hall_interval(-values)
+    assert opposite == pytest.approx([-end for end in reversed(hall_interval(values))])
 
 
 def test_a_corrected_mean_without_skewness_is_students_interval():
     even = np.r_[VALUES, -VALUES]
-    assert corrected_mean_interval(even) == pytest.approx(mean_interval(even))
+    assert hall_interval(even) == pytest.approx(mean_interval(even))
 
 
 def test_a_corrected_mean_of_replicates_allows_for_one_more_row_as_far_out():
     means = np.array([VALUES[REPLICATE == r].mean() for r in range(8)])
-    low, high = corrected_mean_interval(means)
+    low, high = hall_interval(means)
     more = (VALUES.max() - VALUES.mean()) / 200
     assert corrected_mean_interval(VALUES, REPLICATE) == pytest.approx((low, high + more))
     assert corrected_mean_interval(-VALUES, REPLICATE) == pytest.approx((-high - more, -low))

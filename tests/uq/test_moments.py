@@ -39,16 +39,12 @@ def test_a_mean_without_variance_has_no_interval_and_no_sd():
     assert "logarithm" in entry["reasons"]["sd"]
 
 
-def test_a_mean_whose_error_rests_on_few_rows_comes_with_a_caution():
-    """A tenth of 100 rows is exponential, the others are 0: the interval misses in an eighth."""
+def test_a_mean_of_which_few_rows_decide_is_covered():
+    """A tenth of 100 rows is exponential, the others are 0: Student's interval covers 87 %."""
     rng = np.random.default_rng(1)
-    rows = [np.where(rng.random(100) < 0.9, 0.0, rng.exponential(size=100)) for _ in range(200)]
-    means = [moments(values) for values in rows]
-    missed = [one for one in means if not one.mean.low <= 0.1 <= one.mean.high]
-    assert len(missed) > 15 and sum(one.caution is None for one in missed) <= len(missed) / 3
-    assert "rests on about" in next(filter(None, (one.caution for one in missed)))
-    normal = [moments(rng.normal(size=30)).caution for _ in range(100)]
-    assert sum(caution is not None for caution in normal) <= 3
+    rows = [np.where(rng.random(100) < 0.9, 0.0, rng.exponential(size=100)) for _ in range(400)]
+    means = [moments(values).mean for values in rows]
+    assert sum(one.low <= 0.1 <= one.high for one in means) >= 0.92 * 400
 
 
 def test_a_mean_whose_variance_is_open_comes_with_a_caution(capsys):
@@ -158,18 +154,20 @@ def test_the_sd_of_an_even_design_has_no_bias():
     assert standard_deviation(even[0]) == even[0].std(ddof=1)
 
 
-@pytest.mark.parametrize(
-    ("law", "rows"), [(stats.lognorm(1.0), 200), (stats.invgamma(3), 1000), (stats.expon(), 30)]
-)
-def test_an_interval_of_sd_is_refused_where_it_would_not_hold(law, rows):
-    rng = np.random.default_rng(0)
-    missed = 0
-    for _ in range(100):
-        found = moments(law.rvs(rows, random_state=rng))
-        given = not np.isnan(found.sd.low)
-        assert given != bool(found.sd.reason)
-        missed += given and not found.sd.low < law.std() < found.sd.high
-    assert missed <= 10
+@pytest.mark.parametrize(("law", "rows"), [(stats.lognorm(1.0), 200), (stats.pareto(6), 200)])
+def test_an_interval_of_sd_does_not_depend_on_whether_a_sample_looks_light(law, rows):
+    """Of 200 lognormal rows, the few samples that look light hold the truth in a fifth."""
+    rng = np.random.default_rng(3)
+    found = [moments(law.rvs(rows, random_state=rng)).sd for _ in range(200)]
+    given = [one for one in found if not one.reason]
+    assert len(given) >= 0.98 * 200
+    assert sum(one.low < law.std() < one.high for one in given) >= 0.91 * len(given)
+
+
+def test_an_sd_whose_squares_are_equal_has_an_interval_of_the_error_of_its_mean():
+    values = np.repeat([0.0, 1.0], 100)
+    low, high = sd_interval(values)
+    assert 0.5 * (1 - 0.02) < low < 0.5 < high < 0.5 * (1 + 0.02)
 
 
 def test_one_row_says_why_it_has_no_scatter_and_equal_rows_need_not():
@@ -189,7 +187,7 @@ def test_the_size_of_values_changes_no_digit_of_their_scatter(size):
 
 
 def test_too_few_independent_rows_give_no_interval_of_the_standard_deviation():
-    """Of 50 rows of an exponential law, those with a light tail would cover 85 %."""
+    """Of 50 lognormal rows with sigma 1, the interval would cover 87 %."""
     values = np.random.default_rng(1).normal(size=200)
     assert moments(values).sd.has_interval
     few = moments(values[:199]).sd

@@ -183,6 +183,8 @@ class Pair:
             known = [_newcombe(sample) for sample in samples]
         elif estimator.averages:
             known = [self._averaged(i, sample) for i, sample in enumerate(samples)]
+        elif self._shared is not None and not estimator.is_share:
+            known = [_students(estimator, *pair) for pair in zip(samples, known, strict=True)]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
         if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
@@ -224,6 +226,8 @@ class Pair:
         if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
             found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
             return _factor(known[1].value / known[0].value, found[1], found[0])
+        if self._shared is not None:
+            known = [_students(SD, *pair) for pair in zip(samples, known, strict=True)]
         return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
 
     @property
@@ -290,6 +294,20 @@ def _pull(estimator: Estimator, sample: Sample) -> Sample:
     if sample.kept.any():
         pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
     return Sample(sample.kept, pull)
+
+
+def _students(estimator: Estimator, sample: Sample, known: Estimate) -> Estimate:
+    """Return a moment with Student's interval, from which the difference of paired rows is built.
+
+    The interval of a single moment allows for outliers that its rows do not show; most of them
+    cancel in the difference.
+    """
+    if not known.has_interval:
+        return known
+    low, high = intervals.scatter_interval(0.0, estimator.influence(sample.numbers[sample.kept]))
+    if estimator.is_scale and known.value > 0:  # by the logarithm, so that both ends are positive
+        low, high = known.value * np.expm1(np.array([low, high]) / known.value)
+    return Estimate(known.value, known.value + float(low), known.value + float(high))
 
 
 def _newcombe(sample: Sample) -> Estimate:

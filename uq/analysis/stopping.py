@@ -217,9 +217,9 @@ def statistic(
 
 
 def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
-    """Estimate a mean: of few skewed rows the scatter is least where the mean is off most."""
+    """Estimate a mean: a few replicates show little of the skewness of their means."""
     found = moments(values, replicate, level).mean
-    if not found.has_interval:
+    if replicate is None or intervals.parts_are_independent(replicate) or not found.has_interval:
         return found
     low, high = corrected_mean_interval(values, replicate, level)
     return replace(found, low=low, high=high)

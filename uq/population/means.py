@@ -18,7 +18,9 @@ from uq.intervals import (
     ONE_ROW,
     ROUNDING,
     Replicates,
+    beyond_outliers,
     is_constant,
+    outlier_shift,
     scatter_interval,
     sized,
     upper_probability,
@@ -110,7 +112,7 @@ def weighted_share(
         return Estimate(mean, reason=EXACT)
     low, high = _of_logit(mean, found, confidence)
     if 0 < mean < 1:
-        outlier = _outlier(mean, found)
+        outlier = outlier_shift(mean, found)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
     some = hits_behind(numbers, weights, part) if hits is None else hits
     low, high = widened((low, high), some, lambda rows: exact_interval(mean, rows, confidence))
@@ -141,18 +143,6 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     some = hits_behind(numbers, None, part)
     low, high = widened(_of_logit(mean, found), some, lambda rows: wilson_interval(mean, rows))
     return Estimate(mean, low, high)
-
-
-def _beyond_outliers(mean: float, found: Floats, rows: Floats) -> tuple[float, float]:
-    """Return Student's interval of parts, moved by what two more outlying rows as far would add."""
-    low, high = scatter_interval(mean, found)
-    move = _outlier(mean, rows)
-    return low + min(move, 0.0), high + max(move, 0.0)
-
-
-def _outlier(mean: float, found: Floats) -> float:
-    """Return by how much two more parts as far out as the farthest on one side move a mean."""
-    return float(2 * ((found.max() - mean) - (mean - found.min())) / len(found))
 
 
 def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
@@ -198,12 +188,14 @@ def moments_of_rows(
     variance = float(np.average(squares, weights=weights))
     of_rows = isinstance(part, EvenReplicates) and not is_constant(weights)
     influence, found = _influence(values, weights), pulls(values, weights, part)
-    ends = _beyond_outliers(mean, found, mean + influence if of_rows else found)
+    parts = mean + influence if of_rows else found
+    ends = beyond_outliers(mean, scatter_interval(mean, found), parts)
     ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
     of_mean = Estimate(*(unit * number for number in (mean, *ends)))
     size = max(variance, 1e-300)
     relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
-    away = np.asarray(_beyond_outliers(1.0, relative, 1.0 + rows if of_rows else relative)) - 1.0
+    parts = 1.0 + rows if of_rows else relative
+    away = np.asarray(beyond_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
     sd = unit * variance**0.5
     return of_mean, Estimate(sd, *(sd * np.exp(away / 2)).tolist())
 
