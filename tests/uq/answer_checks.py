@@ -218,7 +218,8 @@ class Checker:
             shown = [numbers_in(text)[0] for text in map(each._size, each.indices)]
             if not np.allclose(shown, np.multiply(values, per), atol=0.6 * per / 100, rtol=0.01):
                 yield f"{each.words}: {each.size}"
-            if not all(map(is_about_even, each.indices)):
+            seen = 0.001 if each.share_of_variance else 0.0  # of a share, whole per cent are told
+            if not all(is_about_even(index, seen) for index in each.indices):
                 yield f"interval of {each.words}: {each.size}"
             for name, change in zip(each.inputs, each.changes, strict=False):
                 yield from self.change(one, name, change)
@@ -295,9 +296,9 @@ class Checker:
                     yield said.why
 
 
-def is_about_even(one):
-    """Whether a number is near the middle of its interval, if it has one."""
-    if not one.has_interval:
+def is_about_even(one, seen=0.0):
+    """Whether a number is near the middle of its interval, if it has one that can be seen."""
+    if not one.has_interval or one.high - one.low < seen:
         return True
     uneven = abs(one.high + one.low - 2 * one.value)
     return uneven <= 0.3 * (one.high - one.low) + 1e-6 * abs(one.value)

@@ -130,16 +130,9 @@ def unexplained(indices: Indices) -> Estimate:
     indices : Indices
         With first-order indices of all inputs.
     """
-    value = 1 - sum(one.value for one in indices.values[S1].values())
-    lacking = any(not one.has_interval for one in indices.values[S1].values())
-    if lacking or not indices.half_products:
-        return Estimate(value)
-    square = sum(
-        product * (1 if first == second else 2)
-        for (first, second), product in indices.half_products.items()
-    )
-    half = max(square, 0.0) ** 0.5
-    return Estimate(value, value - half, value + half)
+    if indices.unexplained.has_interval:
+        return indices.unexplained
+    return Estimate(1 - sum(one.value for one in indices.values[S1].values()))
 
 
 def _totals(findings: Findings, name: str) -> dict[str, float]:

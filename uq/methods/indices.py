@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite, nan
 from typing import Literal
 
-from uq.estimate import Estimate
+from uq.estimate import NOTHING, Estimate
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,9 @@ class Indices:
         square of its half-width. Where one set of rows gives all indices.
     rows_factors : dict of str to float
         Input whose index lacks an interval -> how many times the rows would give one.
+    unexplained : Estimate
+        Of first-order indices, the share of the variance that no single input explains, if its
+        error is known.
     """
 
     values: Mapping[IndexKind, Mapping[str, Estimate]]
@@ -104,6 +107,7 @@ class Indices:
     by_correlation: tuple[str, ...] = ()
     half_products: Mapping[tuple[str, str], float] = field(default_factory=dict)
     rows_factors: Mapping[str, float] = field(default_factory=dict)
+    unexplained: Estimate = NOTHING
 
 
 BY_CORRELATION = "by correlation alone"

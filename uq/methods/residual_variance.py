@@ -72,7 +72,7 @@ def _pair_sum(y: Floats) -> float:
 
 def ordered_residual_variance(y: Floats, part: Part = None) -> float:
     """Estimate the residual variance alone, from rows in the order of an input without ties."""
-    return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part)[2]
+    return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part).left
 
 
 def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
@@ -98,7 +98,10 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     -----
     More lags reduce the noise but widen the range in which the mean must be a few jumps or a
     parabola: their number grows with n, and with the ratio of the variance left to that explained.
-    It is halved where fewer lags give another intercept by more than the noise.
+    It is halved where fewer lags give another intercept by more than the noise, down to four lags,
+    and what the last halving changes beyond the noise enters the error. Waves of fewer rows each
+    than about three times the lags have neither a parabola in l nor an intercept that shows it: of
+    five rows a wave, no lags do.
 
     References
     ----------
@@ -147,9 +150,9 @@ def _of_equal(y: Floats, part: Part) -> Residual:
 
 def _of_neighbours(y: Floats, part: Part) -> Residual:
     """Return the residual variance of rows in the order of the input."""
-    number, lags, left = _extrapolated(y, part)
+    number, lags, left, bend = _extrapolated(y, part)
     squares, local, smoothed = _squared_residuals(y, number, left)
-    noise = 0.0
+    noise = len(y) * bend
     for lag, weight in zip(lags, _weights(lags), strict=True):
         products = float(squares[lag:] @ squares[:-lag]) / (len(y) - lag)
         noise += weight**2 * products / _used(part, lag)
@@ -157,16 +160,27 @@ def _of_neighbours(y: Floats, part: Part) -> Residual:
     return Residual(left, squares * _times_used(lags, len(y)), noise, excess)
 
 
-def _extrapolated(y: Floats, part: Part) -> tuple[int, tuple[int, ...], float]:
-    """Return the number of lags, the lags, and the residual variance that they lead to."""
+class _Extrapolated(NamedTuple):
+    """The residual variance at no lag, from the number of lags and the lags that are used.
+
+    And the square of what fewer lags change beyond the noise.
+    """
+
+    number: int
+    lags: tuple[int, ...]
+    left: float
+    bend: float
+
+
+def _extrapolated(y: Floats, part: Part) -> _Extrapolated:
     number = _number_of_lags(y, part)
     lags = _lags(number, len(y), part)
     if len(lags) < _FEWEST_LAGS:
-        return number, lags, np.nan
+        return _Extrapolated(number, lags, np.nan, 0.0)
     halves = np.array([_half_square(y, part, lag) for lag in lags])
-    lags = _unbent(y, part, lags, halves)
+    lags, bend = _unbent(y, part, lags, halves)
     left = float(np.array(_weights(lags)) @ halves[: len(lags)])
-    return min(number, len(lags)), lags, left
+    return _Extrapolated(min(number, len(lags)), lags, left, bend)
 
 
 def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
@@ -213,30 +227,34 @@ def _used(part: Part, lag: int) -> float:
     return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
 
 
-def _unbent(y: Floats, part: Part, lags: tuple[int, ...], halves: Floats) -> tuple[int, ...]:
+def _unbent(
+    y: Floats, part: Part, lags: tuple[int, ...], halves: Floats
+) -> tuple[tuple[int, ...], float]:
     """Return the lags, or the first half of them where both together follow no parabola.
 
     Half of them again, and so on [1]_: beyond a jump near an end of the order there are fewer rows
-    than lags, and the number of pairs across it no longer grows with the lag.
+    than lags, and the number of pairs across it no longer grows with the lag; a wave may be shorter
+    than the lags. Also the square of what the last halving changes, less that of its noise.
 
     References
     ----------
     .. [1] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise", Theory
        Probab. Appl. 35, 454-466 (1991).
     """
-    if len(lags) < 2 * LEAST_LAGS:
-        return lags
     used = np.array([_used(part, lag) for lag in lags])
     steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
     product = float(np.mean(steps[2:] * steps[:-2]))  # of the variances of neighbours
-    while (half := len(lags) // 2) >= LEAST_LAGS:
+    bend = 0.0
+    while (half := len(lags) // 2) >= _FEWEST_LAGS:
         change = np.array(_weights(lags))
         change[:half] -= _weights(lags[:half])
-        error = float(np.sqrt(np.sum(change**2 / used[: len(lags)]) * product / len(y)))
-        if abs(float(change @ halves[: len(lags)])) <= _BENT * error:
+        noise = float(np.sum(change**2 / used[: len(lags)]) * product / len(y))
+        square = float(change @ halves[: len(lags)]) ** 2
+        bend = max(square - noise, 0.0)
+        if square <= _BENT**2 * noise:
             break
         lags = lags[:half]
-    return lags
+    return lags, bend
 
 
 def _half_square(y: Floats, part: Part, lag: int) -> float:
