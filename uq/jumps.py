@@ -190,7 +190,8 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
     ndarray
         Steps along inputs, the one that explains most first, of what polynomials of the inputs and
         the steps before leave (orthogonal matching pursuit [1]_). None is larger than the
-        difference between the means of its neighbours on both sides, of as many as show it best.
+        difference between the means of its neighbours on both sides, of as many as show it best, in
+        the residual or in the values, whichever is larger.
 
     References
     ----------
@@ -198,7 +199,8 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
        function approximation with applications to wavelet decomposition", 27th Asilomar Conf. on
        Signals, Systems and Computers, 40-44 (1993).
     """
-    residual = neighbours.without_smooth(values[neighbours.rows])
+    values = values[neighbours.rows]
+    residual = neighbours.without_smooth(values)
     n = len(residual)
     sizes: list[float] = []
     steps: list[Floats] = []
@@ -212,7 +214,12 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
             sizes.append(NOISE * error)
             break
         size = float(explained[which, place] / neighbours.norms[place])
-        sizes.append(min(size, _step(residual[neighbours.order[which]], place, neighbours, noise)))
+        # Near an end polynomials follow a step, and hardly anything of it is left in the residual.
+        heights = (
+            _step(of[neighbours.order[which]], place, neighbours, noise)
+            for of in (residual, values)
+        )
+        sizes.append(min(size, max(heights)))
         behind = np.zeros(n)
         behind[neighbours.order[which, place:]] = 1.0
         step = neighbours.without_smooth(behind)

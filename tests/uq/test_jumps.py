@@ -1,7 +1,12 @@
 """Replicates of designs that spread evenly hide the error of a jump; intervals hold it."""
 
+import numpy as np
 import pytest
 from computed import linear, summarised
+from scipy.special import ndtri
+
+from uq.designs.sequences import sobol
+from uq.jumps import EvenReplicates, jumps
 
 
 @pytest.mark.parametrize(
@@ -22,3 +27,12 @@ def test_a_smooth_function_keeps_its_narrow_interval():
     ds = linear("sobol", samples=1024, replicates=8)
     ends = summarised(ds)["outputs"]["y"]["mean_interval"]
     assert ends["low"] <= 5.0 <= ends["high"] and ends["high"] - ends["low"] < 1e-3
+
+
+def test_a_jump_near_an_end_is_not_taken_for_a_polynomial():
+    """Polynomials of degree 6 follow much of a step in the last strata."""
+    place = 1 - 2.72 / 64
+    u = sobol(0, 8, 4, 64, 0, 64).reshape(-1, 4)
+    y = 4.0 * (u[:, 0] > place) + 0.2 * ndtri(u[:, 1])
+    marked = EvenReplicates(np.tile(np.arange(8), 64), u)
+    assert jumps(y, marked.neighbours)[0] > 3.0

@@ -7,9 +7,10 @@ from rare_studies import branches, close, interval, linear, study
 from scipy import stats
 
 from uq.cli.rare_event import as_json, show
-from uq.exploring.rare_events import rare_event
+from uq.exploring.rare_events import _Outcome, estimate_of, rare_event
 from uq.exploring.subset_simulation import Found, disagreement, subset_simulation
-from uq.exploring.wide_search import wide_search
+from uq.exploring.wide_search import WideSearch, wide_search
+from uq.intervals import log_scatter_interval
 
 CLIFF = stats.norm.sf(4.0) + stats.norm.sf(5.0)
 TWENTY = {f"x{i}": STANDARD for i in range(1, 21)}
@@ -47,11 +48,13 @@ def test_the_limit_of_what_is_seen_stands_beside_the_number(capsys):
     assert "excluded only above 0.0003" in ds.attrs["notes"]
     found = as_json(ds)
     assert found["hidden_high"] == float(ds["hidden_high"])
+    assert found["interval_of"] == "of the part that the method reaches"
     assert found["wide"]["rows"] == 8000 and found["wide"]["hits"] > 20
     assert found["wide"]["low"] < 1e-6 < 3 * found["wide"]["value"]
     show(ds, False, of, 4.753424)
     shown = capsys.readouterr().out
     assert "a hidden part" in shown and "rows drawn wide" in shown
+    assert "only of the part that the method reaches" in shown
 
 
 def test_a_share_of_plain_rows_needs_no_search():
@@ -110,3 +113,24 @@ def test_rows_drawn_wide_hold_a_sphere():
             low, high = wide_search(margin, inputs, 1000, generators).interval
             held += low <= 1e-5 <= high
         assert held >= 90
+
+
+def outcome(estimates, interval, factor):
+    return _Outcome(np.array(estimates), interval, 5e-4, 5e-4, 8000, factor, {})
+
+
+def test_the_low_end_does_not_follow_a_replicate_that_enters_by_luck():
+    estimates = np.array([0.36, 0.47, 0.53, 0.22, 0.58, 0.27, 0.5, 91.0]) * 1e-5
+    interval = log_scatter_interval(estimates)
+    assert interval[0] > 1e-5
+    _, (low, high) = estimate_of(outcome(estimates, interval, 400.0), None)
+    assert low < 1e-5 < high
+
+
+def test_enough_rows_drawn_wide_above_the_interval_raise_its_high_end():
+    weights = np.full(40, 1.0 / 40)
+    wide = WideSearch(np.array([0.8, 1.2, 0.9, 1.4, 0.5, 1.3, 0.7, 1.2]), weights, 2000)
+    above = outcome([0.5] * 8, (0.4, 0.8), 1.0)
+    assert estimate_of(above, wide) == (0.5, (0.4, wide.interval[1]))
+    within = outcome([0.9] * 8, (0.7, 1.1), 1.0)
+    assert estimate_of(within, wide) == (pytest.approx(0.9), (0.7, 1.1))

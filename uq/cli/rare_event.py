@@ -61,6 +61,7 @@ def as_json(ds: xr.Dataset) -> dict[str, Any]:
         "estimates": ds["estimate"].values.tolist(),
         **{name: int(ds[name]) for name in ("rows", "failed", "undefined")},
         "estimated_by": ds.attrs["estimated_by"],
+        "interval_of": ds.attrs["interval_of"],
         **_unseen(ds),
         **_by_method(ds),
         "notes": ds.attrs["notes"].splitlines(),
@@ -107,6 +108,11 @@ def _shown_unseen(ds: xr.Dataset) -> list[tuple[str, str]]:
     ]
 
 
+def _limit(ds: xr.Dataset) -> str:
+    """Say beside the interval if it holds for a part of the event only."""
+    return "" if ds.attrs["interval_of"] == "event" else f", only {ds.attrs['interval_of']}"
+
+
 def _cell(value: float) -> str:
     return number(value if isfinite(value) else None)
 
@@ -121,7 +127,7 @@ def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
     grid(
         [
             ("probability", _cell(float(ds["probability"]))),
-            ("95 % interval", f"{low} to {high}"),
+            ("95 % interval", f"{low} to {high}{_limit(ds)}"),
             *_shown_unseen(ds),
             *([("with failed rows inside", f"up to {worst}")] if worst != "-" else []),
             ("rows", str(int(ds["rows"]))),

@@ -27,6 +27,9 @@ from uq.study.definition import Study
 from uq.wording import counted
 
 _FEWEST = 100  # rows of a level: 10 chains
+REACHED = "of the part that the method reaches"
+"""Whose probability an interval holds, unless plain rows or rows drawn wide give it."""
+
 _Generators = list[np.random.Generator]
 
 
@@ -108,7 +111,8 @@ def rare_event(
         ``typical``, the median of each uncertain parameter given the event; importance:
         ``reliability_index``, ``first_order`` probability and ``location`` of each design point.
         Attributes: ``estimated_by`` (the method, or ``wide`` where rows drawn wide show that it
-        missed a part), and ``notes``: caveats.
+        missed a part), ``interval_of`` (``event``, or the part that the method reaches), and
+        ``notes``: caveats.
 
     Raises
     ------
@@ -126,8 +130,10 @@ def rare_event(
 
     Both methods can miss a part of the event, subset simulation one behind a jump of the output.
     As many rows as a level has are therefore drawn wide (`uq.exploring.wide_search`). If their
-    interval lies above that of the method, it is shown instead. If replicates of subset simulation
-    scatter more than their chains explain, the high end is what the plain rows support.
+    interval lies above that of the method, it is shown instead; if only their estimate does, and
+    enough of them lie within the event, the high end is theirs, and a note says so. If replicates
+    of subset simulation scatter more than their chains explain, the high end is what the plain rows
+    support, and the low end lies about their geometric mean.
 
     Examples
     --------
@@ -176,6 +182,8 @@ def rare_event(
             "units": margin.output.unit,
             "method": method,
             "estimated_by": "wide" if by_wide else method,
+            "interval_of": REACHED if wide is not None and not by_wide else "event",
+            "interval_of": REACHED if wide is not None and not by_wide else "event",
             "samples": samples,
             "study": study.text,
             "study_identity": study.identity,
@@ -208,10 +216,15 @@ def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tupl
         if np.isnan(high):
             high = max(outcome.supported, wide.probability)
         return wide.probability, (low, high)
+    probability = float(outcome.estimates.mean())
     low, high = map(float, outcome.interval)
     if outcome.disagreement > 1:
+        # A replicate that enters a part by luck carries the mean, not the geometric mean.
+        low *= float(np.exp(np.log(outcome.estimates).mean())) / probability
         high = max(high, outcome.supported)
-    return float(outcome.estimates.mean()), (low, high)
+    if wide is not None and wide.is_enough and wide.probability > high:
+        high = max(high, float(wide.interval[1]))
+    return probability, (low, high)
 
 
 def _is_missed(outcome: _Outcome, wide: WideSearch) -> bool:
@@ -341,6 +354,12 @@ def _notes(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
             " of the event is entered by a jump; the high end is what plain rows support"
         )
     if "hidden_high" in ds:
+        if not by_wide and (ds["wide"] > most or most == ds["wide_high"]):
+            notes.append(
+                f"rows drawn wide estimate {float(ds['wide']):.2g}, above the interval of method"
+                f" '{ds.attrs['method']}': it may miss a part of the event"
+                + ("; the high end is theirs" if most == ds["wide_high"] else "")
+            )
         notes.append(
             f"a part of the event that no trend of the output leads to, and that no row met, is"
             f" excluded only above {float(ds['hidden_high']):.2g} (95 %)"
