@@ -200,7 +200,7 @@ def moments_of_rows(
     influence, found = _influence(values, weights), pulls(values, weights, part)
     ends = _beyond_outliers(mean, found, mean + influence if of_rows else found)
     ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
-    of_mean = Estimate(*(unit * number for number in (mean, *ends)))
+    of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
     size = max(variance, 1e-300)
     relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
     away = np.asarray(_beyond_outliers(1.0, relative, 1.0 + rows if of_rows else relative)) - 1.0
