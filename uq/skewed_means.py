@@ -41,19 +41,20 @@ def corrected_mean_interval(
     >>> high - values.mean() > 1.2 * (values.mean() - low)
     True
     """
-    estimates, size = sized(values if replicate is None else by_replicate(values, replicate))
+    values, size = sized(values)  # squares neither overflow nor vanish
+    estimates = values if replicate is None else by_replicate(values, replicate)
     n, mean = len(estimates), float(estimates.mean())
     away = estimates - mean
     skewness = float((away**3).mean() / (away**2).mean() ** 1.5)
     error = float(estimates.std(ddof=1)) / n**0.5
     t = student(upper_probability(confidence), n - 1)
     low, high = (mean - error * _untransformed(end, skewness / n**0.5) for end in (t, -t))
-    low, high = beyond_jumps(size * mean, (size * low, size * high), values, replicate, confidence)
+    low, high = beyond_jumps(mean, (low, high), values, replicate, confidence)
     if replicate is None or isinstance(replicate, Clusters) and replicate.are_samples:
-        return low, high
+        return size * low, size * high
     away = values - values.mean()
     moved = float(away[np.abs(away).argmax()]) / len(values)
-    return low + min(moved, 0.0), high + max(moved, 0.0)
+    return size * (low + min(moved, 0.0)), size * (high + max(moved, 0.0))
 
 
 def _untransformed(x: float, skewness: float) -> float:
