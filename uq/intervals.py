@@ -179,8 +179,10 @@ def interval_of_mean(
     """
     if replicate is None:
         return scatter_interval(value, values, confidence)
-    ends = scatter_interval(value, by_replicate(values, replicate), confidence)
-    return beyond_jumps(value, ends, values, replicate, confidence)
+    values, unit = sized(values)  # squares of jumps neither overflow nor vanish
+    ends = scatter_interval(value / unit, by_replicate(values, replicate), confidence)
+    low, high = beyond_jumps(value / unit, ends, values, replicate, confidence)
+    return unit * low, unit * high
 
 
 def share_interval(

@@ -28,12 +28,13 @@ def corrected_mean_interval(
         `hall_interval` of the means of the replicates, which allows for jumps that they do not
         show (`uq.jumps`), and for one more row as far out as the farthest.
     """
+    values, size = sized(values)  # squares neither overflow nor vanish
     means = by_replicate(values, replicate)
     ends = hall_interval(means, confidence)
     low, high = beyond_jumps(float(means.mean()), ends, values, replicate, confidence)
     away = values - values.mean()
     moved = float(away[np.abs(away).argmax()]) / len(values)
-    return low + min(moved, 0.0), high + max(moved, 0.0)
+    return size * (low + min(moved, 0.0)), size * (high + max(moved, 0.0))
 
 
 def hall_interval(estimates: Floats, confidence: float = CONFIDENCE) -> Ends:

@@ -138,6 +138,16 @@ def test_squares_that_overflow_or_vanish_change_no_number(size):
         for factor in (size, 1.0)
     )
     assert (found.low, found.high) == (size * expected.low, size * expected.high)
+    for form in (np.asarray, np.exp):  # the intervals of a mean, of a skewed one too
+        x = form(3 * replicated["x1"].values)
+        ends, scaled = (
+            summarised(asking(with_output(replicated, "z", factor * x), outputs=["z"]))
+            for factor in (1.0, size)
+        )
+        ends, scaled = (each["outputs"]["z"]["mean_interval"] for each in (ends, scaled))
+        assert [scaled[end] for end in ("low", "high")] == [
+            size * ends[end] for end in ("low", "high")
+        ]
 
 
 def test_ends_and_censoring_that_are_tied():

@@ -125,7 +125,8 @@ def effects(
         slope = float(slopes[i + 1])
         low, high = _interval(slope, slope + influence[:, i + 1], part)
         size = sizes[name]
-        of_input = Estimate(*(unit * float(number) / size for number in (slope, low, high)))
+        value, low, high = (unit * float(number) / size for number in (slope, low, high))
+        of_input = Estimate(value, low, high)
         turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
         found[name] = Effect(
             of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])

@@ -170,7 +170,7 @@ def _of_rows(columns: Mapping[str, Floats], y: Floats, part: Part) -> _OfRows:
     values, influences, noises = [], [], []
     for column in columns.values():
         left = residual_variance(column, y, part)
-        value = 1 - left.variance / every
+        value = 1 - max(left.variance, 0.0) / every  # beside a jump it may be negative
         influence = (left.squares - (1 - value) * squares) / every
         influence -= influence.mean()
         values.append(value)

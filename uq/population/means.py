@@ -191,7 +191,7 @@ def moments_of_rows(
     parts = mean + influence if of_rows else found
     ends = beyond_outliers(mean, scatter_interval(mean, found), parts)
     ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
-    of_mean = Estimate(*(unit * number for number in (mean, *ends)))
+    of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
     size = max(variance, 1e-300)
     relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
     parts = 1.0 + rows if of_rows else relative
