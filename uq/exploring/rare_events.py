@@ -183,7 +183,6 @@ def rare_event(
             "method": method,
             "estimated_by": "wide" if by_wide else method,
             "interval_of": REACHED if wide is not None and not by_wide else "event",
-            "interval_of": REACHED if wide is not None and not by_wide else "event",
             "samples": samples,
             "study": study.text,
             "study_identity": study.identity,
