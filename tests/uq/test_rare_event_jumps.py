@@ -54,7 +54,7 @@ def test_the_limit_of_what_is_seen_stands_beside_the_number(capsys):
     show(ds, False, of, 4.753424)
     shown = capsys.readouterr().out
     assert "a hidden part" in shown and "rows drawn wide" in shown
-    assert "only of the part that the method reaches" in shown
+    assert "only of the part that the method reaches" in " ".join(shown.split())
 
 
 def test_a_share_of_plain_rows_needs_no_search():
