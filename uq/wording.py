@@ -1,11 +1,10 @@
-"""Numbers, intervals and laws as text, for tables on a terminal and in a report."""
+"""Numbers and laws as text, for tables on a terminal and in a report."""
 
 import re
 from collections.abc import Iterable, Sequence
-from math import ceil, floor, inf, isclose, isfinite, isnan, log10
+from math import ceil, floor, isclose, isfinite, isnan, log10
 from typing import Any
 
-from uq.estimate import Estimate
 from uq.literals import shown
 from uq.units import PURE, Unit, beside, powers, time_unit, unit_of
 from uq.written import Written
@@ -81,46 +80,6 @@ def duration(seconds: float | None) -> str:
     return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
 
 
-def known(estimate: Estimate, end: str = "value", per: float = 1.0, resolution: float = 0.0) -> str:
-    """Return one number of an estimate, or why there is none.
-
-    Parameters
-    ----------
-    estimate : Estimate
-    end : {"value", "low", "high"}
-    per : float
-        What the number is divided by: the length of a unit.
-    resolution : float
-        Of the digits, as `number` takes it, before the division.
-
-    Returns
-    -------
-    str
-    """
-    value = getattr(estimate, end)
-    if isfinite(value):
-        return number(value / per, resolution / per)
-    if value != inf:
-        return "-"
-    return "beyond the horizon" if end in estimate.beyond else "never"
-
-
-def interval(estimate: Estimate, per: float = 1.0, resolution: float = 0.0) -> str:
-    """Return the ends of an interval; "" where neither is known, or both are never."""
-    ends = [known(estimate, end, per, resolution) for end in ("low", "high")]
-    return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
-
-
-def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
-    """Return the bounds with failed rows at best and at worst; "" if no row failed."""
-    if bounds is None:
-        return ""
-    low, high = (known(bounds, end, per) for end in ("low", "high"))
-    if low == "-":
-        return "no bound" if high == "-" else f"up to {high}"
-    return f"from {low} on" if high == "-" else f"{low} to {high}"
-
-
 def threshold(value: float, units: str) -> str:
     """Return a threshold [units, as in CF] as it was written: ``24 hours``, ``12°``.
 
@@ -168,34 +127,6 @@ def estimated(label: str, units: str, of: str = "", asked: Iterable[float] = ())
     return re.sub(r"^P\(([^<>=]*(?:\[.*\])?)([<>])([^<>]+?)\)", shown_event, label)
 
 
-def brief(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
-    """Return an estimate for a sentence, rounded to its accuracy, and its interval.
-
-    Parameters
-    ----------
-    estimate : Estimate
-    per : float
-        What the numbers are divided by: the length of a unit.
-
-    Returns
-    -------
-    tuple of str
-        The interval is "" where there is none.
-    """
-    value, low, high = estimate.numbers
-    if not (isfinite(value) and estimate.has_interval and high > low):
-        text = f"{value / per:.3g}" if isfinite(value) else known(estimate, per=per)
-        return text, interval(estimate, per)
-    decimals = -floor(log10((high - low) / per / 3))
-    text, *ends = (_rounded(one / per, decimals) for one in estimate.numbers)
-    return text, " to ".join(ends)
-
-
-def _rounded(value: float, decimals: int) -> str:
-    rounded = round(value, decimals) + 0.0  # no minus sign before what is zero
-    return f"{rounded:.{decimals}f}" if 0 <= decimals <= 6 else number(rounded)
-
-
 def percent(share: float) -> str:
     """Return a share in per cent: to a tenth, or more digits close to 0 and 100 %."""
     if share in (0.0, 1.0):
@@ -204,17 +135,6 @@ def percent(share: float) -> str:
         return f"{100 * share:.2g} %"
     rest = round(1 - share, 12)
     return f"{100 * share:.{-floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
-
-
-def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) -> str:
-    """Return a share in per cent, with its interval and the bounds with failed rows, if any."""
-    text = percent(estimate.value)
-    if not estimate.has_interval:
-        return text
-    worst, ends = "", percent_interval(estimate.low, estimate.high)
-    if failed is not None and failed.has_interval:
-        worst = f"; with failed rows {percent_range(failed.low, failed.high)}"
-    return f"{text} ({'95 % interval ' * (ends != TO_THESE_DIGITS)}{ends}{worst})"
 
 
 TO_THESE_DIGITS = "exact to these digits"

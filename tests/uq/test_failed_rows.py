@@ -10,8 +10,8 @@ from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.overview import summary
 from uq.analysis.summary import summarise
 from uq.estimate import Estimate
+from uq.estimate_text import failed_bounds_text, share_text
 from uq.intervals import share_interval
-from uq.wording import failed_interval, percent_with_interval
 
 ROWS = 1000
 LIVES = stats.weibull_min(1.5, scale=3.5)
@@ -81,11 +81,11 @@ def test_values_and_angles_have_bounds_too():
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
     bounds = summarise(ds).outputs["y"].find("quantiles", "0.05").failed
-    assert failed_interval(bounds).startswith("up to")
+    assert failed_bounds_text(bounds).startswith("up to")
     highest = summarised(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
     assert highest["failed_high"] is None and "failed_high_never" not in highest
     highest = summarise(asking(ds, quantiles=[0.95])).outputs["y"].find("quantiles", "0.95").failed
-    assert failed_interval(highest).startswith("from")
+    assert failed_bounds_text(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
     assert len(whole) and found["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth
     turn = found["turn"]["thresholds"]["2.0"]
@@ -144,11 +144,11 @@ def test_regimes_count_rows_that_failed_before_they_had_one():
 
 def test_words_say_what_the_failed_rows_leave_open():
     bounds = Estimate(low=0.107, high=0.23)
-    text = percent_with_interval(Estimate(0.138, 0.117, 0.162), bounds)
+    text = share_text(Estimate(0.138, 0.117, 0.162), bounds)
     assert text == "13.8 % (95 % interval 11.7 to 16.2 %; with failed rows 10.7 to 23.0 %)"
-    assert failed_interval(bounds) == "0.107 to 0.23"
-    assert failed_interval(None) == ""
-    assert failed_interval(Estimate()) == "no bound"
+    assert failed_bounds_text(bounds) == "0.107 to 0.23"
+    assert failed_bounds_text(None) == ""
+    assert failed_bounds_text(Estimate()) == "no bound"
 
 
 def test_the_table_has_columns_of_the_bounds():

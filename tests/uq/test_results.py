@@ -23,6 +23,7 @@ from uq.report.page import page
 from uq.rows import results
 from uq.rows.elements import elements_of
 from uq.running import runner
+from uq.store.seal import CHECKSUM
 from uq.study.definition import load_study, study_from_text
 
 
@@ -223,7 +224,7 @@ def test_a_file_holds_what_memory_holds(kinds):
     # Merged from chunks or written at once: the layout may differ, nothing that is said does.
     store.write_result(ds, Path("again.nc"))
     with netCDF4.Dataset(path) as merged, netCDF4.Dataset("again.nc") as again:
-        assert merged.getncattr(results.CHECKSUM) == again.getncattr(results.CHECKSUM)
+        assert merged.getncattr(CHECKSUM) == again.getncattr(CHECKSUM)
 
 
 def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch):

@@ -5,23 +5,20 @@ from math import inf, nan
 import pytest
 
 from uq.estimate import Estimate
+from uq.estimate_text import interval_text, rounded_text, share_text, value_text
 from uq.inputs.registry import law_of
 from uq.methods.indices import S1, ST
 from uq.methods.morris import MU, MU_STAR
 from uq.units import Unit
 from uq.wording import (
-    brief,
     capitalized,
     counted,
     duration,
     estimated,
-    interval,
-    known,
     law,
     law_in_unit,
     percent,
     percent_interval,
-    percent_with_interval,
     quantity,
 )
 from uq.written import read_quantity
@@ -64,7 +61,7 @@ def test_a_law_is_in_the_unit_of_its_input(stated, words):
     ],
 )
 def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, text):
-    assert brief(Estimate(value, low, high)) == text
+    assert rounded_text(Estimate(value, low, high)) == text
 
 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
@@ -109,14 +106,14 @@ def test_times_in_words(seconds, words):
     ],
 )
 def test_each_end_of_an_interval_is_a_number_or_says_why_not(estimate, text):
-    assert interval(estimate, per=3600.0) == text
+    assert interval_text(estimate, per=3600.0) == text
 
 
 def test_a_number_that_is_none_says_why():
-    assert known(Estimate(7200.0), per=3600.0) == "2"
-    assert known(Estimate(inf)) == "never"
-    assert known(Estimate(inf, beyond=("value",))) == "beyond the horizon"
-    assert known(Estimate(nan, inf)) == "-"
+    assert value_text(Estimate(7200.0), per=3600.0) == "2"
+    assert value_text(Estimate(inf)) == "never"
+    assert value_text(Estimate(inf, beyond=("value",))) == "beyond the horizon"
+    assert value_text(Estimate(nan, inf)) == "-"
 
 
 def test_effects_have_digits_whatever_their_unit():
@@ -153,8 +150,8 @@ def test_a_power_of_ten_is_multiplied():
 
 
 def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
-    assert interval(Estimate(low=inf)) == ""
-    assert interval(Estimate(low=2.0, high=inf)) == "2 to never"
+    assert interval_text(Estimate(low=inf)) == ""
+    assert interval_text(Estimate(low=2.0, high=inf)) == "2 to never"
 
 
 @pytest.mark.parametrize(
@@ -182,7 +179,7 @@ def test_an_interval_whose_ends_read_alike_is_none():
     assert percent_interval(1.0, 1.0) == "exact to these digits"
     assert percent_interval(0.0, 1e-4) == "0 to 0.01 %"
     sure, bounds = Estimate(1.0, 1.0, 1.0), Estimate(nan, 1.0, 1.0)
-    assert percent_with_interval(sure) == "100 % (exact to these digits)"
-    assert percent_with_interval(sure, bounds).endswith("digits; with failed rows 100 %)")
-    known = percent_with_interval(Estimate(0.5, 0.4, 0.6), bounds)
+    assert share_text(sure) == "100 % (exact to these digits)"
+    assert share_text(sure, bounds).endswith("digits; with failed rows 100 %)")
+    known = share_text(Estimate(0.5, 0.4, 0.6), bounds)
     assert known == "50.0 % (95 % interval 40.0 to 60.0 %; with failed rows 100 %)"

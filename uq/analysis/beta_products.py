@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-from uq.rows.elements import Floats, Mask
+from uq.contract import Floats, Mask
 
 
 class MatchedBeta(NamedTuple):

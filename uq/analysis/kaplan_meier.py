@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.rows.elements import Floats, Mask
+from uq.contract import Floats, Mask
 
 
 class Outliving(NamedTuple):

@@ -7,10 +7,11 @@ import xarray as xr
 
 from uq.analysis.stopping import InterimEstimate, confidence, interim_estimate, interim_sizes
 from uq.estimate import Estimate
+from uq.estimate_text import rounded_text
 from uq.population.means import EXACT
 from uq.rows.nesting import first_samples
 from uq.units import Unit, beside, unit_of
-from uq.wording import brief, in_unit, rows_in_words, threshold
+from uq.wording import in_unit, rows_in_words, threshold
 from uq.written import Written
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def _without_interval(seen: InterimEstimate) -> str:
     """State that an estimate has no interval that can become narrow, and why."""
     found = seen.estimate
     if found.value == inf:
-        return f"{seen.what} is {brief(found)[0]}, which no interval narrows"
+        return f"{seen.what} is {rounded_text(found)[0]}, which no interval narrows"
     value = f"is {in_unit(found.value, unit_of(seen.units, found.value))} and "
     why = f" ({found.reason})" * bool(found.reason)
     return f"{seen.what} {value * isfinite(found.value)}has no interval{why}"
@@ -125,5 +126,5 @@ def _in_words(found: Estimate, unit: Unit) -> str:
         sides = {"at least": found.low, "at most": found.high}
         ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]
         return "".join(["is not known", *ends])
-    value, both = brief(found, unit.size)
+    value, both = rounded_text(found, unit.size)
     return f"is {value}, {beside(both, unit.name)}" if both else f"is {value}"

@@ -22,7 +22,7 @@ from uq.intervals import replicates_of_some, share_interval
 from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
-from uq.population.smoothing import Smoothed, weights_of
+from uq.population.smoothing import Smoothed
 from uq.rows.elements import (
     Element,
     Mask,
@@ -35,6 +35,7 @@ from uq.rows.elements import (
     replicates_of,
     shown_outputs,
     study_file_of,
+    weights_of,
     why_no_statistics,
 )
 from uq.rows.in_regime import within_regime

@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 
 from uq.analysis.beta_products import BetaProducts
+from uq.contract import Mask
 from uq.intervals import CONFIDENCE, Ends, Floats
-from uq.rows.elements import Mask
 
 DRAWS = 4000
 """Curves drawn; the coverage is then set to 0.3 %."""

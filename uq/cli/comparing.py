@@ -10,19 +10,10 @@ from uq.analysis.comparison import Comparison, Side, comparison
 from uq.analysis.differences import Compared, ComparedOutput
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
+from uq.estimate_text import interval_text, value_text
 from uq.rows.results import open_result
 from uq.units import Unit, typical, unit_of
-from uq.wording import (
-    compared,
-    counted,
-    estimated,
-    in_brackets,
-    in_unit,
-    interval,
-    known,
-    number,
-    percent,
-)
+from uq.wording import compared, counted, estimated, in_brackets, in_unit, number, percent
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -105,10 +96,10 @@ def _cells(one: Compared, per: float = 1.0) -> Line:
 def _apart(of: Compared, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
     """Return value and interval of a difference, and a mark where it excludes `nothing`."""
     sure = apart.low > nothing or apart.high < nothing
-    ends = "identical rows" if of.identical else interval(apart, per)
+    ends = "identical rows" if of.identical else interval_text(apart, per)
     if of.no_row_changes_sides:
         ends = f"no row changes sides (at most {percent(apart.high)} do)"
-    return known(apart, per=per), ends, "*" if sure else ""
+    return value_text(apart, per=per), ends, "*" if sure else ""
 
 
 def bought(found: Comparison) -> list[str]:
@@ -135,7 +126,7 @@ def _both(first: float, second: float, units: str) -> str:
 
 
 def _times(name: str, ratio: Estimate) -> str:
-    ends = interval(ratio)
+    ends = interval_text(ratio)
     change = 1 - ratio.value**2
     words = f"{abs(change):.0%} {'less' if change > 0 else 'more'} variance"
     was = f"{number(ratio.value)} times what it was{f' ({ends})' if ends else ''}"

@@ -14,9 +14,10 @@ from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.conclusions.targets import Target
 from uq.conclusions.verdict import verdict
 from uq.estimate import Estimate
+from uq.estimate_text import failed_bounds_text, interval_text, value_text
 from uq.rows.results import open_result
 from uq.units import typical, unit_of
-from uq.wording import failed_interval, in_brackets, interval, known
+from uq.wording import in_brackets
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
@@ -39,11 +40,11 @@ class _Block:
 
     def cells(self, label: str, one: Estimate) -> tuple[str, str]:
         """Return value and interval of an estimate in the unit of the block."""
-        return known(one, per=self._per(label)), self.ends(label, one)
+        return value_text(one, per=self._per(label)), self.ends(label, one)
 
     def ends(self, label: str, one: Estimate) -> str:
         """Return the interval of an estimate in the unit of the block; "" without one."""
-        return interval(one, self._per(label)) if one.has_interval else ""
+        return interval_text(one, self._per(label)) if one.has_interval else ""
 
     def _per(self, label: str) -> float:
         return self._unit.size if _is_value(label) else 1.0
@@ -82,7 +83,7 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         for label, one in estimates.items():
             if one.note:
                 paragraph(f"{block.label(label)}: {one.note}", indent=2)
-            if worst := failed_interval(one.failed):
+            if worst := failed_bounds_text(one.failed):
                 both = "with failed rows at best and worst"
                 paragraph(f"{block.label(label)}, {both}: {worst}", indent=2)
     note(

@@ -7,10 +7,11 @@ from uq.analysis.fleet import fleet_of, reasons, the_life
 from uq.analysis.fleet_json import fleet_json
 from uq.analysis.fleet_numbers import Banded
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.estimate_text import failed_bounds_text, interval_text, value_text
 from uq.rows.elements import independent_rows
 from uq.rows.results import open_result
 from uq.units import typical, unit_of
-from uq.wording import failed_interval, in_brackets, interval, known, threshold
+from uq.wording import in_brackets, threshold
 from uq.written import read_threshold
 
 
@@ -56,6 +57,6 @@ def _show(lines: Sequence[tuple[str, Banded]], per: float = 1.0) -> None:
 def _lines(label: str, one: Banded, per: float) -> Iterator[tuple[str, str, str]]:
     ends = (("5 % of samples", one.low), ("95 % of samples", one.high))
     for name, end in ((label, one.estimate), *(("  " + text, end) for text, end in ends)):
-        yield name, known(end, per=per), interval(end, per)
-    if worst := failed_interval(one.failed, per):
+        yield name, value_text(end, per=per), interval_text(end, per)
+    if worst := failed_bounds_text(one.failed, per):
         yield "  with failed rows", "", worst

@@ -12,6 +12,7 @@ from uq.cli import progress, say_when_interrupted
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json
 from uq.cli.run import carried_out, loaded
 from uq.estimate import Estimate
+from uq.estimate_text import value_text
 from uq.exploring.new_rows import Budget
 from uq.exploring.updating import is_study, learn, samples_for
 from uq.learning.answer import Learnt, learnt, learnt_json
@@ -25,7 +26,7 @@ from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study
 from uq.store.files import check_target
 from uq.units import beside, powers, unit_of
-from uq.wording import in_brackets, known, number, percent
+from uq.wording import in_brackets, number, percent
 
 MOST_UNITS = 12
 """Inspected units whose own inputs are listed."""
@@ -148,7 +149,7 @@ def _line(one: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]
     return (
         "not inspected" if one.unit == ANY else one.unit,
         number(one.seen / per),
-        *(known(one.life[p], per=per) for p in (0.5, 0.05)),
+        *(value_text(one.life[p], per=per) for p in (0.5, 0.05)),
         f"{one.effective_rows:.0f}",
         *(percent(one.value) if isfinite(one.value) else "-" for one in shares),
     )

@@ -17,20 +17,12 @@ from uq.cli.printing import console, grid, heading, note, paragraph
 from uq.conclusions.answer import conclude
 from uq.conclusions.whole import Answer
 from uq.estimate import Estimate
+from uq.estimate_text import failed_bounds_text, interval_text
 from uq.greek import readable
 from uq.indices.targets import split_name
 from uq.rows.variables import outputs_of
 from uq.units import Unit, typical, unit_of
-from uq.wording import (
-    compared,
-    counted,
-    estimated,
-    failed_interval,
-    in_brackets,
-    interval,
-    number,
-    percent,
-)
+from uq.wording import compared, counted, estimated, in_brackets, number, percent
 
 _LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
 
@@ -57,7 +49,7 @@ def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = 
         lines = [_share(one) for one in shares.values()]
         grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
         if name == REGIME and boundary is not None and boundary.estimate.has_interval:
-            stated = f"{boundary.label} {boundary.words()} ({interval(boundary.estimate)})"
+            stated = f"{boundary.label} {boundary.words()} ({interval_text(boundary.estimate)})"
             paragraph(f"{stated}: {in_words(boundary)}", indent=2)
     for name, output in summary.outputs.items():
         meaning = readable(ds[name.partition("[")[0]].attrs["long_name"])
@@ -132,8 +124,8 @@ def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
 
 
 def _share(one: Statistic) -> tuple[str, ...]:
-    share = (one.label, one.words(), interval(one.estimate))
-    return *share, str(one.facts["count"]), failed_interval(one.failed)
+    share = (one.label, one.words(), interval_text(one.estimate))
+    return *share, str(one.facts["count"]), failed_bounds_text(one.failed)
 
 
 def _lines(output: Described, block: Block) -> Iterator[Line]:
@@ -166,7 +158,7 @@ def _line(one: Statistic, block: Block) -> Line:
 
 
 def _failed(one: Statistic, block: Block) -> Iterator[Line]:
-    if worst := failed_interval(one.failed, block.per(one)):
+    if worst := failed_bounds_text(one.failed, block.per(one)):
         yield "  with failed rows", "", worst, ""
 
 
@@ -208,7 +200,7 @@ def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
 
 
 def _cells(one: Estimate | None, per: float) -> tuple[str, str]:
-    return ("", "") if one is None else (number(one.value / per), interval(one, per))
+    return ("", "") if one is None else (number(one.value / per), interval_text(one, per))
 
 
 def _example(ds: xr.Dataset, status: str) -> str:

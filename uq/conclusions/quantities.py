@@ -39,7 +39,6 @@ from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.targets import lightened, number_of, split_name
 from uq.methods.registry import METHODS
-from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -47,6 +46,7 @@ from uq.rows.elements import (
     elements_of,
     replicates_of,
     shown_outputs,
+    weights_of,
 )
 from uq.rows.variables import outputs_of
 from uq.rows.weights import has_weights

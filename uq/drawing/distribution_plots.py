@@ -26,6 +26,7 @@ from uq.drawing.panel import arrows, column, figure_of, finish, is_wide, logarit
 from uq.drawing.style import INK, MARK, ROWS, WIDTH, styled, thinned
 from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
+from uq.estimate_text import rounded_text
 from uq.printed import minus
 from uq.rows.elements import (
     Element,
@@ -34,7 +35,6 @@ from uq.rows.elements import (
     named_elements,
 )
 from uq.units import Unit
-from uq.wording import brief
 
 _MOST_PANELS = 4
 _LINE = 0.16  # of the table [inch]
@@ -311,6 +311,6 @@ def quantile_table(
 
 
 def _quantile(one: Statistic, per: float) -> tuple[str, str, str]:
-    value, ends = brief(one.estimate, per)
+    value, ends = rounded_text(one.estimate, per)
     value = value if np.isfinite(one.estimate.value) else one.words(per)
     return f"{100 * float(one.key[-1]):g} %", value, ends

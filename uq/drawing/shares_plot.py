@@ -12,8 +12,7 @@ from uq.drawing.style import BARS, INK, styled
 from uq.drawing.symbols import literal
 from uq.drawing.words import as_label
 from uq.errors import InputError
-from uq.population.smoothing import weights_of
-from uq.rows.elements import category_codes, independent_rows
+from uq.rows.elements import category_codes, independent_rows, weights_of
 from uq.rows.variables import is_category
 from uq.wording import counted
 

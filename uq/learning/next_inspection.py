@@ -12,7 +12,6 @@ from uq.errors import InputError, choices
 from uq.learning.asked_times import check_times
 from uq.learning.inspections import Inspection, Kind
 from uq.learning.looks import Look, Quantities, look_at, quantities_of
-from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -20,6 +19,7 @@ from uq.rows.elements import (
     independent_rows,
     lifetimes,
     shown_outputs,
+    weights_of,
     why_no_statistics,
 )
 from uq.rows.nesting import Nesting, nesting_of

@@ -17,7 +17,8 @@ from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
 from uq.population.row_inputs import inputs_of
 from uq.population.shared_terms import SCORES, terms_at
-from uq.population.smoothing import Smoothed, weights_of
+from uq.population.smoothing import Smoothed
+from uq.rows.elements import weights_of
 from uq.rows.nesting import nesting_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import (

@@ -4,13 +4,10 @@ from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import Replicates, is_constant
-from uq.rows.elements import replicates_of
-from uq.rows.weights import largest_weight, row_weights
 from uq.tails import DISTINCT, generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
@@ -138,23 +135,6 @@ def quality(weights: Smoothed | None) -> dict[str, float]:
 def worth_in_words(weights: Smoothed) -> str:
     """Return of how many samples of equal weight they are worth."""
     return f"{weights.rows} samples, worth {weights.effective:.0f} of equal weight"
-
-
-def weights_of(rows: xr.Dataset) -> Smoothed | None:
-    """Return the weights that inspections have given the rows of a result, None if none have.
-
-    Parameters
-    ----------
-    rows : xarray.Dataset
-        The independent rows of a result, or samples of several rows.
-    """
-    weights = row_weights(rows)
-    if weights is None:
-        return None
-    of_samples = per_sample(weights, replicates_of(rows))
-    k, most = tail_shape(of_samples), largest_weight(rows)
-    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
-    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)
 
 
 def tail_shape(numbers: Floats) -> float:

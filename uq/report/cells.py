@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
-from uq import wording
+from uq import estimate_text
 from uq.analysis.statistics.statistic import Statistic
 from uq.conclusions.bars import bar
 from uq.indices.targets import FORMS, split_name
@@ -96,7 +96,7 @@ def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     estimate = one.estimate
     form = FORMS.get(split_name(one.of)[0])
     text = one.words(per) + (f", of the {form}" if form else "")
-    worst = wording.failed_interval(one.failed, per)
+    worst = estimate_text.failed_bounds_text(one.failed, per)
     small = (
         one.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
         f"with failed rows {worst}" if worst else "",

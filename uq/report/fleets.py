@@ -8,10 +8,11 @@ from uq.analysis.findings import Findings
 from uq.analysis.fleet import Fleet
 from uq.analysis.fleet_numbers import Banded
 from uq.estimate import Estimate
+from uq.estimate_text import interval_text, value_text
 from uq.keys import key_of
 from uq.report.cells import Cell, Table
 from uq.units import typical, unit_of
-from uq.wording import counted, in_brackets, interval, known, threshold
+from uq.wording import counted, in_brackets, threshold
 
 HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
 
@@ -53,4 +54,4 @@ def _row(name: str, quantity: str, one: Banded, traced: str, per: float = 1.0) -
 
 def _cell(one: Estimate, per: float, traced: str) -> Cell:
     key = one.value if isfinite(one.value) else None
-    return Cell(known(one, per=per), interval(one, per) or one.reason, key, traced)
+    return Cell(value_text(one, per=per), interval_text(one, per) or one.reason, key, traced)

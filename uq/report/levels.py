@@ -8,12 +8,12 @@ from uq.conclusions.targets import Target
 from uq.conclusions.words import called
 from uq.designs.levels import LEVELS
 from uq.estimate import Estimate
+from uq.estimate_text import share_text
 from uq.keys import key_of
 from uq.methods.indices import S1
 from uq.report.cells import SHARE, Cell, Table
 from uq.rows.nesting import is_nested
 from uq.rows.weights import has_weights
-from uq.wording import percent_with_interval
 
 
 class Levels(NamedTuple):
@@ -43,7 +43,7 @@ def levels_of(findings: Findings) -> Levels | None:
         rows.append((Cell(shown), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
         notes += [f"{sentence} ({shown})" for sentence in one.sentences]
     if (another := found.another_regime) is not None:
-        said = another.reason or percent_with_interval(another)
+        said = another.reason or share_text(another)
         notes.append(f"probability that a repeat ends in another regime: {said}")
     on = {level: found.inputs_on(level) for level in LEVELS}
     notes += [f"{level}: {', '.join(map(called, names))}" for level, names in on.items() if names]

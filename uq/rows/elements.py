@@ -19,6 +19,13 @@ from uq.element_names import MOST_PLACES, Place, is_whole, place_of, whole_name
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.jumps import EvenReplicates
+from uq.population.smoothing import (
+    Smoothed,
+    carries_little,
+    effective_rows,
+    per_sample,
+    tail_shape,
+)
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in, places
 from uq.rows.nesting import is_nested, nesting_of
@@ -313,3 +320,20 @@ def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
         lives = [one for one, output in outputs_of(ds).items() if output.is_lifetime]
         raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
     return found
+
+
+def weights_of(rows: xr.Dataset) -> Smoothed | None:
+    """Return the weights that inspections have given the rows of a result, None if none have.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    """
+    weights = row_weights(rows)
+    if weights is None:
+        return None
+    of_samples = per_sample(weights, replicates_of(rows))
+    k, most = tail_shape(of_samples), largest_weight(rows)
+    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
+    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)

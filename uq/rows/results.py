@@ -37,14 +37,12 @@ from uq.rows.variables import (
     places,
     study_attributes,
 )
+from uq.store.seal import CHECKSUM
 from uq.study.registry import made_here
 
 if TYPE_CHECKING:
     from uq.rows.sampling import Rows
     from uq.study.definition import Study
-
-CHECKSUM = "checksum"
-"""Attribute of the file; see `uq.store.seal`."""
 
 UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
 """What netCDF4 and xarray raise for damaged files."""

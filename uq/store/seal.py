@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uq.rows.results import CHECKSUM
+CHECKSUM = "checksum"
+"""Attribute of the file."""
 
 _ROWS = 1_000_000  # read at a time
 

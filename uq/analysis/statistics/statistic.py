@@ -13,11 +13,12 @@ from uq import json_form
 from uq.analysis.estimators import Estimator
 from uq.analysis.joint_bounds import JointBound, joint_bounds
 from uq.estimate import Estimate
+from uq.estimate_text import interval_text, value_text
 from uq.intervals import Replicates, replicates_of_some
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
 from uq.study.file import AnalysisTable
-from uq.wording import interval, known, number
+from uq.wording import number
 
 
 class Reader(Flag):
@@ -146,7 +147,7 @@ class Kind:
     entry: Callable[["Statistic"], dict[str, Any]] = entry
     write: Callable[[Sequence["Statistic"]], dict[str, Any]] = entries
     shown: Callable[[float], str] = number
-    ends: Callable[[Estimate, float], str] = interval
+    ends: Callable[[Estimate, float], str] = interval_text
     is_count: bool = False
     has_interval: bool = True
     listing: Listing = field(default_factory=Listing)
@@ -249,12 +250,12 @@ class Statistic:
         if self.rows_needed is not None:
             never = isinf(self.rows_needed)
             return "too many failed" if never else f"needs {self.rows_needed:.0f} rows"
-        return "-" if self.otherwise else known(self.estimate)  # it may be within the horizon
+        return "-" if self.otherwise else value_text(self.estimate)  # it may be within the horizon
 
     def interval(self, per: float = 1.0) -> str:
         """Return its interval in units of length `per`; "" where it has none."""
         if self.resolution:
-            return interval(self.estimate, per, self.resolution)
+            return interval_text(self.estimate, per, self.resolution)
         return self.kind.ends(self.estimate, per)
 
 
