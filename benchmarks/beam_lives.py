@@ -21,8 +21,8 @@ from models.beam.structure.modal import beams
 from models.beam.wear.regimes import changes_of, confirmed_regimes
 from models.beam.wear.worn_beams import wear_down
 from models.numerics.blocks import LANES
-from uq.rows.sampling import row_block
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 
 STUDIES = Path(__file__).parent.parent / "studies"
 CASES = (("beam-lifetime-561", 0.02), ("beam-lifetime-561", 0.04), ("beam-lifetime", 0.01))

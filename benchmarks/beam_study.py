@@ -22,8 +22,8 @@ from benchmarks.figures import Figure, keep
 from models.beam import MODEL, exact
 from models.beam.parameters import REGIMES, Params, Settings
 from tests.models.beam.incremental import follow
-from uq.rows.sampling import row_block
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 
 STUDIES = Path(__file__).parent.parent / "studies"
 DEPTH = 2.5e-4  # [m], one initial gap

@@ -14,7 +14,7 @@ import uq
 from uq.learning.inspections import Inspection, Kind
 from uq.learning.posterior import posterior
 from uq.learning.worn_depth import WornDepths
-from uq.literals import read_toml, toml
+from uq.text.literals import read_toml, toml
 
 RODS, WORLDS, CV, LIMIT, MOST = 20, 300, 0.15, 3e-5, 1.5e-4
 CAMPAIGNS, SECONDS = 20, 5.0

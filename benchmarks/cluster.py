@@ -23,14 +23,13 @@ from distributed import Client
 from benchmarks import children
 from benchmarks.coverage.problems import study_of
 from benchmarks.large import INPUTS, LAWS, OUTPUTS, machine
-from uq import store
-from uq.rows.evaluate import evaluate
-from uq.rows.workload import workload_of
-from uq.running import dask_task
-from uq.running.dispatch import Dispatcher
-from uq.running.environment import command, inherited
-from uq.running.options import RunOptions
-from uq.running.remote_cluster import remote_workers
+from uq.execution import dask_task, resuming
+from uq.execution.dispatch import Dispatcher
+from uq.execution.environment import command, inherited
+from uq.execution.options import RunOptions
+from uq.execution.remote_cluster import remote_workers
+from uq.result.workload import workload_of
+from uq.study.evaluate import evaluate
 
 CHUNKS = {250: 200_000, 4000: 1_600_000}
 """Rows of a chunk -> rows of a run."""
@@ -65,7 +64,7 @@ def free_study(rows, method="monte-carlo"):
 
 
 class InWorker:
-    """Rows computed in the worker itself, in place of `uq.running.isolation.Isolated`."""
+    """Rows computed in the worker itself, in place of `uq.execution.isolation.Isolated`."""
 
     def __init__(self, spec, limit):
         self.spec, self.limit = spec, limit
@@ -131,7 +130,7 @@ def costs(address, scheduler, crew, rows, chunk_rows, folder):
     study = free_study(rows)
     with (
         remote_workers(address) as workers,
-        store.keep(study, Path(folder) / "rates.nc", fresh=True) as kept,
+        resuming.keep(study, Path(folder) / "rates.nc", fresh=True) as kept,
     ):
         options = RunOptions(chunk_rows=chunk_rows)
         dispatcher = Dispatcher(workload_of(study), options, kept, None)
@@ -183,7 +182,7 @@ def measured(title, arguments):
 def drive(rows, method, path):
     """Compute a study of free rows in this process, kept on disk as they arrive."""
     study = free_study(int(rows), method)
-    with store.keep(study, Path(path), fresh=True) as kept:
+    with resuming.keep(study, Path(path), fresh=True) as kept:
         dispatcher = Dispatcher(
             workload_of(study), RunOptions(), kept, partial(evaluate, study.model, study.settings)
         )

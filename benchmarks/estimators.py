@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.designs.registry import DESIGNS
-from uq.methods.indices import S1, ST
-from uq.methods.sample import Sample
-from uq.methods.sobol import first_order, sobol_indices, total_order
-from uq.quantile_functions import normal
+from uq.indices.index import S1, ST
+from uq.indices.sample import Sample
+from uq.indices.sobol import first_order, sobol_indices, total_order
+from uq.sampling.designs import DESIGNS
+from uq.stats.quantile_functions import normal
 
 D, REPLICATES = 4, 8
 NAMES = ("x1", "x2", "x3", "x4")

@@ -23,8 +23,8 @@ from models.mole.lanes.rows import SCALES
 from models.mole.parameters import Params, Settings
 from models.mole.response.machines import Machines
 from models.mole.theory.equations import ELECTRICAL_WORK, IMPACT_WORK, MOLE_DISPLACEMENT, SIZE
-from uq.rows.sampling import row_block
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 
 try:
     from benchmarks.mole_taylor import Taylor

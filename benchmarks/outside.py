@@ -14,9 +14,9 @@ import numpy as np
 
 from benchmarks.figures import Figure, keep
 from tests.their_server import TheirServer
-from uq.outside.function import machine, model_of
-from uq.outside.program import program_of
-from uq.outside.server import server_model
+from uq.machines.function import machine, model_of
+from uq.machines.program import program_of
+from uq.machines.server import server_model
 
 ROWS, TURNS = 250, 5
 

@@ -11,10 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from uq.report import page
-from uq.rows import results, sampling
-from uq.rows.evaluate import evaluate
+from uq.render.html.page import page
+from uq.result import result_file
+from uq.study import row_sampling
 from uq.study.definition import study_from_text
+from uq.study.evaluate import evaluate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "uq"))
 
@@ -45,9 +46,9 @@ MOVE = """(() => {{ const handle = document.querySelectorAll("{0} input[type=ran
 def result():
     """Return a result of 2 inputs and 10 outputs."""
     study = study_from_text(STUDY)
-    rows = sampling.row_block(study, 0, sampling.rows(study))
+    rows = row_sampling.row_block(study, 0, row_sampling.rows(study))
     chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
-    ds = results.build(study, rows, chunk.columns, chunk.status, {})
+    ds = result_file.build(study, rows, chunk.columns, chunk.status, {})
     rng = np.random.default_rng(0)
     for i in range(9):
         ds[f"more{i}"] = ds["life"].copy(data=ds["life"].values * rng.lognormal(size=ROWS))

@@ -31,15 +31,15 @@ x4 = {distribution = "uniform", lower = 0.0, upper = 1.0}
 """
 
 IN_MEMORY = """
-from uq import store
-from uq.running import runner
+from uq.execution import runner
+from uq.files import whole_files
 from uq.cli import main
-from uq.rows.results import open_result
-from uq.rows.workload import workload_of
+from uq.result.result_file import open_result
+from uq.result.workload import workload_of
 
 def run(study, output, options):
     ds = runner.carry_out(workload_of(study), options)
-    store.write_result(ds, output)
+    whole_files.write_result(ds, output)
     return open_result(output)
 
 runner.run_study = run

@@ -27,8 +27,8 @@ from models.vibrator.lanes.packed import pack
 from models.vibrator.parameters import Params
 from models.vibrator.start.synchronous import propose
 from models.vibrator.theory import averaged
-from uq.rows.sampling import row_block
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 
 try:
     from benchmarks.taylor import Taylor

@@ -117,9 +117,8 @@ def _packages() -> Iterator[tuple[str, Box]]:
         runners = [name for name in names if name in RUNNERS]
         others = [name for name in names if name not in (*READERS, *RUNNERS)]
         end = UQ if number else WIDTH - 2 * MARGIN  # what machines import, too
-        end -= LANE * (names == ("outside",))  # which leaves the arrow to `methods` a way
         spans = {
-            **_shared(readers, 0, LEFT + (LANE - GAP / 2) * (names == ("report",))),
+            **_shared(readers, 0, LEFT),
             **_shared(others, LEFT + GAP / 2 if readers else 0, end),
             **_shared(runners, LEFT + LANE, UQ),
         }
@@ -139,8 +138,6 @@ def _shared(names: list[str], left: float, right: float) -> dict[str, tuple[floa
 
 def _about(package: str) -> str:
     """Return the beginning of what a package says it is."""
-    if package == "uq/ground":
-        return "errors, estimates, intervals, words: the modules of uq itself"
     path = HOUSE / package
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     said = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
@@ -168,11 +165,11 @@ def _machines() -> Iterator[tuple[str, Box]]:
 def _reduced() -> list[tuple[str, str]]:
     """Return which package imports which, without what follows from the rest.
 
-    Left out: the contract and the ground, which everything imports.
+    Left out: the contract and text, which everything imports.
     """
     found: dict[str, set[str]] = {}
     for _, _, here, there in imports_between_packages():
-        if there not in ("contract", "ground"):
+        if there not in ("contract", "text"):
             found.setdefault(here, set()).add(there)
 
     def below(name: str) -> set[str]:

@@ -1,8 +1,8 @@
 """Studies carried out in memory, for tests of how rows are carried out."""
 
-from uq.rows.workload import workload_of
-from uq.running.options import RunOptions
-from uq.running.runner import carry_out
+from uq.execution.options import RunOptions
+from uq.execution.runner import carry_out
+from uq.result.workload import workload_of
 
 
 def compute(study, **options):

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from uq.contract import Kind, Parameter, Setting, Status, censored_name
-from uq.inputs.values import read_settings
-from uq.rows.evaluate import evaluate
-from uq.study.registry import find_model, model_names
+from uq.sampling.named_values import read_settings
+from uq.study.evaluate import evaluate
+from uq.study.installed_models import find_model, model_names
 
 RESERVED = {"sample", "replicate", "group", "block", "status", "trajectory", "time", "quantity"}
 TIME_UNITS = {"days", "hours", "minutes", "seconds", "milliseconds", "microseconds", "nanoseconds"}

@@ -17,13 +17,13 @@ from matplotlib import pyplot
 
 import uq as public
 from uq import plots
-from uq.analysis.as_json import summary_json
-from uq.analysis.summary import summarise
-from uq.cli.tables import show_summary
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
+from uq.cli.summary_tables import show_summary
 from uq.errors import InputError
-from uq.report import page
+from uq.render.html.page import page
 from uq.study.definition import study_from_text
-from uq.study.registry import find_model, model_names
+from uq.study.installed_models import find_model, model_names
 
 HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))

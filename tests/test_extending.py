@@ -16,21 +16,21 @@ import generated  # noqa: E402
 from computed import kinds  # noqa: E402
 
 from uq import open_result, plots, sensitivity, summary  # noqa: E402
-from uq.analysis.statistics.statistic import Statistic  # noqa: E402
-from uq.analysis.statistics.table import STATISTICS  # noqa: E402
-from uq.designs.design import Design  # noqa: E402
-from uq.designs.registry import DESIGNS  # noqa: E402
-from uq.designs.sequences import monte_carlo  # noqa: E402
-from uq.drawing import subjects  # noqa: E402
-from uq.drawing.catalogue import Entry  # noqa: E402
-from uq.drawing.panel import column, finish  # noqa: E402
-from uq.estimate import Estimate  # noqa: E402
-from uq.inputs.law import Law, Positive  # noqa: E402
-from uq.inputs.registry import LAWS  # noqa: E402
-from uq.methods.indices import IndexKind, Indices  # noqa: E402
-from uq.methods.method import Method  # noqa: E402
-from uq.methods.registry import METHODS  # noqa: E402
-from uq.report import page  # noqa: E402
+from uq.assess.statistic import Statistic  # noqa: E402
+from uq.assess.statistics.table import STATISTICS  # noqa: E402
+from uq.indices.index import IndexKind, Indices  # noqa: E402
+from uq.indices.method import Method  # noqa: E402
+from uq.indices.methods import METHODS  # noqa: E402
+from uq.render.figures import subjects  # noqa: E402
+from uq.render.figures.catalogue import Entry  # noqa: E402
+from uq.render.figures.panel import column, finish  # noqa: E402
+from uq.render.html.page import page  # noqa: E402
+from uq.sampling.design import Design  # noqa: E402
+from uq.sampling.designs import DESIGNS  # noqa: E402
+from uq.sampling.law import Law, Positive  # noqa: E402
+from uq.sampling.laws import LAWS  # noqa: E402
+from uq.sampling.unit_cube import monte_carlo  # noqa: E402
+from uq.stats.estimate import Estimate  # noqa: E402
 from uq.study.schema import json_schema  # noqa: E402
 
 # A figure

@@ -15,7 +15,7 @@ sys.path.insert(0, str(HOUSE / "docs"))
 import generated  # noqa: E402
 
 from uq import open_result, summary  # noqa: E402
-from uq.report import page  # noqa: E402
+from uq.render.html.page import page  # noqa: E402
 from uq.study.schema import json_schema  # noqa: E402
 
 PENDULUM = """

@@ -5,9 +5,9 @@ Other tests assert facts: the exit code, the key or row that is named, the value
 
 from math import inf, nan, pi
 
-from uq.designs.registry import DESIGNS
-from uq.inputs.registry import LAWS
-from uq.methods.registry import METHODS, designs_for
+from uq.indices.methods import METHODS, designs_for
+from uq.sampling.designs import DESIGNS
+from uq.sampling.laws import LAWS
 
 UNIFORM = {"distribution": "uniform", "lower": -pi, "upper": pi}
 BOUNDS = f"{-pi!r} to {pi!r} [1]"

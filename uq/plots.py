@@ -9,32 +9,32 @@ from pathlib import Path
 
 import xarray as xr
 
-from uq.analysis.findings import Findings
-from uq.drawing import subjects as of
-from uq.drawing.catalogue import Entry, drawables
-from uq.drawing.convergence_plot import convergence as convergence
-from uq.drawing.convergence_plot import index_convergence as index_convergence
-from uq.drawing.distribution_plots import histogram as histogram
-from uq.drawing.distribution_plots import histogram_by_regime as histogram_by_regime
-from uq.drawing.distribution_plots import lifetime as lifetime
-from uq.drawing.distribution_plots import quantile_table as quantile_table
-from uq.drawing.event_plot import event_probability as event_probability
-from uq.drawing.figure import write
-from uq.drawing.index_curve_plot import index_curves as index_curves
-from uq.drawing.index_plot import index_bars as index_bars
-from uq.drawing.input_plot import inputs as inputs
-from uq.drawing.motion_plot import history as history
-from uq.drawing.motion_plot import motion as motion
-from uq.drawing.motion_plot import phase_portrait as phase_portrait
-from uq.drawing.motion_plot import section as section
-from uq.drawing.response_plot import basins as basins
-from uq.drawing.response_plot import bifurcation as bifurcation
-from uq.drawing.response_plot import curve as curve
-from uq.drawing.scatter_plot import pairs as pairs
-from uq.drawing.scatter_plot import scatter as scatter
-from uq.drawing.shares_plot import shares as shares
+from uq.assess.findings import Findings
 from uq.errors import InputError
-from uq.places import refuse_standard_output
+from uq.files.paths import refuse_standard_output
+from uq.render.figures import subjects as of
+from uq.render.figures.catalogue import Entry, drawables
+from uq.render.figures.convergence_plot import convergence as convergence
+from uq.render.figures.convergence_plot import index_convergence as index_convergence
+from uq.render.figures.distribution_plots import histogram as histogram
+from uq.render.figures.distribution_plots import histogram_by_regime as histogram_by_regime
+from uq.render.figures.distribution_plots import lifetime as lifetime
+from uq.render.figures.distribution_plots import quantile_table as quantile_table
+from uq.render.figures.event_plot import event_probability as event_probability
+from uq.render.figures.figure import write
+from uq.render.figures.index_curve_plot import index_curves as index_curves
+from uq.render.figures.index_plot import index_bars as index_bars
+from uq.render.figures.input_plot import inputs as inputs
+from uq.render.figures.motion_plot import history as history
+from uq.render.figures.motion_plot import motion as motion
+from uq.render.figures.motion_plot import phase_portrait as phase_portrait
+from uq.render.figures.motion_plot import section as section
+from uq.render.figures.response_plot import basins as basins
+from uq.render.figures.response_plot import bifurcation as bifurcation
+from uq.render.figures.response_plot import curve as curve
+from uq.render.figures.scatter_plot import pairs as pairs
+from uq.render.figures.scatter_plot import scatter as scatter
+from uq.render.figures.shares_plot import shares as shares
 
 FIGURES: dict[str, Entry] = {
     "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,), needs=("summary",)),

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from benchmarks.coverage.tally import Tally
-from uq.uncertainty_exponent import FARTHEST, uncertainty_exponent
+from uq.stats.uncertainty_exponent import FARTHEST, uncertainty_exponent
 
 CANTOR = 1 - np.log(2) / np.log(3)
 """The exponent of Cantor's set in the limit; at the distances compared, see `cantor_exponent`."""

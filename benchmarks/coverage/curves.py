@@ -6,10 +6,10 @@ from scipy.optimize import brentq
 
 from benchmarks.coverage.lives import FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
-from uq.analysis.life_fit import fits_of
-from uq.analysis.life_quantiles import B_LIVES
-from uq.analysis.lifetime import survival
-from uq.rows.elements import elements_of
+from uq.assess.life_fit import fits_of
+from uq.assess.life_quantiles import B_LIVES
+from uq.assess.survival import survival
+from uq.result.elements import elements_of
 
 EARLY = 0.05
 """Share of lives that end by infant mortality."""

@@ -18,14 +18,13 @@ from benchmarks.coverage.dependent_effects import (
 )
 from benchmarks.coverage.problems import Settings, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
+from uq.assess.design_sample import sample_of
 from uq.contract import Model, Output, Parameter
-from uq.estimate import NOTHING
-from uq.indices.samples import sample_of
-from uq.intervals import scatter_interval
-from uq.methods.controlled import controlled
-from uq.methods.indices import SHAPLEY, RefusedError
-from uq.methods.paths import parts_of
-from uq.methods.registry import METHODS
+from uq.indices.index import SHAPLEY, RefusedError
+from uq.indices.methods import METHODS
+from uq.indices.paths import controlled, parts_of
+from uq.stats.estimate import NOTHING
+from uq.stats.intervals import scatter_interval
 
 CORRELATIONS = (0.0, 0.3, 0.6, 0.9)
 MILD, STEEP = 1 / 6, 1 / 2

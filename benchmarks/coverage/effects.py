@@ -4,7 +4,7 @@ import numpy as np
 from scipy import special
 
 from benchmarks.coverage.tally import Tally
-from uq.analysis.effects import effects
+from uq.assess.effects import effects
 
 ROWS = 400
 SIGMAS = {"x": 0.3, "z": 0.1, "idle": 0.2}

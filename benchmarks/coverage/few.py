@@ -7,16 +7,16 @@ from scipy import stats
 
 from benchmarks.coverage.problems import NAME, ishigami_ppf, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.analysis.as_json import summary_json
-from uq.analysis.summary import summarise
-from uq.analysis.twin import with_twin
-from uq.estimate import NOTHING
-from uq.indices.samples import sample_of
-from uq.indices.sensitivities import few_hits
-from uq.indices.targets import Target
-from uq.intervals import share_interval
-from uq.methods.indices import RefusedError
-from uq.methods.registry import METHODS
+from uq.assess.design_sample import sample_of
+from uq.assess.sensitivities import few_hits
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
+from uq.assess.targets import Target
+from uq.assess.two_fidelities import with_twin
+from uq.indices.index import RefusedError
+from uq.indices.methods import METHODS
+from uq.stats.estimate import NOTHING
+from uq.stats.intervals import share_interval
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")

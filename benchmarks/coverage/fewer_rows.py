@@ -18,13 +18,13 @@ from benchmarks.coverage.problems import (
     study_of,
 )
 from benchmarks.coverage.tally import Tally
-from uq.analysis.twin import with_twin
-from uq.estimate import NOTHING
-from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.rare_events import ESTIMATORS, estimate_of
-from uq.exploring.subset_simulation import subset_interval, subset_simulation
-from uq.exploring.wide_search import wide_search
-from uq.intervals import UNKNOWN, log_scatter_interval
+from uq.assess.two_fidelities import with_twin
+from uq.explore.design_points import design_points, drawn_around
+from uq.explore.rare_events import ESTIMATORS, estimate_of
+from uq.explore.subset_simulation import subset_interval, subset_simulation
+from uq.explore.wide_search import wide_search
+from uq.stats.estimate import NOTHING
+from uq.stats.intervals import UNKNOWN, log_scatter_interval
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
@@ -140,7 +140,7 @@ def hidden(method, repetitions):
 
 
 class _Space:
-    """A margin in standard normal space as a `uq.exploring.limit_state.LimitState`."""
+    """A margin in standard normal space as a `uq.explore.limit_state.LimitState`."""
 
     failed = 0
 

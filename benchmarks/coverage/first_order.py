@@ -5,12 +5,12 @@ from scipy import special, stats
 from scipy.stats import qmc
 
 from benchmarks.coverage.tally import Tally
-from uq.conclusions.rankings import unexplained
-from uq.intervals import scatter_interval
-from uq.methods.indices import S1, RefusedError
-from uq.methods.measures import first_order
-from uq.methods.registry import METHODS
-from uq.methods.sample import Sample
+from uq.assess.answer.rankings import unexplained
+from uq.indices.index import S1, RefusedError
+from uq.indices.measures import first_order
+from uq.indices.methods import METHODS
+from uq.indices.sample import Sample
+from uq.stats.intervals import scatter_interval
 
 ROWS = (100, 300, 1000, 4000)
 COUNTED = 2

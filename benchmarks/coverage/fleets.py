@@ -6,12 +6,12 @@ from scipy.optimize import brentq
 
 from benchmarks.coverage.scaled import CAUTIOUS, LIFE, lognormal_term
 from benchmarks.coverage.tally import Tally
-from uq.analysis.fleet_numbers import HIGH, LOW, FleetNumbers
-from uq.population.fleets import Units
-from uq.population.scale_laws import IndependentScale
-from uq.population.smoothing import smoothed
-from uq.rows.element import Element
-from uq.rows.nesting import Nesting
+from uq.assess.fleet_numbers import HIGH, LOW, FleetNumbers
+from uq.assess.fleets import Units
+from uq.assess.scale_laws import IndependentScale
+from uq.result.element import Element
+from uq.result.nesting import Nesting
+from uq.stats.importance_weights import smoothed
 
 SAMPLES = 200
 OWN, SHARED = 0.5, 0.5

@@ -23,7 +23,7 @@ from benchmarks.coverage.problems import (
     study_of,
 )
 from benchmarks.coverage.tally import Tally
-from uq.designs.trajectories import LEVELS, STEP, TAIL
+from uq.sampling.unit_cube import LEVELS, STEP, TAIL
 
 NAMES = ("x1", "x2", "x3")
 LAWS = dict.fromkeys(NAMES, ISHIGAMI_LAW)

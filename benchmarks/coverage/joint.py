@@ -3,7 +3,7 @@
 import numpy as np
 
 from benchmarks.coverage.tally import Tally
-from uq.order_statistics import joint_bounds
+from uq.stats.order_statistics import joint_bounds
 
 ROWS = (93, 124, 500, 2000)
 OUTPUTS = 2

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.stats import qmc
 
 from benchmarks.coverage.tally import Tally
-from uq.jumps import EvenReplicates
-from uq.moments import moments
+from uq.stats.jumps import EvenReplicates
+from uq.stats.moments import moments
 
 PLACE, OTHER = 19.1 / 64, 0.7034
 FUNCTIONS = {

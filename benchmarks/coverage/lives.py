@@ -9,12 +9,12 @@ from scipy import stats
 
 from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.analysis.as_json import summary_json
-from uq.analysis.life_fit import fits_of
-from uq.analysis.life_quantiles import B_LIVES
-from uq.analysis.lifetime import survival
-from uq.analysis.summary import summarise
-from uq.rows.elements import elements_of
+from uq.assess.life_fit import fits_of
+from uq.assess.life_quantiles import B_LIVES
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
+from uq.assess.survival import survival
+from uq.result.elements import elements_of
 
 TIMES = (0.3, 0.8)
 

@@ -9,7 +9,7 @@ from benchmarks.coverage.dependent import CASES, PATHS, study, title
 from benchmarks.coverage.dependent_effects import shares
 from benchmarks.coverage.problems import repeated
 from benchmarks.coverage.tally import Tally
-from uq.intervals import scatter_interval
+from uq.stats.intervals import scatter_interval
 
 PARTS = 8
 NEIGHBOURS = 3

@@ -15,11 +15,11 @@ from scipy.optimize import brentq
 from benchmarks.coverage.fleets import weighted_normals
 from benchmarks.coverage.problems import Inputs, Settings, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.analysis.as_json import summary_json
-from uq.analysis.level_shares import by_level
-from uq.analysis.summary import summarise
+from uq.assess.level_shares import by_level
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
 from uq.contract import Model, Output
-from uq.nested_variance import nested_shares
+from uq.stats.variance_components import nested_shares
 
 NAME = "benchmarks.coverage.nested:NESTED"
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}

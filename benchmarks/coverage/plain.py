@@ -16,8 +16,8 @@ from benchmarks.coverage.problems import (
     study_of,
 )
 from benchmarks.coverage.tally import Tally
-from uq.analysis.as_json import summary_json
-from uq.analysis.summary import summarise
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
 
 QUANTILES = (0.05, 0.5, 0.95)
 THRESHOLDS = {"ishigami": [9.0], "jump": [2.5], "life": [1.0]}

@@ -8,13 +8,14 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
 
+from uq.assess.sensitivities import sensitivities
+from uq.assess.sensitivity_json import sensitivity_json
 from uq.contract import Model, Output, Parameter
-from uq.indices.as_json import sensitivity_json
-from uq.indices.sensitivities import sensitivities
-from uq.literals import toml
-from uq.rows import results, sampling
-from uq.rows.evaluate import evaluate
+from uq.result import result_file
+from uq.study import row_sampling
 from uq.study.definition import study_from_text
+from uq.study.evaluate import evaluate
+from uq.text.literals import toml
 
 # One model for all: Ishigami's function, a jump between two regimes, lives with a heavy tail ------
 
@@ -268,9 +269,9 @@ def with_seed(study, seed):
 
 def computed(study):
     """Return the result of a study, computed in this process and kept in memory."""
-    rows = sampling.row_block(study, 0, sampling.rows(study))
+    rows = row_sampling.row_block(study, 0, row_sampling.rows(study))
     chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
-    return results.build(study, rows, chunk.columns, chunk.status, {})
+    return result_file.build(study, rows, chunk.columns, chunk.status, {})
 
 
 def indices_of(ds, method=None, output=None):

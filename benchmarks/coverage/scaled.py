@@ -6,16 +6,16 @@ import numpy as np
 from scipy import special, stats
 
 from benchmarks.coverage.tally import Tally
+from uq.assess.population import Population
+from uq.assess.row_inputs import EVERYWHERE
+from uq.assess.scale_laws import IndependentScale
 from uq.contract import Output
-from uq.inputs.registry import law_of
-from uq.population.functionals import Population
-from uq.population.means import share_to_compare
-from uq.population.row_inputs import EVERYWHERE
-from uq.population.scale_laws import IndependentScale
-from uq.population.smoothing import smoothed
-from uq.population.sums import LogTerm
-from uq.rows.element import Element
-from uq.two_samples import difference
+from uq.result.element import Element
+from uq.sampling.laws import law_of
+from uq.sampling.log_sums import LogTerm
+from uq.stats.importance_weights import smoothed
+from uq.stats.two_samples import difference
+from uq.stats.weighted_means import share_to_compare
 
 LIFE = Output("s", "life", "lifetime")
 ROWS = (30, 100, 300, 1000)

@@ -21,16 +21,16 @@ from benchmarks.coverage.problems import (
     study_of,
 )
 from benchmarks.coverage.tally import Tally
-from uq.analysis import stopping
+from uq.assess import stopping
+from uq.assess.design_sample import sample_of
 from uq.contract import Output
-from uq.designs.registry import DESIGNS
-from uq.estimate import NOTHING
-from uq.indices.samples import sample_of
-from uq.methods.indices import S1, SHAPLEY, ST, RefusedError
-from uq.methods.registry import METHODS
-from uq.methods.sample import Sample
-from uq.methods.sobol import sobol_indices
-from uq.rows.element import Element
+from uq.indices.index import S1, SHAPLEY, ST, RefusedError
+from uq.indices.methods import METHODS
+from uq.indices.sample import Sample
+from uq.indices.sobol import sobol_indices
+from uq.result.element import Element
+from uq.sampling.designs import DESIGNS
+from uq.stats.estimate import NOTHING
 from uq.study.file import DesignTable, Until
 
 HALF_WIDTHS = 60

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import stats
 
 from benchmarks.coverage.tally import Tally
-from uq.moments import moments
+from uq.stats.moments import moments
 
 PARETO = {1.5: "Pareto, index 1.5: no variance", 0.8: "Pareto, index 0.8: no mean"}
 LAWS = {

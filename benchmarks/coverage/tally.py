@@ -90,7 +90,7 @@ class Tally:
         self.add(what, truth, low, high, by)
 
     def estimate(self, what, truth, estimate, by=OURS):
-        """Count the interval of an `uq.estimate.Estimate`."""
+        """Count the interval of an `uq.stats.estimate.Estimate`."""
         self.add(what, truth, estimate.low, estimate.high, by)
 
     def lines(self):

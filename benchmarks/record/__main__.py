@@ -17,9 +17,9 @@ import xarray as xr
 import uq
 from benchmarks.record.command import reported
 from benchmarks.record.studies import ANY, SAMPLES, SHIPPED, small_studies
-from uq.designs.registry import DESIGNS
-from uq.methods.registry import fed_by
-from uq.study.registry import model_names
+from uq.indices.methods import fed_by
+from uq.sampling.designs import DESIGNS
+from uq.study.installed_models import model_names
 
 PAIRS = (
     ("ishigami-monte-carlo-small", "ishigami-sobol-small"),

@@ -3,8 +3,8 @@
 import json
 from pathlib import Path
 
-from uq.designs.registry import DESIGNS
-from uq.methods.registry import fed_by
+from uq.indices.methods import fed_by
+from uq.sampling.designs import DESIGNS
 
 SHIPPED = Path("studies")
 SAMPLES = {  # of each replicate

@@ -6,7 +6,7 @@ import sys
 from matplotlib.figure import Figure
 
 import uq
-from uq.drawing.figure import write
+from uq.render.figures.figure import write
 
 from . import FOLDER, drawn
 from .examples import EXAMPLES

@@ -4,10 +4,10 @@ from dataclasses import fields
 from pathlib import Path
 
 from uq.contract import Status
-from uq.greek import readable
+from uq.study.installed_models import find_model, model_names, module_of
 from uq.study.reading import read_study_text
-from uq.study.registry import find_model, model_names, module_of
-from uq.wording import listed
+from uq.text.numbers import listed
+from uq.text.symbols import readable
 
 from .markdown import formula, interval, minus, table, unit, value
 

@@ -5,21 +5,14 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from uq.analysis.statistics.table import STATISTICS
-from uq.designs.design import Design
-from uq.designs.layouts import PLAIN
-from uq.designs.registry import DESIGNS
-from uq.inputs.registry import LAWS
-from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
+from uq.assess.statistics.table import STATISTICS
+from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.plots import FIGURES
-from uq.study.file import (
-    AnalysisTable,
-    DependenceTable,
-    DesignTable,
-    StudyTable,
-    Tied,
-    Until,
-)
+from uq.sampling.design import Design
+from uq.sampling.designs import DESIGNS
+from uq.sampling.laws import LAWS
+from uq.sampling.layouts import PLAIN
+from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyTable, Tied, Until
 
 from .markdown import table, value
 

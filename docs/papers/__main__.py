@@ -12,7 +12,7 @@ import mole
 import vibrator
 from shown import DOCS, FOLDER, Shown
 
-from uq.drawing.figure import write
+from uq.render.figures.figure import write
 
 MACHINES = {"beam": beam, "vibrator": vibrator, "mole": mole}
 PAGE = DOCS / "papers.md"

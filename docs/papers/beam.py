@@ -17,8 +17,8 @@ from models.beam.explore import (
 from models.beam.paper.facts import HIGH, LOW, lifetime_ratios, nominal
 from models.beam.parameters import REGIMES, Params, Settings
 from uq import plots
-from uq.rows.sampling import row_block
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 
 X_0 = Params().initial_gap
 REACH = 0.2  # of omega, on either side of where a branch is begun

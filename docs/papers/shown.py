@@ -7,9 +7,9 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.panel import roomy
-from uq.drawing.style import WIDTH, styled
-from uq.drawing.symbols import typeset
+from uq.render.figures.panel import roomy
+from uq.render.figures.style import WIDTH, styled
+from uq.render.figures.words import typeset
 
 DOCS = Path(__file__).parents[1]
 FOLDER = "papers"

@@ -21,7 +21,7 @@ MODULES = (
     "netCDF4",
     "scipy.stats",
     "models.analytic",
-    "uq.analysis.statistics",
+    "uq.assess.statistics",
 )
 for module in MODULES:
     import_module(module)

@@ -12,7 +12,7 @@ import command
 import pytest
 from faulty_studies import FAULTY
 
-from uq.store.folder import history
+from uq.execution.row_folder import history
 from uq.study.definition import load_study
 
 PATIENCE = 180.0

@@ -10,8 +10,8 @@ from wordings import sentence
 
 from uq.contract import Status
 from uq.errors import InputError
-from uq.rows.evaluate import KernelError
-from uq.running import child, isolation
+from uq.execution import child, isolation
+from uq.study.evaluate import KernelError
 
 FAULTS = {
     "raise": ("linear", {"fail_how": "raise"}, Status.RAISED, "x1 is above"),

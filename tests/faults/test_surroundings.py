@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from faulty_studies import PATIENCE, computed_here
 
-from uq.rows.results import open_result
+from uq.result.result_file import open_result
 
 COMMAND = Path(sys.executable).with_name("uq")
 

@@ -12,8 +12,8 @@ from in_memory import compute
 
 from uq.contract import Status
 from uq.errors import RunError
-from uq.rows.workload import workload_of
-from uq.running import isolation
+from uq.execution import isolation
+from uq.result.workload import workload_of
 
 
 def processes(module):
@@ -51,7 +51,7 @@ class Killer:
             process.kill()
 
 
-CHILD = "uq.running.child"
+CHILD = "uq.execution.child"
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.errors import InputError, RunError
-from uq.running import remote_cluster, runner, sent_chunks
+from uq.execution import remote_cluster, runner, sent_chunks
 
 
 class Cluster:
@@ -215,4 +215,4 @@ def test_workers_left_alone_keep_no_process(start, study):
     there = start()
     patiently(there.address, study, chunk_rows=10)
     family = psutil.Process(there.started[1].pid).children(recursive=True)
-    assert not [child for child in family if "uq.running.child" in child.cmdline()]
+    assert not [child for child in family if "uq.execution.child" in child.cmdline()]

@@ -28,7 +28,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uq.rows.sampling import row_block
+from uq.study.row_sampling import row_block
 from uq.study.definition import load_study
 
 kept, *asked = sys.argv[1:]

@@ -10,14 +10,9 @@ from answer_whole_checks import denied_enough, denied_levels, denied_mixing
 from answered import numbers_in
 from scipy.stats import binomtest
 
-from uq.analysis.findings import Findings
-from uq.rows.elements import (
-    independent_rows,
-    labels,
-    named_elements,
-    replicates_of,
-)
-from uq.rows.results import failed
+from uq.assess.findings import Findings
+from uq.result.elements import independent_rows, labels, named_elements, replicates_of
+from uq.result.result_file import failed
 
 
 class Checker:

@@ -7,8 +7,8 @@ from answered import numbers_in
 from scipy.stats import binomtest
 
 import uq
-from uq.rows.elements import are_independent, study_file_of
-from uq.rows.results import failed
+from uq.result.elements import are_independent, study_file_of
+from uq.result.result_file import failed
 
 
 def denied_event(rows, event, hits):

@@ -5,7 +5,7 @@ from answered import numbers_in
 from scipy.stats import binomtest
 
 import uq
-from uq.conclusions.repeated import found_again
+from uq.assess.answer.repeat_interval import found_again
 
 
 def denied_levels(ds, found):

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from computed import asking, computed, linear, study_of, with_output
 
-from uq.conclusions.answer import answer
+from uq.assess.answer.answer import answer
 
 DAY = 86400.0
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"

@@ -5,10 +5,10 @@ import json
 import numpy as np
 from computed import computed, study_of
 
-from uq.indices import sensitivities as found
-from uq.indices.as_json import sensitivity_json
-from uq.methods.registry import METHODS
-from uq.methods.sample import Sample
+from uq.assess import sensitivities as found
+from uq.assess.sensitivity_json import sensitivity_json
+from uq.indices.methods import METHODS
+from uq.indices.sample import Sample
 
 INPUTS = ("x1", "x2", "x3")
 

@@ -5,13 +5,14 @@ from functools import wraps
 
 import numpy as np
 
-from uq.analysis.as_json import comparison_json, summary_json
-from uq.analysis.comparison import comparison
-from uq.analysis.summary import summarise
-from uq.literals import toml
-from uq.rows import results, sampling
-from uq.rows.evaluate import evaluate
+from uq.assess.comparison import comparison
+from uq.assess.summary import summarise
+from uq.assess.summary_json import comparison_json, summary_json
+from uq.result.result_file import build
+from uq.study import row_sampling
 from uq.study.definition import study_from_text
+from uq.study.evaluate import evaluate
+from uq.text.literals import toml
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
 
@@ -94,10 +95,10 @@ def with_seed(study, seed):
 
 def computed(study):
     """Return the result of a study."""
-    rows = sampling.row_block(study, 0, sampling.rows(study))
+    rows = row_sampling.row_block(study, 0, row_sampling.rows(study))
     chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
     failures = {label: message for label, (_, message) in chunk.failures.items()}
-    return results.build(study, rows, chunk.columns, chunk.status, failures)
+    return build(study, rows, chunk.columns, chunk.status, failures)
 
 
 def with_output(ds, name, values, kind="value", censored=None):

@@ -8,7 +8,7 @@ from browser import CHROMIUM, tab
 from own_machines import PAD, PAD_PROGRAM, WEAR_STUDY
 from own_study import own_study
 
-from uq.outside import server
+from uq.machines import server
 
 _numbers = itertools.count()
 

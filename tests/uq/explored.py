@@ -5,17 +5,17 @@ from pathlib import Path
 
 import numpy as np
 
-import uq.report
-from uq.analysis.findings import Findings
-from uq.conclusions.answer import conclude
-from uq.report.embedded import rows_inside
-from uq.report.layout import templates
+import uq.render.html
+from uq.assess.answer.answer import conclude
+from uq.assess.findings import Findings
+from uq.render.html.embedded_rows import rows_inside
+from uq.render.html.layout import templates
 
 CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(line => [
   line.dataset.key,
   ...[...line.cells].slice(1).map(cell => [cell.querySelector("data")?.value ?? "NaN",
   cell.dataset.low ?? "NaN", cell.dataset.high ?? "NaN"])])"""
-STYLE = (Path(uq.report.__file__).parent / "page.css").read_text()
+STYLE = (Path(uq.render.html.__file__).parent / "page.css").read_text()
 PAGE = f"""<!DOCTYPE html><html lang=en><meta charset=utf-8>
 <meta name=viewport content="width=device-width"><style>{STYLE}</style>"""
 

@@ -4,8 +4,8 @@ import pytest
 from computed import as_text
 
 from uq.errors import InputError
-from uq.rows.sampling import row_block, rows
 from uq.study.definition import study_from_text
+from uq.study.row_sampling import row_block, rows
 
 UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.9}
 BELL = {"distribution": "normal", "mean": 0.5, "sd": 0.05}

@@ -2,7 +2,7 @@
 
 from html.parser import HTMLParser
 
-from uq.report import page
+from uq.render.html.page import page
 
 
 class Page(HTMLParser):

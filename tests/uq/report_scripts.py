@@ -3,9 +3,9 @@
 import re
 from pathlib import Path
 
-import uq.report
+import uq.render.html
 
-_FOLDER = Path(uq.report.__file__).parent
+_FOLDER = Path(uq.render.html.__file__).parent
 
 
 def scripts():

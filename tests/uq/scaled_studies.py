@@ -2,9 +2,9 @@
 
 from computed import study_of
 
-from uq.population.functionals import Population
-from uq.population.scaling import population, why_not_integrated
-from uq.rows.elements import independent_rows, replicates_of
+from uq.assess.population import Population
+from uq.assess.scaling import population, why_not_integrated
+from uq.result.elements import independent_rows, replicates_of
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 

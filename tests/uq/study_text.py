@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import pi
 from typing import Any
 
-from uq.literals import toml
+from uq.text.literals import toml
 
 UNIFORM = {"distribution": "uniform", "lower": -pi, "upper": pi}
 

@@ -9,13 +9,13 @@ import sample_models
 from computed import asking, computed, linear, study_of, summarised, with_output
 
 import uq
-from uq.analysis.statistics.counts import accuracy
-from uq.analysis.statistics.statistic import Context
-from uq.analysis.summary import summarise
-from uq.cli.tables import show_summary
+from uq.assess.statistic import Context
+from uq.assess.statistics.counts import accuracy
+from uq.assess.summary import summarise
+from uq.cli.summary_tables import show_summary
 from uq.contract import Output, Setting
-from uq.report.outcomes import outcomes, result_tables
-from uq.rows.elements import analysis_of, elements_of
+from uq.render.html.outcomes import outcomes, result_tables
+from uq.result.elements import analysis_of, elements_of
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,12 @@ from computed import (
 )
 
 import uq
-from uq.conclusions.answer import answer
-from uq.conclusions.contributions import Ranking
-from uq.conclusions.parts import Event
+from uq.assess.answer.answer import answer
+from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.parts import Event
 from uq.contract import Status
-from uq.estimate import Estimate
-from uq.printed import printed
+from uq.stats.estimate import Estimate
+from uq.text.numbers import printed
 
 
 @pytest.fixture(scope="module")

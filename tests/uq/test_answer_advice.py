@@ -16,10 +16,10 @@ from computed import (
 )
 
 import uq
-from uq.conclusions.answer import answer
-from uq.conclusions.halving import halved
-from uq.conclusions.remedies import Tightened
-from uq.estimate import Estimate
+from uq.assess.answer.answer import answer
+from uq.assess.answer.halved_scatter import halved
+from uq.assess.answer.remedies import Tightened
+from uq.stats.estimate import Estimate
 from uq.study.reading import read_study_text
 
 

@@ -12,9 +12,9 @@ from answer_contradictions import denied_by_each_other
 from computed import asking, computed, kinds, linear, study_of, with_output
 from nested_studies import nested_result
 
-from uq.conclusions.answer import answer
-from uq.conclusions.contributions import Ranking
-from uq.conclusions.whole import Answer
+from uq.assess.answer.answer import answer
+from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.facts import Answer
 
 MOVED = 1.9
 """By what a number is multiplied: no interval is as wide."""

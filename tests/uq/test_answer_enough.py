@@ -8,9 +8,9 @@ from answered import lifetime, numbers
 from computed import asking, kinds, linear, with_output
 
 from uq import answer, trace
-from uq.analysis.findings import Findings
-from uq.conclusions.page import fragment
-from uq.conclusions.verdict import verdict
+from uq.assess.answer.verdict import verdict
+from uq.assess.findings import Findings
+from uq.render.html.answer import fragment
 
 
 def rules(found):

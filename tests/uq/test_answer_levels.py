@@ -7,9 +7,9 @@ from computed import asking, kinds, linear
 from nested_studies import nested_result
 
 from uq import answer, trace
-from uq.conclusions.page import fragment
-from uq.rows.variables import parameter_variable
-from uq.study.registry import find_model
+from uq.render.html.answer import fragment
+from uq.result.variables import parameter_variable
+from uq.study.installed_models import find_model
 
 
 def test_the_level_that_decides_is_named_with_its_share():

@@ -6,10 +6,10 @@ from answered import locking, numbers
 from computed import asking, linear, with_output
 
 from uq import answer, summary, trace
-from uq.analysis.event_curve import EventCurve, event_curve
-from uq.conclusions.limits import limit_of
-from uq.conclusions.words import Unit
-from uq.estimate import Estimate
+from uq.assess.answer.limits import limit_of
+from uq.assess.answer.wording import Unit
+from uq.assess.event_curve import EventCurve, event_curve
+from uq.stats.estimate import Estimate
 
 
 def limit(chance, rows=4000, seed=0, is_unwanted=True):

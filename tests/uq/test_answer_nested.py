@@ -9,7 +9,7 @@ from computed import asking, computed, linear, study_of, summarised, with_output
 from noisy_studies import noisy
 
 from uq import what_if
-from uq.conclusions.answer import answer
+from uq.assess.answer.answer import answer
 
 DAY = 86400.0
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"

@@ -7,9 +7,9 @@ import pytest
 from computed import asking, linear, with_output, with_status
 
 from uq import answer
-from uq.conclusions.as_json import answer_json
-from uq.conclusions.page import fragment
+from uq.assess.answer.answer_json import answer_json
 from uq.contract import Status
+from uq.render.html.answer import fragment
 
 DAY, ROWS = 86400.0, 200
 

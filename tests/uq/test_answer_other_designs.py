@@ -7,11 +7,11 @@ import pytest
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 
 import uq
-from uq.conclusions.answer import answer
-from uq.conclusions.contributions import Contribution, Ranking
-from uq.conclusions.intermingled import Intermingled
-from uq.conclusions.page import fragment
-from uq.estimate import Estimate
+from uq.assess.answer.answer import answer
+from uq.assess.answer.contributions import Contribution, Ranking
+from uq.assess.answer.regime_mixing import Intermingled
+from uq.render.html.answer import fragment
+from uq.stats.estimate import Estimate
 
 
 def test_intermingled_regimes_say_how_little_better_known_inputs_tell():

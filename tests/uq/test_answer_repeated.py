@@ -5,13 +5,13 @@ import pytest
 from answered import lifetime, numbers
 from computed import asking, kinds, linear, with_output
 
-from uq import order_statistics
-from uq.conclusions.answer import answer
-from uq.conclusions.contributions import Contribution, Ranking
-from uq.conclusions.repeated import Repeated, found_again, repeated_quantile
-from uq.conclusions.words import Unit
-from uq.estimate import Estimate
-from uq.intervals import share_interval
+from uq.assess.answer.answer import answer
+from uq.assess.answer.contributions import Contribution, Ranking
+from uq.assess.answer.repeat_interval import Repeated, found_again, repeated_quantile
+from uq.assess.answer.wording import Unit
+from uq.stats import order_statistics
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import share_interval
 
 SEEDS = 2000
 

@@ -19,16 +19,16 @@ from computed import (
 from nested_studies import nested_result
 from scipy.stats import binomtest
 
-from uq.analysis.findings import Findings
-from uq.cli.tables import show_answer
-from uq.conclusions.answer import answer
-from uq.conclusions.page import fragment
-from uq.conclusions.parts import Event
-from uq.conclusions.remedies import Tightened
-from uq.conclusions.verdict import verdict
-from uq.conclusions.whole import Answer
+from uq.assess.answer.answer import answer
+from uq.assess.answer.facts import Answer
+from uq.assess.answer.parts import Event
+from uq.assess.answer.remedies import Tightened
+from uq.assess.answer.verdict import verdict
+from uq.assess.findings import Findings
+from uq.cli.summary_tables import show_answer
 from uq.contract import Status
-from uq.estimate import Estimate
+from uq.render.html.answer import fragment
+from uq.stats.estimate import Estimate
 
 DAY = 86400.0
 

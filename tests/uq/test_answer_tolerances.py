@@ -5,8 +5,8 @@ import pytest
 from answered import numbers
 from computed import asking, computed, study_of
 
-from uq.conclusions.answer import answer
-from uq.conclusions.page import fragment
+from uq.assess.answer.answer import answer
+from uq.render.html.answer import fragment
 
 COEFFICIENTS = {"x1": 1.0, "x2": 2.0, "x3": 3.0, "x4": 4.0}
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from computed import asking, computed, linear, study_of, with_output
 
-from uq.conclusions.answer import answer
-from uq.conclusions.promises import Promise
-from uq.conclusions.remedies import Tightened
-from uq.conclusions.words import Unit
-from uq.estimate import Estimate
+from uq.assess.answer.answer import answer
+from uq.assess.answer.remedies import Tightened
+from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.answer.wording import Unit
+from uq.stats.estimate import Estimate
 
 
 def graded(samples=1000):

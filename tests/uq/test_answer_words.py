@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from uq.conclusions.promises import Promise
-from uq.conclusions.words import Unit, called_together, rounded
-from uq.wording import rows_in_words
+from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.answer.wording import Unit, called_together, rounded
+from uq.text.numbers import rows_in_words
 
 
 def test_twins_are_named_together():

@@ -16,7 +16,7 @@ import xarray as xr
 import uq
 from uq.contract import Model, Output, Parameter, Status
 from uq.errors import InputError
-from uq.exploring.attractors import Compared, attractors
+from uq.explore.attractors import Compared, attractors
 
 
 class Start(NamedTuple):
@@ -161,7 +161,7 @@ def test_workers_take_part():
 
 
 def test_a_model_that_workers_would_not_find_runs_here(monkeypatch):
-    monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", 0.0)
+    monkeypatch.setattr("uq.execution.executor.SHORT_SECONDS", 0.0)
     ds = uq.basins(process_models.PROCESS, {"x1": (0.0, 1.0, 64)}, settings={"seconds": 0.02})
     assert set(ds["y"].values) == {float(os.getpid())}
 

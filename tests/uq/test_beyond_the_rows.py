@@ -8,12 +8,12 @@ from computed import asking, compared, kinds, linear, summarised, with_output
 from scipy import stats
 
 import uq as api
-from uq import order_statistics
-from uq.analysis.overview import summary
-from uq.analysis.summary import summarise
-from uq.analysis.widths import expected_widths
-from uq.report.outcomes import outcomes, result_tables
-from uq.store import write
+from uq.assess.expected_widths import expected_widths
+from uq.assess.summary import summarise
+from uq.assess.summary_table import summary
+from uq.files.whole_files import write
+from uq.render.html.outcomes import outcomes, result_tables
+from uq.stats import order_statistics
 
 
 def lives(rows, **design):

@@ -12,19 +12,19 @@ from own_machines import PAD
 
 from models.numerics import cache
 from uq.cli import app
-from uq.drawing.figure import replaced
 from uq.errors import InputError
-from uq.outside import results_of_programs
-from uq.outside.machine_file import OutputTable, filled, read_machine
-from uq.outside.results_of_programs import value_in
-from uq.outside.returned import WrongReturnError
-from uq.quantile_functions import negative_binomial
-from uq.rows.results import open_result
-from uq.running import runner
+from uq.execution import runner
+from uq.machines import program_outputs
+from uq.machines.machine_file import OutputTable, filled, read_machine
+from uq.machines.program_outputs import value_in
+from uq.machines.returned import WrongReturnError
+from uq.render.figures.figure import replaced
+from uq.result.result_file import open_result
+from uq.stats.quantile_functions import negative_binomial
 
 
 def test_a_rare_share_is_found_in_few_steps(monkeypatch):
-    from uq import quantile_functions as functions
+    from uq.stats import quantile_functions as functions
 
     steps = []
     distribution = functions.special.nbdtr
@@ -66,7 +66,7 @@ def test_a_format_and_a_pattern_that_explode_are_refused(folder, monkeypatch):
     with pytest.raises(ValueError, match="wider than 999"):
         filled("{load:1000000000d}", {"load": 1})
     assert filled("{load:12.6e}", {"load": 1.0}) == "1.000000e+00"
-    monkeypatch.setattr(results_of_programs, "_SEARCH_SECONDS", 0.2)
+    monkeypatch.setattr(program_outputs, "_SEARCH_SECONDS", 0.2)
     (folder / "out").write_text("a" * 40 + "!")
     with pytest.raises(WrongReturnError, match="takes too long"):
         value_in(folder, "y", OutputTable(file="out", pattern="((?:a+)+)$"))
@@ -74,7 +74,7 @@ def test_a_format_and_a_pattern_that_explode_are_refused(folder, monkeypatch):
 
 def test_a_pattern_that_explodes_is_ended_in_a_thread_too(folder, monkeypatch):
     """Threads of a served model search without the interpreter, which others need meanwhile."""
-    monkeypatch.setattr(results_of_programs, "_SEARCH_SECONDS", 3.0)
+    monkeypatch.setattr(program_outputs, "_SEARCH_SECONDS", 3.0)
     Path("out").write_text(f"life = 2.5\n{'a' * 60}!")
     with ThreadPoolExecutor(1) as threads:
         life = threads.submit(value_in, folder, "y", OutputTable(file="out", pattern="= (.*)$"))

@@ -5,11 +5,11 @@ from dependent_studies import entry_of, weighted
 
 import uq
 from uq import plots
-from uq.analysis.findings import Findings
+from uq.assess import sensitivities as module
+from uq.assess.answer.rankings import ranking_of
+from uq.assess.findings import Findings
 from uq.cli.sensitivity import show
-from uq.conclusions.rankings import ranking_of
-from uq.indices import sensitivities as module
-from uq.report.indices import sensitivity_of
+from uq.render.html.indices import sensitivity_of
 
 
 def test_an_input_without_an_effect_of_its_own_is_named():

@@ -3,8 +3,8 @@
 import pytest
 from command_line import strict_json
 
-from uq.cli import catalogue
-from uq.study.registry import find_model, model_names
+from uq.cli import models
+from uq.study.installed_models import find_model, model_names
 
 
 def test_models_are_listed(uq):
@@ -71,9 +71,9 @@ def test_every_model_is_described_as_json(uq, name):
 @pytest.mark.parametrize("name", ["beam", "vibrator", "mole"])
 @pytest.mark.parametrize("width", [60, 80])
 def test_no_line_of_a_parameter_is_broken(name, width, monkeypatch, capsys):
-    monkeypatch.setattr(catalogue.console, "_width", width)
+    monkeypatch.setattr(models.console, "_width", width)
     model = find_model(name)
-    catalogue.show(model)
+    models.show(model)
     lines = capsys.readouterr().out.split("Settings")[0].splitlines()
     for parameter in model.nominal:
         start = next(i for i, line in enumerate(lines) if line.split()[:1] == [parameter])

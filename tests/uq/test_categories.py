@@ -10,16 +10,16 @@ from computed import asking, compared, linear, summarised, with_status
 from scipy import stats
 
 from uq import compare, plots, summary
-from uq.analysis.findings import Findings
+from uq.assess.findings import Findings
 from uq.contract import Status
-from uq.drawing.catalogue import drawables
 from uq.errors import InputError
-from uq.keys import key_of
-from uq.report import write_report
-from uq.rows.row_choice import lowest_row
-from uq.store.files import write_result
-from uq.study.registry import find_model
-from uq.tracing.tracing import traced
+from uq.files.whole_files import write_result
+from uq.render.figures.catalogue import drawables
+from uq.render.html.page import write_report
+from uq.render.trace.trace import traced
+from uq.result.row_choice import lowest_row
+from uq.study.installed_models import find_model
+from uq.text.keys import key_of
 
 LABELS = ("aperiodic", "1", "2", "3")
 

@@ -18,15 +18,15 @@ from distributed import LocalCluster
 from in_memory import compute
 
 import uq
-from uq import provenance
 from uq.errors import InputError
-from uq.rows.workload import workload_of
-from uq.running import dask_task, dispatch, local_cluster, remote_cluster
-from uq.running.child import ModelSpec
-from uq.running.children import Children
-from uq.running.dask_task import evaluate_rows
-from uq.running.isolation import spec_of
-from uq.running.workers import Workers
+from uq.execution import dask_task, dispatch, local_cluster, remote_cluster
+from uq.execution.child import ModelSpec
+from uq.execution.children import Children
+from uq.execution.dask_task import evaluate_rows
+from uq.execution.isolation import spec_of
+from uq.execution.workers import Workers
+from uq.result.workload import workload_of
+from uq.study import provenance
 from uq.study.definition import load_study
 
 
@@ -35,7 +35,7 @@ def workers():
     found = set()
     for child in psutil.Process().children():
         with contextlib.suppress(psutil.NoSuchProcess):  # also one that is just ending
-            if "uq.running.child" in child.cmdline():
+            if "uq.execution.child" in child.cmdline():
                 found.add(child)
     return found
 
@@ -104,7 +104,7 @@ def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
     monkeypatch.setattr(dispatch, "CHUNK_SECONDS", 0.05)
-    monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
+    monkeypatch.setattr("uq.execution.executor.SHORT_SECONDS", seconds)
     monkeypatch.setattr(local_cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = compute(load_study(path, "process_models:PROCESS"))

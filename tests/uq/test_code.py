@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from uq.errors import InputError
-from uq.study.registry import code_of, model_at
+from uq.study.installed_models import code_of, model_at
 from uq.study.sources import fingerprint
 
 

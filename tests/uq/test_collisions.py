@@ -7,10 +7,10 @@ from drawn import collisions
 
 import uq
 from models import beam, mole, vibrator
-from uq.analysis.findings import Findings
-from uq.drawing.catalogue import drawables
-from uq.drawing.figure import lay_out
+from uq.assess.findings import Findings
 from uq.plots import FIGURES
+from uq.render.figures.catalogue import drawables
+from uq.render.figures.figure import lay_out
 
 
 def dressed(ds, model):

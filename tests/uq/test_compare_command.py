@@ -16,7 +16,7 @@ from computed import (
 from wordings import sentence
 
 from uq.errors import InputError
-from uq.store.files import write_result
+from uq.files.whole_files import write_result
 
 
 def test_studies_that_cannot_be_compared_are_refused_in_a_line(uq, folder):

@@ -5,9 +5,9 @@ import pytest
 from computed import asking, compared, kinds, linear, with_output, with_status
 from nested_studies import nested_result
 
-from uq.analysis.pairing import Kinship, kinship
+from uq.assess.pairing import Kinship, kinship
 from uq.contract import Status
-from uq.intervals import wilson_interval
+from uq.stats.intervals import wilson_interval
 
 ENDS = ("value", "low", "high")
 

@@ -7,7 +7,7 @@ import pytest
 from computed import asking, computed, linear, study_of, with_output, with_status
 
 from uq.contract import Status
-from uq.store.files import write_result
+from uq.files.whole_files import write_result
 
 DAY = 86400.0
 

@@ -17,10 +17,10 @@ from scipy import stats
 
 import uq as api
 from uq.contract import Status
-from uq.estimate import Estimate
-from uq.intervals import wilson_interval
-from uq.moments import sd_interval
-from uq.two_samples import difference
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import wilson_interval
+from uq.stats.moments import sd_interval
+from uq.stats.two_samples import difference
 
 
 def width(found, estimate="mean"):

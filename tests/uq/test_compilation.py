@@ -51,7 +51,7 @@ numba.njit(lambda x: x)(1)
     ],
 )
 def test_compilation_is_heard_of(program):
-    program = f"from uq.compilation import compilation\n{program}"
+    program = f"from uq.machines.compilation import compilation\n{program}"
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert (ended.returncode, ended.stderr) == (0, "")
 

@@ -5,9 +5,9 @@ import pytest
 
 import uq as package
 from uq.contract import Status
-from uq.outside.compiled import Compiled
-from uq.outside.row_by_row import RowByRow
-from uq.study.registry import model_at
+from uq.machines.compiled_function import Compiled
+from uq.machines.row_by_row import RowByRow
+from uq.study.installed_models import model_at
 
 
 def test_a_compiled_function_returns_a_tuple(uq, write_function):

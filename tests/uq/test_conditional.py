@@ -9,9 +9,9 @@ from input_studies import BELL, UNIFORM, inputs_of, tables
 from scipy import stats
 
 from benchmarks.coverage import dependent
-from uq.designs.registry import DESIGNS
-from uq.inputs.conditional import conditional_paths
-from uq.rows.sampling import row_block, rows
+from uq.sampling.conditional_draws import conditional_paths
+from uq.sampling.designs import DESIGNS
+from uq.study.row_sampling import row_block, rows
 
 NONE = (None, None, None)
 

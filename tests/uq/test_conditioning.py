@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from uq.contract import Parameter
-from uq.inputs.conditioning import cdf_within, law_problem, ppf_within
-from uq.inputs.registry import law_of
+from uq.sampling.laws import law_of
+from uq.sampling.truncation import cdf_within, law_problem, ppf_within
 
 LAWS = {
     "uniform": {"lower": 2.0, "upper": 5.0},

@@ -6,7 +6,7 @@ from learnt_studies import measured, wear
 from worn_studies import pads
 
 from uq.errors import InputError
-from uq.exploring.updating import update
+from uq.explore.updating import update
 
 LEFT = "depth[side=left]"
 

@@ -10,10 +10,10 @@ from dependent_studies import assert_near, entry_of, weighted
 
 from benchmarks.coverage import dependent, dependent_effects, problems
 from benchmarks.coverage.neighbours import by_neighbours
-from uq.indices.samples import sample_of
-from uq.methods import polynomials
-from uq.methods.indices import SHAPLEY
-from uq.methods.registry import METHODS
+from uq.assess.design_sample import sample_of
+from uq.indices import polynomials
+from uq.indices.index import SHAPLEY
+from uq.indices.methods import METHODS
 
 
 def of_case(words, samples, seed=1):

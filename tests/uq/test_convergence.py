@@ -8,9 +8,9 @@ import xarray as xr
 from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
-from uq import store
-from uq.analysis.convergence import enough, running_estimates
+from uq.assess.convergence import enough, running_estimates
 from uq.errors import InputError
+from uq.files import whole_files
 
 
 @pytest.mark.parametrize(
@@ -88,24 +88,24 @@ def test_no_interval_is_no_warning():
 
 
 def test_the_command_shows_and_writes_json(uq, folder):
-    store.write(with_error(1.0), folder / "out.nc")
+    whole_files.write(with_error(1.0), folder / "out.nc")
     ended = uq("convergence", "out.nc")
     assert ended.code == 0
     assert "more rows do not help" in " ".join(ended.out.split())
     found = json.loads(uq("convergence", "out.nc", "--json").out)["outputs"]["y"]
     assert [line["samples"] for line in found["estimates"]["mean"]] == [16, 32, 64, 128, 256]
     assert found["own_error"] == 1.0 and found["sampling_error"] < 1.0
-    store.write(linear(samples=1024), folder / "long.nc")
+    whole_files.write(linear(samples=1024), folder / "long.nc")
     shown = [line.split() for line in uq("convergence", "long.nc").out.splitlines()]
     of_mean = shown[shown.index(["samples", "mean", "95", "%", "interval"]) + 1 :]
     assert [line[0] for line in of_mean[:6]] == ["32", "64", "128", "256", "512", "1024"]
-    store.write(linear("latin-hypercube", 64, 8), folder / "lhs.nc")
+    whole_files.write(linear("latin-hypercube", 64, 8), folder / "lhs.nc")
     assert uq("convergence", "lhs.nc").code == 2
 
 
 def test_the_verdict_comes_first_also_of_one_output(uq, folder):
     ds = asking(linear(samples=64), outputs=["y"], thresholds={"y": 5.0})
-    store.write(with_output(ds, "y_error", np.full(64, 9.0)), folder / "out.nc")
+    whole_files.write(with_output(ds, "y_error", np.full(64, 9.0)), folder / "out.nc")
     for arguments in ((), ("--output", "y")):
         first, *_ = uq("convergence", "out.nc", *arguments).out.splitlines()
         assert first.startswith("Not enough rows: ")

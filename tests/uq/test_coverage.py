@@ -23,11 +23,11 @@ from coverage_tally import (
 from scipy import stats
 from scipy.optimize import brentq
 
-from uq.analysis.life_fit import fits_of
-from uq.analysis.life_quantiles import B_LIVES
-from uq.analysis.lifetime import survival
-from uq.analysis.statistics.between_regimes import between_share
-from uq.rows.elements import elements_of
+from uq.assess.life_fit import fits_of
+from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistics.between_regimes import between_share
+from uq.assess.survival import survival
+from uq.result.elements import elements_of
 
 pytestmark = pytest.mark.slow
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from input_studies import BELL, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.inputs.registry import law_of
+from uq.sampling.laws import law_of
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_discrete_laws_take_their_values_with_their_weights():
     u=st.lists(st.floats(2.0**-54, 1 - 2.0**-53), min_size=1, max_size=5),
 )
 def test_a_discrete_law_gives_none_but_its_values(values, ends, u):
-    from uq.inputs.conditioning import ppf_within
+    from uq.sampling.truncation import ppf_within
 
     law = law_of({"distribution": "discrete-choice", "values": values})
     low, high = sorted(ends)

@@ -6,12 +6,12 @@ import pytest
 from computed import as_text, asking, computed
 from input_studies import UNIFORM, inputs_of, tables
 
-from uq.analysis.comparison import comparison
+from uq.assess.comparison import comparison
 from uq.errors import InputError
-from uq.report import page
-from uq.rows.sampling import row_block
+from uq.render.html.page import page
 from uq.study.definition import load_study, study_from_text
-from uq.wording import law
+from uq.study.row_sampling import row_block
+from uq.text.numbers import law
 
 
 @pytest.fixture

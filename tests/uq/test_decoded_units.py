@@ -2,7 +2,7 @@
 
 import pytest
 
-from uq.written import fault_of_unit
+from uq.text.quantities import fault_of_unit
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,9 @@ from SALib.sample import sobol as salib_sobol
 from scipy.stats import kstest, qmc
 from wordings import sentence
 
-from uq.designs.layouts import CURVES, TRAJECTORIES
-from uq.designs.registry import DESIGNS
-from uq.designs.streams import replicate_seed
-from uq.designs.trajectories import STEP
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import CURVES, TRAJECTORIES
+from uq.sampling.unit_cube import STEP, replicate_seed
 
 SIZE = 64
 DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]

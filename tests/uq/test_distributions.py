@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from uq.inputs.registry import LAWS, law_of
+from uq.sampling.laws import LAWS, law_of
 
 # name -> arguments, mean, standard deviation in closed form
 MOMENTS = {

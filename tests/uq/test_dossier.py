@@ -10,12 +10,11 @@ from learnt_studies import measured, wear
 from nested_studies import nested
 
 from uq.contract import Status
-from uq.exploring.updating import update
-from uq.report.dossier import dossier
-from uq.report.dossier.chapters import CONTENTS, chapters
-from uq.report.dossier.outline import DOCUMENTS, OUTLINE
-from uq.store.files import write_result
-from uq.tracing.tracing import traced
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
+from uq.render.html.dossier.chapters import CONTENTS, chapters, dossier
+from uq.render.html.dossier.outline import DOCUMENTS, OUTLINE
+from uq.render.trace.trace import traced
 
 HOSTILE = "<script>alert(1)</script>"
 

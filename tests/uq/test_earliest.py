@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from computed import asking, kinds, linear, with_output
 
-from uq.analysis.earliest import earliest_rows, ranks
-from uq.analysis.findings import Findings
-from uq.conclusions.answer import answer, conclude
-from uq.conclusions.as_json import answer_json
-from uq.conclusions.page import fragment
-from uq.report.embedded import rows_inside
-from uq.rows.elements import independent_rows, named_elements
-from uq.rows.row_choice import lowest_row
+from uq.assess.answer.answer import answer, conclude
+from uq.assess.answer.answer_json import answer_json
+from uq.assess.earliest import earliest_rows, ranks
+from uq.assess.findings import Findings
+from uq.render.html.answer import fragment
+from uq.render.html.embedded_rows import rows_inside
+from uq.result.elements import independent_rows, named_elements
+from uq.result.row_choice import lowest_row
 
 
 def with_lives(lives, flags=None, **design):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from uq.analysis.effects import effects
-from uq.analysis.event_curve import event_curve
-from uq.clusters import Clusters
+from uq.assess.effects import effects
+from uq.assess.event_curve import event_curve
+from uq.stats.clusters import Clusters
 
 RNG = np.random.default_rng(5)
 

@@ -6,9 +6,9 @@ from asked_indices import sensitivities
 from computed import UNIFORM, kinds, study_of
 from until_studies import tables
 
-from uq.element_names import place_of
 from uq.errors import InputError
-from uq.rows.elements import named_elements
+from uq.result.elements import named_elements
+from uq.text.element_names import place_of
 
 AXES = {"site": np.array(["left", "1e3"]), "instant": np.array([0.5, 3600.0])}
 

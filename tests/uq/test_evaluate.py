@@ -9,7 +9,7 @@ import wrong_models
 
 from models.analytic import EXPONENTIAL_WEAR, LINEAR
 from uq.contract import Output, Status
-from uq.rows.evaluate import KernelError, evaluate, joined
+from uq.study.evaluate import KernelError, evaluate, joined
 
 
 def linear(x1, how, start=0):

@@ -6,12 +6,12 @@ from computed import asking, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
-from uq.analysis.failed_rows import failed_share_bounds
-from uq.analysis.overview import summary
-from uq.analysis.summary import summarise
-from uq.estimate import Estimate
-from uq.estimate_text import failed_bounds_text, share_text
-from uq.intervals import share_interval
+from uq.assess.failed_rows import failed_share_bounds
+from uq.assess.summary import summarise
+from uq.assess.summary_table import summary
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import failed_bounds_text, share_text
+from uq.stats.intervals import share_interval
 
 ROWS = 1000
 LIVES = stats.weibull_min(1.5, scale=3.5)

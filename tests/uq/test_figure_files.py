@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
-from uq.analysis.findings import Findings
-from uq.drawing.catalogue import drawables
+from uq.assess.findings import Findings
 from uq.errors import InputError
+from uq.render.figures.catalogue import drawables
 
 
 def files(ds):

@@ -9,10 +9,10 @@ from drawn import words
 from matplotlib.figure import Figure
 
 from uq import plots
-from uq.drawing.catalogue import file_name
-from uq.drawing.figure import lay_out
-from uq.drawing.panel import roomy
-from uq.drawing.words import as_label, powers
+from uq.render.figures.catalogue import file_name
+from uq.render.figures.figure import lay_out
+from uq.render.figures.panel import roomy
+from uq.render.figures.words import as_label, powers
 
 
 def test_numbers_on_logarithmic_axes_are_plain():

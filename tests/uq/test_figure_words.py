@@ -3,11 +3,11 @@
 from computed import asking, kinds, linear, with_output
 
 from uq import plots
-from uq.analysis.findings import Findings
-from uq.drawing.catalogue import drawables
-from uq.drawing.figure import lay_out
+from uq.assess.findings import Findings
 from uq.plots import FIGURES
-from uq.report.pictures import pictures
+from uq.render.figures.catalogue import drawables
+from uq.render.figures.figure import lay_out
+from uq.render.html.pictures import pictures
 
 
 def captions(ds):

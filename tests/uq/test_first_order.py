@@ -7,15 +7,15 @@ from computed import asking, linear, with_output
 from scipy import special
 from scipy.stats import qmc
 
-from uq.conclusions.answer import answer
-from uq.conclusions.as_json import answer_json
-from uq.conclusions.rankings import unexplained
-from uq.designs.registry import DESIGNS
-from uq.indices.sensitivities import methods
-from uq.methods.indices import S1, RefusedError
-from uq.methods.registry import METHODS, fed_by
-from uq.methods.residual_variance import residual_variance
-from uq.methods.sample import Sample
+from uq.assess.answer.answer import answer
+from uq.assess.answer.answer_json import answer_json
+from uq.assess.answer.rankings import unexplained
+from uq.assess.sensitivities import methods
+from uq.indices.index import S1, RefusedError
+from uq.indices.methods import METHODS, fed_by
+from uq.indices.residual_variance import residual_variance
+from uq.indices.sample import Sample
+from uq.sampling.designs import DESIGNS
 
 REPETITIONS = 40
 

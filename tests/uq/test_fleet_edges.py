@@ -5,9 +5,9 @@ import pytest
 from computed import computed, study_of
 from scipy import special, stats
 
-from uq.analysis.fleet import fleet_of
-from uq.analysis.fleet_json import fleet_json
-from uq.population.worlds import Noisy
+from uq.assess.fleet import fleet_of
+from uq.assess.fleet_json import fleet_json
+from uq.assess.random_effects import Noisy
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 

@@ -8,15 +8,15 @@ from fleet_studies import LISTED, SHARED, brute_force, fleet_result, fleet_study
 
 import uq as api
 from benchmarks.coverage import fleets as counted
-from uq.analysis.fleet import fleet_of
-from uq.analysis.fleet_json import fleet_json
-from uq.analysis.overview import summary
+from uq.assess.fleet import fleet_of
+from uq.assess.fleet_json import fleet_json
+from uq.assess.fleets import units_of
+from uq.assess.random_effects import ONE_UNIT, Noisy
+from uq.assess.summary_table import summary
 from uq.errors import InputError
-from uq.population.counting import at_most
-from uq.population.fleets import units_of
-from uq.population.worlds import ONE_UNIT, Noisy
-from uq.rows.elements import elements_of
-from uq.store.files import write_result
+from uq.files.whole_files import write_result
+from uq.result.elements import elements_of
+from uq.stats.counting import at_most
 
 
 @pytest.mark.parametrize(("size", "allow"), [(1, 0), (3, 0), (3, 1), (3, 5), (6, 2), (7, 0)])
@@ -33,7 +33,7 @@ def test_the_mean_over_all_fleets(size, allow):
 def test_many_worlds_are_computed_in_blocks(monkeypatch):
     ended = np.random.default_rng(0).random((50, 8, 1))
     whole = at_most(ended, 5, 1)
-    monkeypatch.setattr("uq.population.counting._MOST_NUMBERS", 100)
+    monkeypatch.setattr("uq.stats.counting._MOST_NUMBERS", 100)
     assert at_most(ended, 5, 1) == pytest.approx(whole, abs=1e-15)
 
 

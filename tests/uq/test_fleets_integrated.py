@@ -9,10 +9,10 @@ from fleet_studies import LISTED, OWN, SHARED, brute_force, fleet_result, lognor
 from scipy import special, stats
 
 from benchmarks.coverage import fleets as counted
-from uq.analysis.fleet import fleet_of
-from uq.population.counting import at_most
-from uq.population.fleets import units_of
-from uq.rows.elements import elements_of
+from uq.assess.fleet import fleet_of
+from uq.assess.fleets import units_of
+from uq.result.elements import elements_of
+from uq.stats.counting import at_most
 
 
 def test_the_first_of_many_by_brute_force():

@@ -12,11 +12,11 @@ from own_machines import opened
 from own_study import own_study
 
 from uq.contract import Status
-from uq.outside.fmu import reduced
-from uq.outside.fmu_file import FmuOutputTable
-from uq.outside.fmu_said import cf_unit
-from uq.outside.returned import Censored
-from uq.study.registry import model_at
+from uq.machines.fmu import reduced
+from uq.machines.fmu_description import cf_unit
+from uq.machines.fmu_file import FmuOutputTable
+from uq.machines.returned import Censored
+from uq.study.installed_models import model_at
 
 MACHINE = """
 [machine]

@@ -10,9 +10,9 @@ import pytest
 import uq as package
 from uq.cli.app import VERBS
 from uq.errors import InputError
-from uq.report import write_report
-from uq.report.dossier import dossier
-from uq.running import runner
+from uq.execution import runner
+from uq.render.html.dossier.chapters import dossier
+from uq.render.html.page import write_report
 
 MARKER = "executed"
 CODE = f"open({MARKER!r}, 'w').close()\nfrom models.analytic import EXPONENTIAL_WEAR as MODEL\n"

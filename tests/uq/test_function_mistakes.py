@@ -3,7 +3,7 @@
 import pytest
 from own_machines import WEAR, WEAR_STUDY
 
-from uq.outside.returned import Returned, WrongReturnError, checked
+from uq.machines.returned import Returned, WrongReturnError, checked
 
 BOUNDED = (
     "from typing import Annotated\nimport uq\n"

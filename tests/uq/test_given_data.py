@@ -9,12 +9,12 @@ from asked_indices import sensitivities
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
+from uq.assess import sensitivities as module
+from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError
-from uq.indices import sensitivities as module
-from uq.indices.dataset import sensitivity
-from uq.methods.indices import RefusedError
-from uq.methods.registry import METHODS
-from uq.methods.sample import Sample
+from uq.indices.index import RefusedError
+from uq.indices.methods import METHODS
+from uq.indices.sample import Sample
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {

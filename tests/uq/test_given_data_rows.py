@@ -10,8 +10,8 @@ from SALib.analyze import pawn, rbd_fast
 from SALib.analyze.delta import calc_delta
 from scipy import stats
 
-from uq.methods.given_data import DUMMIES
-from uq.methods.registry import METHODS
+from uq.indices.given_data import DUMMIES
+from uq.indices.methods import METHODS
 
 
 @pytest.mark.parametrize("design", ["monte-carlo", "latin-hypercube", "sobol", "halton"])

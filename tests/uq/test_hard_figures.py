@@ -8,10 +8,10 @@ from computed import asking, computed, kinds, linear, study_of, with_output
 from drawn import collisions, words
 
 from uq import plots
-from uq.drawing.figure import lay_out
-from uq.drawing.words import as_label
-from uq.indices.sensitivities import sensitivities
-from uq.methods.indices import Null
+from uq.assess.sensitivities import sensitivities
+from uq.indices.index import Null
+from uq.render.figures.figure import lay_out
+from uq.render.figures.words import as_label
 
 
 def profile(places, samples=40):

@@ -23,14 +23,14 @@ from rare_studies import linear as rare_linear
 from sample_models import SIDES, ok, simple
 
 import uq as package
-from uq.analysis.effects import effects
-from uq.analysis.summary import summarise
+from uq.assess.effects import effects
+from uq.assess.summary import summarise
 from uq.contract import Output
 from uq.errors import InputError
-from uq.exploring.rare_events import rare_event
-from uq.exploring.updating import update
+from uq.explore.rare_events import rare_event
+from uq.explore.updating import update
 from uq.learning.answer import learnt
-from uq.order_statistics import rows_for_bound
+from uq.stats.order_statistics import rows_for_bound
 
 FAR = 1e12
 """Doubles are 1.2e-4 apart here."""

@@ -7,11 +7,11 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
-from uq.analysis.findings import Findings
-from uq.analysis.widths import expected_widths
-from uq.conclusions.answer import answer
-from uq.indices.transforms import HEAVY, heaviness, tail_share
-from uq.report.indices import sensitivity_of
+from uq.assess.answer.answer import answer
+from uq.assess.expected_widths import expected_widths
+from uq.assess.findings import Findings
+from uq.assess.targets import HEAVY, heaviness, tail_share
+from uq.render.html.indices import sensitivity_of
 
 
 def heavy(sign=1, shift=0.0, samples=64):

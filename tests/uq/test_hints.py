@@ -4,11 +4,11 @@ import pytest
 from own_study import own_study
 
 from uq.errors import RunError
-from uq.exploring import rare_events
-from uq.running import runner
-from uq.running.loading import load_study
+from uq.execution import runner
+from uq.execution.loading import load_study
+from uq.explore import rare_events
 from uq.study.hints import hints, undeclared_lives
-from uq.study.registry import find_model, model_names
+from uq.study.installed_models import find_model, model_names
 
 PAD = """
 import uq

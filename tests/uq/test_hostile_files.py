@@ -11,9 +11,9 @@ import pytest
 import xarray as xr
 
 from uq.errors import InputError
-from uq.literals import plain, plain_line
-from uq.rows.results import open_result
-from uq.running import runner
+from uq.execution import runner
+from uq.result.result_file import open_result
+from uq.text.literals import plain, plain_line
 
 READERS = ("summary", "sensitivity", "plot", "status", "verify")
 ESCAPE = "\x1b[31mred\x1b[0m\x07\x9b2J\u202e[bold]x[/bold]"

@@ -13,9 +13,9 @@ import pytest
 from own_machines import PAD, PAD_PROGRAM, run_program
 
 from uq.contract import Status
-from uq.outside import descendants, folders, program
-from uq.outside.folders import Folders
-from uq.study.registry import model_at
+from uq.machines import child_processes, program, row_folders
+from uq.machines.row_folders import Folders
+from uq.study.installed_models import model_at
 
 
 def running_in(folder):
@@ -56,8 +56,8 @@ def test_a_hostile_program_costs_its_rows_only(uq, write_program, folder, line):
 
 def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypatch):
     write_program("#!/bin/sh\nexec head -c 10000000 /dev/zero\n")
-    monkeypatch.setattr(descendants, "_adopting", True)
-    monkeypatch.setattr(descendants, "LARGEST", 100_000)
+    monkeypatch.setattr(child_processes, "_adopting", True)
+    monkeypatch.setattr(child_processes, "LARGEST", 100_000)
     monkeypatch.setattr(program, "end_descendants", lambda: None)  # those of this process
     model = model_at("machine.toml")
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -73,7 +73,7 @@ def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypa
 def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkeypatch):
     many = "i=0; while :; do head -c 9999 /dev/zero > f$i; i=$((i+1)); done"
     write_program(f"#!/bin/sh\n{many}\n")
-    monkeypatch.setattr(descendants, "LARGEST", 1_000_000)
+    monkeypatch.setattr(child_processes, "LARGEST", 1_000_000)
     monkeypatch.setattr(program, "_LOOK_SECONDS", 0.1)
     model = model_at("machine.toml")
     x, seed = np.array([[1.0, 3.0]]), np.zeros(1, np.uint64)
@@ -83,14 +83,14 @@ def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkey
 
 
 def test_of_many_failed_rows_little_is_kept(folder, monkeypatch):
-    monkeypatch.setattr(folders, "_MOST_KEPT", 5000)
+    monkeypatch.setattr(row_folders, "_MOST_KEPT", 5000)
     with suppress(ValueError), Folders(folder / "rows").row([1.0]) as one:
         for i in range(9):
             (one / f"large{i}").write_bytes(bytes(1000))
         (one / "small").write_bytes(bytes(10))
         raise ValueError
     (kept,) = (folder / "rows").iterdir()
-    assert (kept / "small").is_file() and 4000 < folders.size_of(kept) <= 5000
+    assert (kept / "small").is_file() and 4000 < row_folders.size_of(kept) <= 5000
 
 
 def test_the_folder_of_a_row_that_no_longer_fails_is_removed(folder):

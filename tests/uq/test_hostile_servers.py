@@ -14,8 +14,8 @@ from own_machines import run_server, run_server_here
 
 import uq as package
 from uq.contract import Status
-from uq.outside import um_bridge
-from uq.outside.row_by_row import OverdueError
+from uq.machines import um_bridge
+from uq.machines.row_by_row import OverdueError
 
 
 @pytest.fixture

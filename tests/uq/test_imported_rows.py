@@ -8,12 +8,12 @@ from computed import as_text, compared, computed, summarised, with_output
 from input_studies import UNIFORM, refusal, tables
 
 import uq
-from uq.analysis.convergence import running_estimates
-from uq.analysis.lifetime import survival
-from uq.analysis.pairing import Kinship, kinship
+from uq.assess.convergence import running_estimates
+from uq.assess.pairing import Kinship, kinship
+from uq.assess.survival import survival
 from uq.errors import InputError
-from uq.rows.sampling import row_block
 from uq.study.definition import study_from_text
+from uq.study.row_sampling import row_block
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ from asked_indices import INPUTS, indices, ishigami, sensitivities
 from computed import kinds, linear, with_output
 
 import uq
+from uq.assess.sensitivities import methods
 from uq.contract import Status
 from uq.errors import InputError
-from uq.indices.sensitivities import methods
 
 
 def test_method_is_the_studys_or_the_designs_own():

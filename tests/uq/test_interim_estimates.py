@@ -8,9 +8,9 @@ import xarray as xr
 from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import study, tables
 
-from uq import interim_levels
-from uq.analysis import stopping
-from uq.running import runner
+from uq.assess import stopping
+from uq.execution import runner
+from uq.stats import group_sequential
 
 
 def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
@@ -19,13 +19,13 @@ def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
     replicated = study(0.1, samples=250, method="halton", replicates=8).design
     assert stopping.interim_sizes(replicated) == (32, 63, 125, 250)
     design = study(0.1, samples=1000).design
-    assert stopping.confidence(design) == interim_levels.of_independent_rows(3)
+    assert stopping.confidence(design) == group_sequential.of_independent_rows(3)
     several = study(0.1, samples=250, replicates=4).design
     assert stopping.interim_sizes(several) == (63, 125, 250)
     paths = study(0.1, samples=64, method="shapley", replicates=8, index="shapley").design
     assert stopping.interim_sizes(paths) == (32, 64)
     design = study(0.1, samples=1000, method="halton", replicates=8).design
-    assert stopping.confidence(design) == interim_levels.of_replicates(8, 6)
+    assert stopping.confidence(design) == group_sequential.of_replicates(8, 6)
 
 
 def look_at(ds, **until):

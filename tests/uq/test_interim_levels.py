@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import special, stats
 
-from uq.interim_levels import MOST_AT_STAKE, of_independent_rows, of_replicates
+from uq.stats.group_sequential import MOST_AT_STAKE, of_independent_rows, of_replicates
 
 
 def any_misses(limit, checks, points=401):

@@ -17,7 +17,7 @@ import pytest
 from own_study import own_study
 from wordings import sentence
 
-from uq.running.workers import quiet
+from uq.execution.workers import quiet
 
 PATIENCE = 30.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -82,7 +82,7 @@ def workers_of(process):
     found = []
     for child in psutil.Process(process.pid).children():
         with contextlib.suppress(psutil.NoSuchProcess):  # it may end meanwhile
-            found += [child] * ("uq.running.child" in child.cmdline())
+            found += [child] * ("uq.execution.child" in child.cmdline())
     return found
 
 
@@ -167,7 +167,7 @@ def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
     process, mark = started("SLEEPING", seconds=100.0)
     wait_until(mark.exists)
     children = psutil.Process(process.pid).children()
-    assert any("uq.running.child" in child.cmdline() for child in children)
+    assert any("uq.execution.child" in child.cmdline() for child in children)
     process.kill()
     alive = psutil.wait_procs(children, PATIENCE)[1]
     for child in alive:

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from uq import intervals
-from uq.intervals import mean_interval, share_interval
-from uq.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
-from uq.skewed_means import corrected_mean_interval, hall_interval
+from uq.stats import intervals
+from uq.stats.hall_intervals import corrected_mean_interval, hall_interval
+from uq.stats.intervals import mean_interval, share_interval
+from uq.stats.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
 
 RNG = np.random.default_rng(3)
 VALUES = RNG.lognormal(size=200)

@@ -8,16 +8,16 @@ from computed import UNIFORM, as_text, computed, kinds, study_of, summarised
 from scipy import stats
 
 import uq
-from uq.analysis.findings import Findings
-from uq.analysis.joint_bounds import Needed, rows_needed
-from uq.conclusions.answer import conclude
-from uq.conclusions.as_json import answer_json
-from uq.conclusions.quantities import quantities
-from uq.conclusions.verdict import verdict
+from uq.assess.answer.answer import conclude
+from uq.assess.answer.answer_json import answer_json
+from uq.assess.answer.quantities import quantities
+from uq.assess.answer.verdict import verdict
+from uq.assess.findings import Findings
+from uq.assess.joint_bounds import Needed, rows_needed
 from uq.errors import InputError
-from uq.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
-from uq.rows.elements import analysis_of
-from uq.rows.results import failed
+from uq.result.elements import analysis_of
+from uq.result.result_file import failed
+from uq.stats.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
 from uq.study.definition import study_from_text
 
 DEPENDENCE = {

@@ -5,8 +5,8 @@ import pytest
 from computed import linear, summarised
 from scipy.special import ndtri
 
-from uq.designs.sequences import sobol
-from uq.jumps import EvenReplicates, jumps
+from uq.sampling.unit_cube import sobol
+from uq.stats.jumps import EvenReplicates, jumps
 
 
 @pytest.mark.parametrize(

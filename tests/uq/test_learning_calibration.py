@@ -9,7 +9,7 @@ from scipy import stats
 from models.analytic import EXPONENTIAL_WEAR
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
-from uq.rows.evaluate import evaluate
+from uq.study.evaluate import evaluate
 
 REPETITIONS = 200
 UNITS = "ABC"

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from benchmarks.campaigns import apart, campaign, worlds
-from uq.learning.over_shared import over_shared
+from uq.learning.epistemic_band import over_shared
 from uq.learning.posterior import posterior
-from uq.learning.result import as_result
-from uq.rows.elements import lifetimes
+from uq.learning.posterior_result import as_result
+from uq.result.elements import lifetimes
 
 CAMPAIGNS = 200
 

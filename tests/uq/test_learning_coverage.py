@@ -8,9 +8,9 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 from uq.errors import RunError
-from uq.exploring.updating import update
-from uq.learning.inputs_learnt import inputs_learnt
-from uq.learning.remaining import ANY, remaining
+from uq.explore.updating import update
+from uq.learning.posterior_inputs import inputs_learnt
+from uq.learning.remaining_life import ANY, remaining
 
 REPETITIONS = 1000
 SHARED = [6e5, 1e6, 1.2e6]

@@ -5,18 +5,18 @@ import pytest
 from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
-from uq.exploring.updating import update
+from uq.assess.population import Population
+from uq.assess.posterior_scale import LearntScale
+from uq.assess.row_inputs import inputs_of
+from uq.assess.scale_laws import ConditionalScale
+from uq.assess.scaling import population
+from uq.explore.updating import update
 from uq.learning.dependent_outputs import dependent_outputs
-from uq.learning.inputs_learnt import inputs_learnt
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
-from uq.learning.remaining import remaining
-from uq.learning.result import as_unit
-from uq.population.functionals import Population
-from uq.population.learnt_scale import LearntScale
-from uq.population.row_inputs import inputs_of
-from uq.population.scale_laws import ConditionalScale
-from uq.population.scaling import population
+from uq.learning.posterior_inputs import inputs_learnt
+from uq.learning.posterior_result import as_unit
+from uq.learning.remaining_life import remaining
 
 SEEN = 1.5e6
 

@@ -8,9 +8,9 @@ from nested_studies import CHANCE, LEVELS, OWN, SHARED, VARIANCES, nested, neste
 from noisy_studies import noisy
 
 import uq as api
-from uq.analysis.level_shares import by_level
+from uq.assess.level_shares import by_level
 from uq.errors import InputError
-from uq.rows.variables import error_name
+from uq.result.variables import error_name
 
 
 def test_shares_of_the_linear_function():

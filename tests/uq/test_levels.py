@@ -8,12 +8,12 @@ from computed import UNIFORM, computed, study_of
 from nested_studies import LEVELS, nested, nested_result
 from noisy_studies import noisy
 
-from uq.designs.levels import coordinates, dimension
 from uq.errors import InputError
-from uq.rows.nesting import levels_of, nesting_of, one_of_each_sample
-from uq.rows.results import relabel
-from uq.rows.sampling import row_block, rows
+from uq.result.nesting import levels_of, nesting_of, one_of_each_sample
+from uq.result.result_file import relabel
+from uq.sampling.levels import coordinates, dimension
 from uq.study.changes import what_changed
+from uq.study.row_sampling import row_block, rows
 from uq.study.schema import json_schema
 
 NESTING = ("monte-carlo", "latin-hypercube", "sobol", "halton")

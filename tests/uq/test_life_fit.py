@@ -5,12 +5,12 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
-from uq.analysis import life_quantiles
-from uq.analysis.as_json import summary_json
-from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
-from uq.analysis.summary import summarise
+from uq.assess import life_quantiles
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
 from uq.errors import InputError
-from uq.order_statistics import rows_for_bound
+from uq.stats.location_scale import FAMILIES, anderson_darling, fit
+from uq.stats.order_statistics import rows_for_bound
 
 WEIBULL = stats.weibull_min(1.7, scale=3e5)
 LOGNORMAL = stats.lognorm(0.6, scale=2e5)

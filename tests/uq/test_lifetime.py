@@ -4,7 +4,7 @@ from computed import asking, kinds, linear, summarised, with_output
 from scipy import stats
 
 import uq
-from uq.analysis.lifetime import survival
+from uq.assess.survival import survival
 from uq.errors import InputError
 
 

@@ -4,7 +4,7 @@ from math import isnan
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uq.literals import shown, toml
+from uq.text.literals import shown, toml
 
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]))
 VALUES = st.recursive(

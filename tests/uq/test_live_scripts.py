@@ -7,12 +7,12 @@ import pytest
 from report_scripts import scripts
 from scipy import special
 
-from uq.inputs.conditioning import cdf_within, log_density_between
-from uq.inputs.registry import LAWS, law_of
-from uq.population.means import weighted_share
-from uq.population.smoothing import refusal, tail_shape
-from uq.population.sums import LogTerm, law_of_sum
-from uq.report.tolerances import KNOWN
+from uq.render.html.tolerances import KNOWN
+from uq.sampling.laws import LAWS, law_of
+from uq.sampling.log_sums import LogTerm, law_of_sum
+from uq.sampling.truncation import cdf_within, log_density_between
+from uq.stats.importance_weights import refusal, tail_shape
+from uq.stats.weighted_means import weighted_share
 
 ARGUMENTS = {
     "normal": {"mean": 3.0, "sd": 0.4},

@@ -16,10 +16,10 @@ from models.mole.parameters import REGIMES
 from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
 from uq import plots
-from uq.drawing.figure import lay_out
-from uq.drawing.style import COLOURS
 from uq.errors import InputError
-from uq.wording import percent
+from uq.render.figures.figure import lay_out
+from uq.render.figures.style import COLOURS
+from uq.text.numbers import percent
 
 
 def labels(figure):

@@ -7,8 +7,8 @@ from study_text import ISHIGAMI, study_text
 from wordings import STUDY_FAULTS, SYNTAX_FAULTS
 
 from uq.errors import InputError
-from uq.literals import toml
 from uq.study.definition import Study, load_study, study_from_text
+from uq.text.literals import toml
 
 
 def lines(changes=None, text=None):

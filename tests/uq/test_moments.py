@@ -8,16 +8,16 @@ from asked_indices import sensitivities
 from computed import asking, compared, linear, summarised, with_output
 from scipy import stats
 
-from uq.analysis.convergence import enough
-from uq.analysis.overview import summary
-from uq.analysis.statistics.between_regimes import between_share
-from uq.analysis.summary import summarise
-from uq.analysis.widths import expected_widths
-from uq.cli.tables import show_summary
-from uq.intervals import ONE_ROW
-from uq.moments import moments, sd_interval, standard_deviation
-from uq.report.outcomes import outcomes, result_tables
-from uq.store import write
+from uq.assess.convergence import enough
+from uq.assess.expected_widths import expected_widths
+from uq.assess.statistics.between_regimes import between_share
+from uq.assess.summary import summarise
+from uq.assess.summary_table import summary
+from uq.cli.summary_tables import show_summary
+from uq.files.whole_files import write
+from uq.render.html.outcomes import outcomes, result_tables
+from uq.stats.intervals import ONE_ROW
+from uq.stats.moments import moments, sd_interval, standard_deviation
 
 NOTHING = {"low": None, "high": None}
 

@@ -17,7 +17,7 @@ from computed import (
 from SALib.analyze import morris as salib_morris
 from screened import A, found, g_function, ishigami
 
-from uq.designs.trajectories import LEVELS, STEP, TAIL
+from uq.sampling.unit_cube import LEVELS, STEP, TAIL
 
 LEVELS_OF_ONE = TAIL + (1 - 2 * TAIL) * np.arange(LEVELS) / (LEVELS - 1)
 

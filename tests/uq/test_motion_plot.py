@@ -10,7 +10,7 @@ from drawn import words
 import uq
 from uq import plots
 from uq.contract import Trajectory
-from uq.drawing.figure import lay_out
+from uq.render.figures.figure import lay_out
 
 
 def simulated(quantities=None, **more):

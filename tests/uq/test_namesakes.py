@@ -11,7 +11,7 @@ import pytest
 import models
 import uq
 from uq.errors import InputError
-from uq.study.registry import model_at
+from uq.study.installed_models import model_at
 
 HOUSE = Path(uq.__file__).parents[1]
 OURS = Path(models.__file__).parent

@@ -6,19 +6,19 @@ from computed import asking, compared, computed, linear, summarised, with_output
 from nested_studies import nested, nested_result
 
 import uq as api
-from uq.analysis.lifetime import survival
-from uq.analysis.pairing import Kinship, kinship
-from uq.analysis.sampled_inputs import drawn_inputs, laws_and_values
-from uq.analysis.statistics.between_regimes import between_share
-from uq.analysis.stopping import interim_estimate
-from uq.clusters import Clusters, dealt, linearised_means
+from uq.assess.pairing import Kinship, kinship
+from uq.assess.sampled_inputs import drawn_inputs, laws_and_values
+from uq.assess.sensitivities import ONE_ROW, sensitivities
+from uq.assess.statistics.between_regimes import between_share
+from uq.assess.stopping import interim_estimate
+from uq.assess.survival import survival
 from uq.errors import InputError
-from uq.indices.sensitivities import ONE_ROW, sensitivities
-from uq.intervals import mean_interval, share_interval
-from uq.moments import sd_interval
-from uq.order_statistics import quantile_interval
-from uq.rows.elements import are_independent, replicates_of
-from uq.rows.nesting import one_of_each_sample
+from uq.result.elements import are_independent, replicates_of
+from uq.result.nesting import one_of_each_sample
+from uq.stats.clusters import Clusters, dealt, linearised_means
+from uq.stats.intervals import mean_interval, share_interval
+from uq.stats.moments import sd_interval
+from uq.stats.order_statistics import quantile_interval
 
 SHARED_ALONE = {"x1": "shared"}
 
@@ -189,7 +189,7 @@ def test_regimes_are_described_by_their_own_rows():
 
 
 def test_a_damaged_nesting_is_refused():
-    from uq.rows.results import check
+    from uq.result.result_file import check
 
     ds = nested_result()
     for fault in (

@@ -5,8 +5,8 @@ import pytest
 from nested_studies import CHANCE, LEVELS, OWN, SHARED, VARIANCES
 from scipy import stats
 
-from uq.analysis.apportioned import shares_of
-from uq.nested_variance import nested_shares
+from uq.assess.variance_by_level import shares_of
+from uq.stats.variance_components import nested_shares
 
 
 def effects(variances, shape, seed=0):

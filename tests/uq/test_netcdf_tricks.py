@@ -9,11 +9,11 @@ import netCDF4
 import numpy as np
 import pytest
 
-from uq.netcdf_files import refuse_tricks
-from uq.outside.machine_file import OutputTable
-from uq.outside.results_of_programs import value_in
-from uq.outside.returned import WrongReturnError
-from uq.running import runner
+from uq.execution import runner
+from uq.files.netcdf_files import refuse_tricks
+from uq.machines.machine_file import OutputTable
+from uq.machines.program_outputs import value_in
+from uq.machines.returned import WrongReturnError
 
 ROWS = 24
 ID = ctypes.c_int64

@@ -9,7 +9,7 @@ import uq
 from models.analytic import EXPONENTIAL_WEAR
 from models.beam import MODEL as BEAM
 from models.vibrator import MODEL as VIBRATOR
-from uq.analysis.lifetime import survival
+from uq.assess.survival import survival
 from uq.contract import Output
 
 ENDS = 0.4

@@ -11,12 +11,12 @@ from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
 
 from uq.errors import InputError, RunError
-from uq.exploring.updating import update
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.importance import own_rows
-from uq.learning.result import as_unit, prior_of
-from uq.rows.results import open_result
-from uq.store.files import write_result
+from uq.learning.posterior_result import as_unit, prior_of
+from uq.result.result_file import open_result
 
 FAR = measured(2e7, cv=0.05)
 """Five standard deviations from what the study expects."""

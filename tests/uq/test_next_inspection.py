@@ -9,10 +9,10 @@ from learnt_studies import measured, wear
 from worn_studies import RATE, pads
 
 from uq.errors import InputError
-from uq.exploring.updating import update
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
 from uq.learning.next_inspection import worth
-from uq.learning.result import as_unit
-from uq.store.files import write_result
+from uq.learning.posterior_result import as_unit
 
 DEPTH, LIFE = "depth[side=left]", "life[side=left,depth=100.0]"
 OWN = {"distribution": "lognormal", "median": 1.0, "sigma": 0.4, "level": "own"}

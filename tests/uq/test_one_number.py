@@ -7,17 +7,17 @@ import pytest
 from answered import lifetime
 from computed import asking, kinds, summarised
 
-from uq.conclusions.answer import answer
-from uq.conclusions.as_json import answer_json
-from uq.indices.as_json import sensitivity_json
-from uq.indices.sensitivities import sensitivities
-from uq.report.page import page
+from uq.assess.answer.answer import answer
+from uq.assess.answer.answer_json import answer_json
+from uq.assess.sensitivities import sensitivities
+from uq.assess.sensitivity_json import sensitivity_json
+from uq.render.html.page import page
 
 
 @pytest.fixture
 def life(monkeypatch):
     """A life of 1,000 rows, as if these were too many to rank inputs by all of them."""
-    monkeypatch.setattr("uq.rows.ranked.RANKED", 400)
+    monkeypatch.setattr("uq.result.ranked_rows.RANKED", 400)
     return asking(lifetime()[0], tolerance={"coverage": 0.95, "confidence": 0.95})
 
 

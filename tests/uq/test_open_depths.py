@@ -6,7 +6,7 @@ from scipy.stats import norm
 from worn_studies import RATE, pads
 
 from uq.errors import RunError
-from uq.exploring.updating import update
+from uq.explore.updating import update
 
 STOPS = {"distribution": "discrete-choice", "values": [20.0, 1e8], "weights": [1, 9]}
 """One pad in ten stops wearing before the first declared depth, 50 mm."""

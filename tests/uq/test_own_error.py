@@ -6,8 +6,8 @@ from answered import lifetime
 from computed import asking, linear, with_output
 
 import uq
-from uq.conclusions.answer import answer
-from uq.conclusions.as_json import answer_json
+from uq.assess.answer.answer import answer
+from uq.assess.answer.answer_json import answer_json
 
 
 def values_that_err(size, design="monte-carlo", samples=1000, replicates=1, **asked):

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from own_study import own_study
 
-from uq.rows.commands import model_option
-from uq.rows.results import open_result
-from uq.study.own_files import file_with
+from uq.result.commands import model_option
+from uq.result.result_file import open_result
+from uq.study.model_files import file_with
 
 PAD = """
 import uq

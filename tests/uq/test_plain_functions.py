@@ -10,8 +10,8 @@ from own_machines import WEAR, WEAR_STUDY
 
 import uq as package
 from uq.contract import Status
-from uq.rows import elements
-from uq.running import child, loading
+from uq.execution import child, loading
+from uq.result import elements
 
 
 def test_a_function_becomes_a_machine_with_units_bounds_lives_and_arrays(uq, write_function):

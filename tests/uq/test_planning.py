@@ -8,9 +8,9 @@ import pytest
 from computed import summarised
 from in_memory import compute
 
-from uq.analysis.widths import Widths, expected_widths
+from uq.assess.expected_widths import Widths, expected_widths
 from uq.cli.plan import _widths
-from uq.running import planning, runner
+from uq.execution import planning, runner
 from uq.study.definition import load_study
 
 NORMAL = 'distribution = "uniform", lower = 0.0, upper = 1.0'

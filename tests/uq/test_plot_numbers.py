@@ -11,8 +11,8 @@ from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
-from uq.drawing.style import COLOURS, thinned
-from uq.drawing.words import as_label
+from uq.render.figures.style import COLOURS, thinned
+from uq.render.figures.words import as_label
 
 DAY = 86400.0
 

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from wordings import sentence
 
 from uq import plots
-from uq.drawing.scatter_plot import _fragments, _is_empty, _is_torn
 from uq.errors import InputError
-from uq.order_statistics import quantile_interval
+from uq.render.figures.scatter_plot import _fragments, _is_empty, _is_torn
+from uq.stats.order_statistics import quantile_interval
 
 
 def test_lifetime_figure_shows_share_band_and_what_never_ends():

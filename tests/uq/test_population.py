@@ -8,15 +8,15 @@ from computed import computed, summarised, with_seed
 from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
 from scipy import special
 
-from uq.analysis.comparison import compare
-from uq.analysis.lifetime import survival
-from uq.analysis.overview import summary
-from uq.inputs.registry import law_of
-from uq.population.functionals import Population
-from uq.population.row_inputs import inputs_of
-from uq.population.scaling import integrated, population
-from uq.population.sums import LogTerm, law_of_sum
-from uq.rows.elements import independent_rows
+from uq.assess.comparison import compare
+from uq.assess.population import Population
+from uq.assess.row_inputs import inputs_of
+from uq.assess.scaling import integrated, population
+from uq.assess.summary_table import summary
+from uq.assess.survival import survival
+from uq.result.elements import independent_rows
+from uq.sampling.laws import law_of
+from uq.sampling.log_sums import LogTerm, law_of_sum
 
 EVERYWHERE = (-np.inf, np.inf)
 

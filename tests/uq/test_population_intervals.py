@@ -6,14 +6,13 @@ from computed import computed, summarised, with_seed
 from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
 from scipy import special, stats
 
-from uq.analysis.comparison import compare
-from uq.clusters import Clusters
-from uq.jumps import EvenReplicates
-from uq.population.few_rows import FEW
-from uq.population.means import EXACT, moments_of_rows, share_to_compare, weighted_share
-from uq.population.scaling import population
-from uq.population.smoothing import effective_rows
-from uq.two_samples import difference
+from uq.assess.comparison import compare
+from uq.assess.scaling import population
+from uq.stats.clusters import Clusters
+from uq.stats.importance_weights import effective_rows
+from uq.stats.jumps import EvenReplicates
+from uq.stats.two_samples import difference
+from uq.stats.weighted_means import EXACT, FEW, moments_of_rows, share_to_compare, weighted_share
 
 
 def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice():

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from computed import UNIFORM, as_text
 
-from uq.rows.evaluate import evaluate
-from uq.rows.preview import Preview
-from uq.rows.sampling import row_block
-from uq.rows.workload import workload_of
+from uq.result.preview import Preview
+from uq.result.workload import workload_of
 from uq.study.definition import study_from_text
+from uq.study.evaluate import evaluate
+from uq.study.row_sampling import row_block
 
 
 @pytest.mark.parametrize("sizes", [(100_000,), (1,), (7, 1000, 3), (4096, 1, 4097)])

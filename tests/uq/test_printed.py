@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from computed import asking, linear, with_output
 
-from uq.printed import minus, printed
-from uq.report import page
+from uq.render.html.page import page
+from uq.text.numbers import minus, printed
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ import pytest
 from own_machines import PAD, PAD_PROGRAM, run_program
 
 from uq.contract import Status
-from uq.outside.machine_file import OutputTable
-from uq.outside.results_of_programs import value_in
-from uq.outside.returned import WrongReturnError
+from uq.machines.machine_file import OutputTable
+from uq.machines.program_outputs import value_in
+from uq.machines.returned import WrongReturnError
 
 
 def test_rows_are_those_of_the_program(uq, write_program, folder):

@@ -79,7 +79,7 @@ def test_extended_fast_is_as_near_as_that_of_openturns(model):
 
 
 def _of(model):
-    from uq.study.registry import find_model
+    from uq.study.installed_models import find_model
 
     found = find_model(model)
 

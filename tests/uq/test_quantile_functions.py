@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from uq import quantile_functions
-from uq.exact_shares import exact_interval
-from uq.tails import _distance
+from uq.stats import quantile_functions
+from uq.stats.intervals import exact_interval
+from uq.stats.tails import _distance
 
 TAILS = (0.005, 0.025, 0.05, 0.5, 0.95, 0.975, 0.995)
 SHARES = (0.001, 0.01, 0.1, 0.5, 0.95, 0.99)

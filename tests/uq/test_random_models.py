@@ -6,12 +6,12 @@ from asked_indices import sensitivities
 from computed import computed, summarised, with_seed, with_status
 from noisy_studies import noisy
 
-from uq.analysis.comparison import compare
-from uq.analysis.convergence import running_estimates
-from uq.analysis.widths import expected_widths
+from uq.assess.comparison import compare
+from uq.assess.convergence import running_estimates
+from uq.assess.expected_widths import expected_widths
+from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError
-from uq.indices.dataset import sensitivity
-from uq.store.files import write_result
+from uq.files.whole_files import write_result
 
 # The indices
 

@@ -9,7 +9,7 @@ from computed import UNIFORM
 from rare_studies import LAST, linear, study
 
 from uq.errors import InputError
-from uq.exploring.rare_events import rare_event
+from uq.explore.rare_events import rare_event
 
 
 def test_the_command_shows_and_writes_json(uq, write_study):

@@ -5,10 +5,10 @@ import pytest
 from rare_studies import LAST, WEAR, study
 from scipy import stats
 
-from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.rare_events import rare_event
-from uq.exploring.subset_simulation import Found, subset_interval, subset_simulation
-from uq.intervals import log_scatter_interval
+from uq.explore.design_points import design_points, drawn_around
+from uq.explore.rare_events import rare_event
+from uq.explore.subset_simulation import Found, subset_interval, subset_simulation
+from uq.stats.intervals import log_scatter_interval
 
 
 def flat(u, share=2e-5):

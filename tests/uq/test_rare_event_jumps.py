@@ -7,10 +7,10 @@ from rare_studies import branches, close, interval, linear, study
 from scipy import stats
 
 from uq.cli.rare_event import as_json, show
-from uq.exploring.rare_events import _Outcome, estimate_of, rare_event
-from uq.exploring.subset_simulation import Found, disagreement, subset_simulation
-from uq.exploring.wide_search import WideSearch, wide_search
-from uq.intervals import log_scatter_interval
+from uq.explore.rare_events import _Outcome, estimate_of, rare_event
+from uq.explore.subset_simulation import Found, disagreement, subset_simulation
+from uq.explore.wide_search import WideSearch, wide_search
+from uq.stats.intervals import log_scatter_interval
 
 CLIFF = stats.norm.sf(4.0) + stats.norm.sf(5.0)
 TWENTY = {f"x{i}": STANDARD for i in range(1, 21)}

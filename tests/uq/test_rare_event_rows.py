@@ -7,7 +7,7 @@ from rare_studies import LAST, WEAR, branches, close, linear, study
 from scipy import stats
 
 from uq.errors import InputError
-from uq.exploring.rare_events import rare_event
+from uq.explore.rare_events import rare_event
 
 
 @pytest.mark.parametrize(

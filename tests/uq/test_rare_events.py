@@ -8,9 +8,9 @@ from rare_studies import LAST, WEAR, branches, close, interval, linear, study
 from scipy import integrate, stats
 
 import uq as api
-from uq.exploring.rare_events import rare_event
-from uq.exploring.subset_simulation import subset_simulation
-from uq.rows.sampling import row_block
+from uq.explore.rare_events import rare_event
+from uq.explore.subset_simulation import subset_simulation
+from uq.study.row_sampling import row_block
 
 LIFE = stats.lognorm(s=np.hypot(0.5, 0.2), scale=1e6)
 KNOWN = [

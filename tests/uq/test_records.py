@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uq.store.journal import Journal, read
-from uq.store.records import RowsRecord, missing, understood, without_overlap
+from uq.execution.records import RowsRecord, missing, understood, without_overlap
+from uq.files.journal import Journal, read
 
 
 def rows_record(*blocks, time=0.0):

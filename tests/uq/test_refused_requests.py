@@ -8,9 +8,9 @@ import threading
 
 import pytest
 
-import uq.outside.json_requests
+import uq.machines.json_requests
 from models.analytic import EXPONENTIAL_WEAR as WEAR
-from uq.outside.serving import server_of
+from uq.machines.serving import server_of
 
 FAILING = """
 import uq
@@ -32,7 +32,7 @@ OK = {"name": "exponential-wear", "input": [[1e-9, 1e-4, 0]]}
 @pytest.fixture
 def sent(monkeypatch):
     """Return a function that sends bytes to a server and returns status and answer."""
-    monkeypatch.setattr(uq.outside.json_requests, "_SECONDS", 0.3)
+    monkeypatch.setattr(uq.machines.json_requests, "_SECONDS", 0.3)
     server = server_of(WEAR, port=0)
     threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
 

@@ -5,10 +5,10 @@ from computed import asking, kinds, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
-from uq.analysis.statistics.between_regimes import between_share
+from uq.assess.statistics.between_regimes import between_share
 from uq.contract import Status
 from uq.errors import InputError
-from uq.methods.given_data import DUMMIES
+from uq.indices.given_data import DUMMIES
 
 
 def test_inputs_of_a_regime_are_distinguished_from_those_of_the_rest():

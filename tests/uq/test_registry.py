@@ -9,8 +9,8 @@ from models import analytic
 from models.analytic import LINEAR
 from uq.contract import Model, Output, Parameter
 from uq.errors import InputError
-from uq.study import registry
-from uq.study.registry import find_model, model_at, model_names
+from uq.study import installed_models
+from uq.study.installed_models import find_model, model_at, model_names
 
 
 def message(reference):
@@ -60,9 +60,9 @@ def test_a_reference_that_leads_nowhere_says_why(reference, said):
 def test_a_broken_model_is_one_line_and_leaves_the_others_alone(tmp_path, monkeypatch):
     (tmp_path / "broken_model.py").write_text("import sys\nsys.exit('no licence\\nfound')\n")
     monkeypatch.syspath_prepend(tmp_path)
-    broken = EntryPoint("broken", "broken_model:MODEL", registry.GROUP)
-    installed = registry._entry_points() | {"broken": broken}
-    monkeypatch.setattr(registry, "_entry_points", lambda: installed)
+    broken = EntryPoint("broken", "broken_model:MODEL", installed_models.GROUP)
+    installed = installed_models._entry_points() | {"broken": broken}
+    monkeypatch.setattr(installed_models, "_entry_points", lambda: installed)
     assert "broken" in model_names()
     assert "SystemExit: no licence found" in message("broken")
     assert isinstance(find_model("linear"), Model)

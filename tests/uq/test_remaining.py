@@ -9,10 +9,10 @@ from worn_studies import RATE as WEAR
 from worn_studies import pads
 
 from uq.errors import InputError
-from uq.exploring.updating import update
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
-from uq.learning.remaining import ANY, remaining
-from uq.store.files import write_result
+from uq.learning.remaining_life import ANY, remaining
 
 LEFT = "life[side=left,depth=100.0]"
 

@@ -16,13 +16,13 @@ from computed import (
 )
 from read_pages import Page, read
 
-from uq.analysis.findings import Findings
-from uq.conclusions.sources import mark
+from uq.assess.answer.sources import mark
+from uq.assess.findings import Findings
 from uq.contract import Status
-from uq.drawing.catalogue import drawables
 from uq.plots import FIGURES
-from uq.report import page
-from uq.report.cells import Cell, Table
+from uq.render.figures.catalogue import drawables
+from uq.render.html.cells import Cell, Table
+from uq.render.html.page import page
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from explored import PAGE
 from matplotlib.image import imread
 
 from uq.contract import Status
-from uq.report import page
+from uq.render.html.page import page
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
 ASKED = {"thresholds": {"life": 1.0}, "sensitivity": ["rbd-fast"]}

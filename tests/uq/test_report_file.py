@@ -12,9 +12,9 @@ from computed import (
 from read_pages import Page
 
 from uq.contract import Status
-from uq.report import page
-from uq.rows import results
-from uq.store.files import write_result
+from uq.files.whole_files import write_result
+from uq.render.html.page import page
+from uq.result import result_file
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
 
@@ -55,7 +55,7 @@ def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
         ended = uq("report", *arguments)
         assert (ended.code, ended.out, ended.err) == (2, "", line.format(folder))
     assert [entry.name for entry in folder.iterdir()] == ["out.nc"] and path.read_bytes() == before
-    assert results.open_result(path).sizes["sample"] == 8
+    assert result_file.open_result(path).sizes["sample"] == 8
 
 
 def test_names_from_a_file_are_text():

@@ -3,7 +3,7 @@
 import numpy as np
 from computed import asking, kinds
 
-from uq.report import page
+from uq.render.html.page import page
 
 
 def test_a_tall_figure_leaves_room_for_what_to_do(browser, tmp_path):

@@ -5,10 +5,10 @@ import pytest
 from computed import UNIFORM, asking, linear, with_output
 from explored import cells, drag_handle, ranges
 
-from uq.analysis.earliest import inputs_apart, ranks
-from uq.indices.independent_inputs import independent_inputs
-from uq.literals import toml
-from uq.rows.elements import independent_rows, replicates_of
+from uq.assess.earliest import inputs_apart, ranks
+from uq.assess.independent_inputs import independent_inputs
+from uq.result.elements import independent_rows, replicates_of
+from uq.text.literals import toml
 
 DESIGNS = {
     "independent": {"samples": 400},

@@ -10,13 +10,13 @@ from markupsafe import escape
 from matplotlib.figure import Figure
 
 from uq.contract import Status
-from uq.greek import symbol
-from uq.literals import plain
 from uq.plots import FIGURES
-from uq.report import page
-from uq.report.layout import templates
-from uq.report.pictures import picture
-from uq.report.symbols import indexed
+from uq.render.html.layout import templates
+from uq.render.html.page import page
+from uq.render.html.pictures import picture
+from uq.render.html.symbols import indexed
+from uq.text.literals import plain
+from uq.text.symbols import symbol
 
 
 @pytest.fixture(scope="module")

@@ -12,10 +12,10 @@ from computed import (
 from matplotlib.figure import Figure
 from read_pages import Page, read
 
-from uq.analysis.findings import Findings
-from uq.report import page
-from uq.report.paths import shortened
-from uq.report.pictures import HEAVIEST_SVG, picture, pictures
+from uq.assess.findings import Findings
+from uq.render.html.page import page
+from uq.render.html.paths import shortened
+from uq.render.html.pictures import HEAVIEST_SVG, picture, pictures
 
 BY_REGIME = 'aria-label="Rows by regime, against the inputs that best separate the regimes"'
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from computed import linear
 
-from uq.analysis.findings import Findings
-from uq.report.embedded import rows_inside
-from uq.rows.elements import independent_rows
+from uq.assess.findings import Findings
+from uq.render.html.embedded_rows import rows_inside
+from uq.result.elements import independent_rows
 
 BOX = "document.querySelector('#explorer form input')"
 HINT = "document.querySelector('#explorer form [role=status]').innerText"

@@ -10,12 +10,12 @@ import pytest
 from computed import asking, kinds, linear, with_output, with_status
 from explored import open_by_keyboard
 
-from uq.analysis.findings import Findings
-from uq.conclusions.answer import conclude
+from uq.assess.answer.answer import conclude
+from uq.assess.findings import Findings
 from uq.contract import Status
 from uq.learning.inspections import read_inspections, read_tables
-from uq.report import page
-from uq.report.embedded import MOST_ROWS, rows_inside
+from uq.render.html.embedded_rows import MOST_ROWS, rows_inside
+from uq.render.html.page import page
 
 
 def test_a_success_is_no_life_that_ends(shown):

@@ -7,9 +7,9 @@ import pytest
 from computed import kinds, linear
 from explored import cells, drag_handle, place_of_a_point, ranges
 
-from uq.analysis.life_quantiles import ended_by, life_quantiles, quantile_estimate
-from uq.intervals import share_interval
-from uq.rows.elements import elements_of, replicates_of
+from uq.assess.life_quantiles import ended_by, life_quantiles, quantile_estimate
+from uq.result.elements import elements_of, replicates_of
+from uq.stats.intervals import share_interval
 
 ASKED = {"thresholds": {"y": 6.0}}
 

@@ -16,20 +16,20 @@ from computed import (
 from wordings import sentence
 
 from uq import plots
-from uq.analysis.findings import Findings
-from uq.analysis.statistics.statistic import Statistic
-from uq.analysis.summary import summarise
-from uq.conclusions.answer import answer
-from uq.conclusions.words import unit_for
+from uq.assess.answer.answer import answer
+from uq.assess.answer.wording import unit_for
+from uq.assess.findings import Findings
+from uq.assess.statistic import Statistic
+from uq.assess.summary import summarise
 from uq.contract import Status
-from uq.estimate import Estimate
-from uq.report.cells import Cell, Table, cell, without_empty_columns
-from uq.report.convergence import convergence_of
-from uq.report.embedded import rows_inside
-from uq.report.indices import sensitivity_of
-from uq.report.inputs import _quantiles, fixed_inputs, input_tables
-from uq.report.outcomes import category_table, outcomes, result_tables, status_table
-from uq.units import typical
+from uq.render.html.cells import Cell, Table, cell, without_empty_columns
+from uq.render.html.convergence import convergence_of
+from uq.render.html.embedded_rows import rows_inside
+from uq.render.html.indices import sensitivity_of
+from uq.render.html.inputs import _quantiles, fixed_inputs, input_tables
+from uq.render.html.outcomes import category_table, outcomes, result_tables, status_table
+from uq.stats.estimate import Estimate
+from uq.text.units import typical
 
 DAY = 86400.0
 

@@ -10,17 +10,17 @@ from explored import cells
 from report_scripts import scripts
 
 import uq as api
-from uq.analysis.findings import Findings
-from uq.analysis.what_if import _changed, answer, read_changes, what_if_json
+from uq.assess.findings import Findings
+from uq.assess.population import Population
+from uq.assess.reweighting import Weighting
+from uq.assess.row_inputs import inputs_of
+from uq.assess.scaling import population
+from uq.assess.what_if import _changed, answer, read_changes, what_if_json
 from uq.contract import Status
 from uq.errors import RunError
-from uq.intervals import share_interval
-from uq.population.functionals import Population
-from uq.population.reweighting import Weighting
-from uq.population.row_inputs import inputs_of
-from uq.population.scaling import population
-from uq.report.embedded import rows_inside
-from uq.rows.elements import independent_rows, replicates_of
+from uq.render.html.embedded_rows import rows_inside
+from uq.result.elements import independent_rows, replicates_of
+from uq.stats.intervals import share_interval
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 SIGMA = {"distribution": "lognormal", "median": 1.0, "sigma": 0.4}

@@ -12,18 +12,18 @@ from computed import computed, linear, study_of
 from in_memory import compute
 
 import uq
-from uq import store
-from uq.analysis.as_json import summary_json
-from uq.analysis.summary import summarise
+from uq.assess.summary import summarise
+from uq.assess.summary_json import summary_json
 from uq.contract import Status
 from uq.errors import InputError
-from uq.exploring.simulation import simulate
-from uq.report.dossier.chapters import dossier
-from uq.report.page import page
-from uq.rows import results
-from uq.rows.elements import elements_of
-from uq.running import runner
-from uq.store.seal import CHECKSUM
+from uq.execution import runner
+from uq.explore.simulation import simulate
+from uq.files import whole_files
+from uq.files.seal import CHECKSUM
+from uq.render.html.dossier.chapters import dossier
+from uq.render.html.page import page
+from uq.result import result_file
+from uq.result.elements import elements_of
 from uq.study.definition import load_study, study_from_text
 
 
@@ -109,7 +109,7 @@ def test_flags_are_integers_without_fill_value(kinds):
 
 def test_rows_know_their_place_in_the_design(kinds):
     _, path = kinds
-    ds = results.open_result(path)
+    ds = result_file.open_result(path)
     row = np.arange(48)
     assert np.array_equal(ds["sample"], row)
     assert np.array_equal(ds["block"], row % 3)
@@ -141,7 +141,7 @@ def test_a_fixed_parameter_may_be_infinite(write_study, more):
     path = write_study(model="mounted", uncertain=("mass",), law=law, more=more)
     study = load_study(path, "sample_models:MOUNTED")
     runner.run(study, "mounted.nc", workers=0)
-    ds = results.open_result("mounted.nc")
+    ds = result_file.open_result("mounted.nc")
     assert ds["mount_stiffness"].item() == np.inf
     assert ds["mount_stiffness"].attrs["role"] == "fixed"
     assert not ds["sag"].any()
@@ -152,9 +152,9 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
     _, path = kinds
     (folder / "notes.txt").write_text("no netCDF at all")
     xr.Dataset({"a": 1}).to_netcdf("other.nc")
-    store.write(simulate("linear"), folder / "single.nc")
-    results.open_result(path).assign_attrs(schema_version=99).to_netcdf("future.nc")
-    results.open_result(path).assign_attrs(schema_version=0).to_netcdf("past.nc")
+    whole_files.write(simulate("linear"), folder / "single.nc")
+    result_file.open_result(path).assign_attrs(schema_version=99).to_netcdf("future.nc")
+    result_file.open_result(path).assign_attrs(schema_version=0).to_netcdf("past.nc")
     for name, words in {
         "missing.nc": "no such file",
         ".": "is a folder",
@@ -165,14 +165,14 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
         "past.nc": "written with schema version 0; this version of vibrolife reads 1",
     }.items():
         with pytest.raises(InputError) as refused:
-            results.open_result(name)
+            result_file.open_result(name)
         assert refused.value.lines[0].startswith(f"{name}: {words}")
         assert len(refused.value.lines) == 1
 
 
 def test_elements_are_named_by_their_coordinates(kinds):
     _, path = kinds
-    ds = results.open_result(path)
+    ds = result_file.open_result(path)
     named = {one.name: one.values for one in elements_of(ds, ["life", "angle"])}
     assert list(named)[:-1] == [
         f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
@@ -183,17 +183,17 @@ def test_elements_are_named_by_their_coordinates(kinds):
 
 def test_a_row_out_of_budget_failed_only_where_an_output_is_lacking(kinds):
     _, path = kinds
-    ds = results.open_result(path)
-    assert not results.failed(ds).any()
+    ds = result_file.open_result(path)
+    assert not result_file.failed(ds).any()
     ds["status"].values[:4] = Status.OUT_OF_BUDGET
     ds["status"].values[4] = Status.RAISED
     ds["work"].values[0, 1] = np.nan
     ds["regime"].values[1] = -1
     ds["angle"].values[2] = np.nan
     ds["life"].values[3] = np.inf  # it never ends
-    assert list(np.flatnonzero(results.failed(ds))) == [0, 1, 4]
+    assert list(np.flatnonzero(result_file.failed(ds))) == [0, 1, 4]
     ds["work"].values[3] = np.inf
-    assert list(np.flatnonzero(results.failed(ds))) == [0, 1, 3, 4]
+    assert list(np.flatnonzero(result_file.failed(ds))) == [0, 1, 3, 4]
 
 
 def test_new_text_of_the_same_study_replaces_the_old(kinds, write_study):
@@ -214,24 +214,24 @@ def test_new_text_of_the_same_study_replaces_the_old(kinds, write_study):
     ds = runner.run(renamed, path)
     assert ds.attrs["study"] == renamed.text
     assert ds["x2"].attrs["source"] == "a test"
-    assert results.open_result(path).identical(ds)
+    assert result_file.open_result(path).identical(ds)
 
 
 def test_a_file_holds_what_memory_holds(kinds):
     study, path = kinds
     ds = compute(study, workers=0)
-    assert results.open_result(path).identical(ds)
+    assert result_file.open_result(path).identical(ds)
     # Merged from chunks or written at once: the layout may differ, nothing that is said does.
-    store.write_result(ds, Path("again.nc"))
+    whole_files.write_result(ds, Path("again.nc"))
     with netCDF4.Dataset(path) as merged, netCDF4.Dataset("again.nc") as again:
         assert merged.getncattr(CHECKSUM) == again.getncattr(CHECKSUM)
 
 
 def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch):
     _, path = kinds
-    small = results.open_result(path)
-    monkeypatch.setattr(results, "_IN_MEMORY_BYTES", 0)
-    with results.open_result(path) as large:
+    small = result_file.open_result(path)
+    monkeypatch.setattr(result_file, "_IN_MEMORY_BYTES", 0)
+    with result_file.open_result(path) as large:
         assert summary_json(summarise(large)) == summary_json(summarise(small))
         assert large.identical(small)
         assert not any(large[name].variable._in_memory for name in large.data_vars if name != "x1")
@@ -240,7 +240,7 @@ def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch
 def test_a_new_text_of_a_study_does_not_say_that_rows_were_computed_here():
     ds = linear(samples=4).assign_attrs(cpu="another processor", numpy="0.9")
     study = study_from_text(ds.attrs["study"] + "\n# a comment\n")
-    attrs = results.relabel(ds, study).attrs
+    attrs = result_file.relabel(ds, study).attrs
     assert attrs["study"].endswith("# a comment\n")
     assert (attrs["cpu"], attrs["numpy"]) == ("another processor", "0.9")
 

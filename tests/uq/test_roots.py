@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-from uq.roots import root
+from uq.stats.roots import root
 
 
 class Counted:

@@ -16,7 +16,7 @@ from noisy_studies import noisy
 import uq as api
 from uq.contract import Status
 from uq.errors import InputError
-from uq.exploring.row_again import row_again
+from uq.explore.row_again import row_again
 from uq.study.definition import study_from_text
 
 KINDS = "sample_models:KINDS"

@@ -16,14 +16,14 @@ from wordings import sentence
 import uq
 from uq.contract import Status
 from uq.errors import InputError
-from uq.rows import results
-from uq.rows.evaluate import KernelError, evaluate
-from uq.rows.sampling import row_block
-from uq.rows.workload import workload_of
-from uq.running import dispatch, runner
-from uq.running.options import RunOptions
-from uq.store import MemoryStore
+from uq.execution import dispatch, runner
+from uq.execution.options import RunOptions
+from uq.execution.tally import MemoryStore
+from uq.result import result_file
+from uq.result.workload import workload_of
 from uq.study.definition import load_study
+from uq.study.evaluate import KernelError, evaluate
+from uq.study.row_sampling import row_block
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_progress_counts_failures_as_the_tables_do(write_study):
     study = replace(study, model=replace(study.model, batch=lacking_work))
     seen = []
     ds = compute(study, workers=0, chunk_rows=10, progress=seen.append)
-    failed = int(results.failed(ds).sum())
+    failed = int(result_file.failed(ds).sum())
     assert seen[-1].failed == failed
     assert 0 < failed < (ds["status"] == Status.OUT_OF_BUDGET).sum()
 
@@ -298,7 +298,7 @@ def test_a_complete_result_of_other_code_comes_with_a_warning(write_study, monke
     study = write_study(samples=8)
     uq.run(study, workers=0)
     uq.run(study, workers=0)
-    monkeypatch.setattr("uq.study.registry.code_of", lambda reference: "0" * 16)
+    monkeypatch.setattr("uq.study.installed_models.code_of", lambda reference: "0" * 16)
     with pytest.warns(UserWarning, match=sentence("other code", model="ishigami")):
         uq.run(study, workers=0)
     uq.run(study, workers=0, mixed=True)

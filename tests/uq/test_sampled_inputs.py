@@ -7,9 +7,9 @@ from input_studies import BELL, UNIFORM, tables
 from scipy import stats
 
 from uq import plots
-from uq.analysis.sampled_inputs import compare
+from uq.assess.sampled_inputs import compare
 from uq.errors import InputError
-from uq.inputs.registry import law_of
+from uq.sampling.laws import law_of
 
 
 def test_the_distance_is_that_of_kolmogorov_and_smirnov():

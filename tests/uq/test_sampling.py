@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from scipy import stats
 from study_text import study_text
 
-from uq.designs.registry import DESIGNS
-from uq.designs.streams import splitmix64
-from uq.rows.sampling import group_size, row_block, rows
+from uq.sampling.designs import DESIGNS
+from uq.sampling.unit_cube import splitmix64
 from uq.study.definition import study_from_text
+from uq.study.row_sampling import group_size, row_block, rows
 
 MIXED: dict[str, dict[str, Any]] = {
     "study": {"model": "exponential-wear"},

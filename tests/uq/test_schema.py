@@ -8,10 +8,10 @@ import pytest
 from jsonschema import Draft7Validator
 from study_text import UNIFORM, study_text
 
-from uq.inputs.registry import LAWS
-from uq.study import registry
+from uq.sampling.laws import LAWS
+from uq.study import installed_models
 from uq.study.file import AnalysisTable, DesignTable
-from uq.study.registry import find_model, model_names
+from uq.study.installed_models import find_model, model_names
 from uq.study.schema import json_schema
 from uq.study.template import template
 
@@ -148,8 +148,8 @@ def test_a_setting_may_be_a_list_of_pairs(validator, points, places):
 @pytest.fixture
 def mounted(monkeypatch):
     """Return a validator, and the entries of [fixed], where the model MOUNTED is installed."""
-    point = EntryPoint("mounted", "sample_models:MOUNTED", registry.GROUP)
-    monkeypatch.setattr(registry, "_entry_points", lambda: {"mounted": point})
+    point = EntryPoint("mounted", "sample_models:MOUNTED", installed_models.GROUP)
+    monkeypatch.setattr(installed_models, "_entry_points", lambda: {"mounted": point})
     validator = make_validator()
     rule = next(rule for rule in validator.schema["allOf"] if "study" in rule["if"]["properties"])
     return validator, rule["then"]["properties"]["fixed"]["properties"]

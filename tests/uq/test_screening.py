@@ -14,11 +14,11 @@ from computed import (
 )
 from screened import found
 
-from uq.analysis.overview import summary
-from uq.designs.registry import DESIGNS
+from uq.assess.sensitivity_table import sensitivity
+from uq.assess.summary_table import summary
 from uq.errors import InputError
-from uq.indices.dataset import sensitivity
-from uq.methods.registry import METHODS, fed_by
+from uq.indices.methods import METHODS, fed_by
+from uq.sampling.designs import DESIGNS
 
 
 def values_of(entry):

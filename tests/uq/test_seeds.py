@@ -5,8 +5,8 @@ import pytest
 from computed import computed
 from noisy_studies import noisy
 
-from uq.designs.registry import DESIGNS
-from uq.rows.sampling import group_size, row_block, rows
+from uq.sampling.designs import DESIGNS
+from uq.study.row_sampling import group_size, row_block, rows
 
 DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]
 GROUPED = ["saltelli", "shapley", "morris", "morris-optimised", "fast"]

@@ -15,8 +15,8 @@ import uq as package
 from models.analytic import EXPONENTIAL_WEAR as WEAR
 from models.analytic import ISHIGAMI
 from uq.contract import Status
-from uq.outside import server
-from uq.outside.serving import address_of, server_of
+from uq.machines import server
+from uq.machines.serving import address_of, server_of
 
 pytestmark = pytest.mark.usefixtures("forgetful")
 

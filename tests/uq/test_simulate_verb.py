@@ -10,7 +10,7 @@ from sample_models import KINDS
 
 import uq as api
 from uq.cli.simulate import show_outputs
-from uq.rows.one_row import run_row
+from uq.result.one_row import run_row
 
 
 def test_simulate_prints_values_with_units_and_meaning(uq):

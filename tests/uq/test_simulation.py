@@ -8,8 +8,8 @@ import sample_models
 import xarray as xr
 
 import uq
-from uq import store
 from uq.errors import InputError
+from uq.files import whole_files
 
 
 def test_one_row_at_the_nominal_values_but_for_what_is_set():
@@ -61,7 +61,7 @@ def test_all_mistakes_are_reported_at_once():
 def test_a_rigid_part_is_computed_and_kept_in_a_file(folder, given, sag):
     ds = uq.simulate(sample_models.MOUNTED, given)
     assert ds["sag"].values == [sag]
-    store.write(ds, folder / "row.nc")
+    whole_files.write(ds, folder / "row.nc")
     with xr.open_dataset("row.nc") as kept:
         assert kept["mount_stiffness"].item() == given.get("mount_stiffness", inf)
         assert kept["mount_stiffness"].attrs["role"] == "fixed"

@@ -5,9 +5,9 @@ import pytest
 from asked_indices import sensitivities
 from computed import computed, study_of
 
-from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.assess.independent_inputs import independent_inputs
+from uq.assess.sampled_inputs import compare, laws_and_values
 from uq.errors import InputError
-from uq.indices.independent_inputs import independent_inputs
 
 A = {"distribution": "normal", "mean": 10.0, "sd": 1.0}
 C = {"distribution": "normal", "mean": 0.0, "sd": 1.0}

@@ -7,16 +7,14 @@ import pytest
 from computed import as_text, computed, study_of, summarised, with_seed
 from until_studies import study, tables
 
-from uq import store
-from uq.analysis import stopping
+from uq.assess import stopping
 from uq.errors import InputError
-from uq.rows.results import open_result
-from uq.rows.workload import workload_of
-from uq.running import local_cluster, runner
-from uq.running.options import RunOptions
+from uq.execution import amending, local_cluster, row_folder, runner
+from uq.execution.options import RunOptions
+from uq.execution.status import run_status
+from uq.result.result_file import open_result
+from uq.result.workload import workload_of
 from uq.study.definition import study_from_text
-from uq.upkeep import amending
-from uq.upkeep.status import run_status
 
 
 @pytest.mark.parametrize(
@@ -113,7 +111,7 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
         assert reports[-1].done == reports[-1].total == total
         assert whole(path) == whole(folder / "once.nc")
         assert run_status(path).state == "complete"
-        assert not store.folder_of(path).exists()
+        assert not row_folder.folder_of(path).exists()
 
 
 def raising(*arguments, **named):

@@ -6,11 +6,11 @@ from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import PAIR, WEAR, study, tables, wear
 
 from benchmarks.coverage import whole
-from uq.analysis import stopping
+from uq.assess import stopping
+from uq.assess.sensitivities import sensitivities
+from uq.assess.sensitivity_json import sensitivity_json
 from uq.errors import InputError
-from uq.indices.as_json import sensitivity_json
-from uq.indices.sensitivities import sensitivities
-from uq.running import runner
+from uq.execution import runner
 
 
 def seen_with_confidence(monkeypatch, confidence, of, ds):

@@ -6,7 +6,7 @@ import pytest
 from computed import study_of, summarised
 from until_studies import PAIR, WEAR, study, tables, wear
 
-from uq.running import runner
+from uq.execution import runner
 
 
 def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):

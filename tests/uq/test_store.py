@@ -9,16 +9,16 @@ import pytest
 import xarray as xr
 from command_line import everything
 
-from uq import store
 from uq.errors import InputError, RunError
-from uq.interrupts import undo_all
-from uq.store import chunk_file, files
+from uq.execution import chunk_file
+from uq.files import whole_files
+from uq.files.interrupts import undo_all
 
 DS = xr.Dataset({"a": ("sample", np.arange(100_000.0))})
 
 
 def test_missing_folders_are_made(folder):
-    store.write(DS, Path("a/b/out.nc"))
+    whole_files.write(DS, Path("a/b/out.nc"))
     assert everything(folder) == ["a", "a/b", "a/b/out.nc"]
     assert xr.load_dataset("a/b/out.nc").identical(DS)
 
@@ -27,7 +27,7 @@ def test_a_failed_write_leaves_nothing_and_keeps_what_was_there(folder):
     with pytest.raises(RunError, match=r"^a/b/out\.nc: could not be written: "):
         _write_with_file_limit(Path("a/b/out.nc"))
     assert everything(folder) == []
-    store.write(DS.isel(sample=[0]), Path("out.nc"))
+    whole_files.write(DS.isel(sample=[0]), Path("out.nc"))
     with pytest.raises(RunError):
         _write_with_file_limit(Path("out.nc"))
     assert everything(folder) == ["out.nc"]
@@ -47,7 +47,7 @@ def _write_with_file_limit(path):
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, limits[1]))
     try:
-        store.write(DS, path)
+        whole_files.write(DS, path)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
         signal.signal(signal.SIGXFSZ, handler)
@@ -61,9 +61,9 @@ def test_a_write_that_is_cut_short_can_be_undone(folder, monkeypatch):
         undo_all()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(files.os, "replace", cut)
+    monkeypatch.setattr(whole_files.os, "replace", cut)
     with pytest.raises(KeyboardInterrupt):
-        store.write(DS, Path("a/out.nc"))
+        whole_files.write(DS, Path("a/out.nc"))
     assert len(seen) == 2
     assert everything(folder) == []
 
@@ -86,13 +86,13 @@ def test_a_target_that_cannot_be_written_is_refused(folder, path, words):
     (folder / "folder").mkdir()
     (folder / "file").touch()
     with pytest.raises(InputError) as refused:
-        store.check_target(Path(path), 1000)
+        whole_files.check_target(Path(path), 1000)
     assert str(refused.value) == words.format(here=folder)
     assert everything(folder) == ["file", "folder"]
 
 
 def test_a_result_larger_than_the_disk_is_refused_before_the_run(folder):
     with pytest.raises(InputError, match=r"out\.nc: the result takes about 1000000000000 MB, and"):
-        store.check_target(folder / "new" / "out.nc", 10**18)
-    store.check_target(folder / "new" / "out.nc", 1000)
+        whole_files.check_target(folder / "new" / "out.nc", 10**18)
+    whole_files.check_target(folder / "new" / "out.nc", 1000)
     assert everything(folder) == []

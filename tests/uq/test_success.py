@@ -7,10 +7,10 @@ from drawn import words
 
 from models import vibrator
 from uq import plots
-from uq.analysis.summary import summarise
-from uq.conclusions.answer import answer
-from uq.report.outcomes import outcomes, result_tables
-from uq.rows.variables import outputs_of
+from uq.assess.answer.answer import answer
+from uq.assess.summary import summarise
+from uq.render.html.outcomes import outcomes, result_tables
+from uq.result.variables import outputs_of
 
 
 @pytest.fixture

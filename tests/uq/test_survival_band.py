@@ -5,8 +5,8 @@ import pytest
 from computed import asking, linear, with_output
 from scipy import stats
 
-from uq.analysis.lifetime import survival
-from uq.drawing.distribution_plots import lifetime
+from uq.assess.survival import survival
+from uq.render.figures.distribution_plots import lifetime
 
 LAW = stats.weibull_min(2.0)
 

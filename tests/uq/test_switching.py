@@ -5,8 +5,8 @@ import pytest
 from nested_studies import nested_result
 
 import uq as api
-from uq.analysis.level_shares import by_level
-from uq.rows.nesting import nesting_of
+from uq.assess.level_shares import by_level
+from uq.result.nesting import nesting_of
 
 
 def regimes(ds, codes):

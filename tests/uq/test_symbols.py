@@ -7,8 +7,7 @@ from matplotlib.mathtext import MathTextParser
 
 from models import beam, mole, vibrator
 from uq import plots
-from uq.drawing.symbols import formula, typeset
-from uq.drawing.words import labelled
+from uq.render.figures.words import formula, labelled, typeset
 
 
 @pytest.mark.parametrize(

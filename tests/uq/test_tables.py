@@ -5,8 +5,8 @@ import pytest
 from computed import asking, linear, summarised, with_output, with_status
 
 from uq.contract import Status
-from uq.store.files import write_result
-from uq.wording import grouped
+from uq.files.whole_files import write_result
+from uq.text.numbers import grouped
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from uq.tails import generalised_pareto, heavier_tail, lacks_variance
+from uq.stats.tails import generalised_pareto, heavier_tail, lacks_variance
 
 LIGHT = {
     "normal": stats.norm(),

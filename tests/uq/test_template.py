@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from sample_models import MOUNTED
 
-from uq.rows.sampling import row_block
 from uq.study.definition import study_from_text
-from uq.study.registry import find_model, model_names
+from uq.study.installed_models import find_model, model_names
+from uq.study.row_sampling import row_block
 from uq.study.template import template
 
 

@@ -10,7 +10,7 @@ from own_machines import run_program
 
 from uq.cli.printing import print_json
 from uq.cli.streams import _watched
-from uq.outside.program import code_of_program
+from uq.machines.program import code_of_program
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from computed import computed, study_of
 from input_studies import UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.rows.sampling import rows
+from uq.study.row_sampling import rows
 
 
 def test_a_tied_parameter_has_the_value_of_the_other_and_no_column():

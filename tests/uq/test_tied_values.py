@@ -6,9 +6,9 @@ from asked_indices import indices, of_plain_sample
 from computed import asking, linear, with_output
 
 from uq import open_result
-from uq.methods.indices import RefusedError
-from uq.methods.measures import first_order
-from uq.methods.slices import slice_of
+from uq.indices.index import RefusedError
+from uq.indices.measures import first_order
+from uq.indices.slices import slice_of
 from uq.plots import index_bars
 
 N = 3000

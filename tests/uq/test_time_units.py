@@ -3,7 +3,7 @@
 import pytest
 
 from uq.cli.printing import duration
-from uq.wording import time_unit
+from uq.text.numbers import time_unit
 
 
 @pytest.mark.parametrize(

@@ -14,17 +14,17 @@ from learnt_studies import measured, wear
 from nested_studies import nested
 
 import uq as api
-from uq.conclusions.answer import answer
-from uq.conclusions.as_json import answer_json
+from uq.assess.answer.answer import answer
+from uq.assess.answer.answer_json import answer_json
 from uq.errors import InputError
-from uq.exploring.row_again import row
-from uq.exploring.updating import update
-from uq.keys import key_of, paths_of_numbers, taken_apart, value_at
-from uq.learning.result import as_unit
-from uq.report import page
-from uq.store.files import write_result
-from uq.tracing.tracing import trace_json, traced
-from uq.tracing.verbs import VERBS
+from uq.explore.row_again import row
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
+from uq.learning.posterior_result import as_unit
+from uq.render.html.page import page
+from uq.render.trace.trace import trace_json, traced
+from uq.render.trace.verbs import VERBS
+from uq.text.keys import key_of, paths_of_numbers, taken_apart, value_at
 
 MEDIAN = "outputs/life/quantiles/0.5"
 FAILING = {"fail_above": 0.9, "fail_how": "raise"}

@@ -8,9 +8,9 @@ from computed import UNIFORM, as_text, computed, study_of, summarised, with_seed
 from scipy.stats import norm
 
 import uq as api
-from uq.analysis.control_variate import controlled_share
-from uq.analysis.twin import two_fidelities, with_twin
+from uq.assess.two_fidelities import two_fidelities, with_twin
 from uq.errors import InputError
+from uq.stats.control_variate import controlled_share
 from uq.study.definition import study_from_text
 
 THRESHOLDS = {"y": [1.5, 2.5], "patchy": 1.5, "life": 1.25}
@@ -228,8 +228,8 @@ def api_root():
 
 
 def test_cheap_outputs_have_the_bits_of_the_dear_ones():
-    from uq.rows.evaluate import evaluate
-    from uq.study.registry import find_model, model_names
+    from uq.study.evaluate import evaluate
+    from uq.study.installed_models import find_model, model_names
 
     for model in map(find_model, model_names()):
         for name in model.cheap:

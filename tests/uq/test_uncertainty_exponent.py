@@ -19,8 +19,8 @@ from benchmarks.coverage.basins import (
     estimates,
     flat,
 )
-from uq.analysis.boundary import boundary, in_words
-from uq.uncertainty_exponent import FARTHEST, uncertainty_exponent
+from uq.assess.regime_boundary import boundary, in_words
+from uq.stats.uncertainty_exponent import FARTHEST, uncertainty_exponent
 
 
 @pytest.mark.parametrize("basins", KNOWN)

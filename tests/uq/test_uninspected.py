@@ -6,14 +6,14 @@ from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, lognormal, measured, wear
 from scipy import stats
 
-from uq.analysis.fleet import fleet_of
-from uq.analysis.level_shares import by_level
-from uq.analysis.summary import summarise
+from uq.assess.fleet import fleet_of
+from uq.assess.level_shares import by_level
+from uq.assess.summary import summarise
 from uq.errors import InputError, RunError
-from uq.exploring.updating import update
+from uq.explore.updating import update
 from uq.learning.answer import learnt, learnt_json
-from uq.learning.remaining import remaining
-from uq.learning.result import as_unit
+from uq.learning.posterior_result import as_unit
+from uq.learning.remaining_life import remaining
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 2.0}
 LISTED = {"distribution": "discrete-choice", "values": [1.0, 8.0], "level": "shared"}

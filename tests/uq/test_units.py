@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from uq.units import beside, typical, unit_of
+from uq.text.units import beside, typical, unit_of
 
 
 @pytest.mark.parametrize(

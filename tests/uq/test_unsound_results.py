@@ -9,12 +9,12 @@ import xarray as xr
 from learnt_studies import measured, wear
 
 from uq.errors import InputError
-from uq.exploring.updating import update
-from uq.learning.result import as_unit, inspections_of
-from uq.rows.results import open_result
-from uq.rows.soundness import unsound
-from uq.running import runner
-from uq.store.files import write_result
+from uq.execution import runner
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
+from uq.learning.posterior_result import as_unit, inspections_of
+from uq.result.result_file import open_result
+from uq.result.soundness import unsound
 
 
 @pytest.fixture(scope="module")
@@ -182,9 +182,9 @@ def test_a_failure_of_the_system_is_not_called_a_damaged_file(uq, result, monkey
     def fail(*arguments, **options):
         raise OSError(24, "Too many open files", "out.nc")
 
-    monkeypatch.setattr("uq.cli.altered.is_intact", fail)
+    monkeypatch.setattr("uq.cli.changed_file.is_intact", fail)
     assert "has changed" not in uq("summary", result).err
-    monkeypatch.setattr("uq.rows.results.xr.open_dataset", fail)
+    monkeypatch.setattr("uq.result.result_file.xr.open_dataset", fail)
     assert "out.nc: cannot be read: Too many open files;" in uq("summary", result).err
 
 
@@ -199,7 +199,7 @@ def test_too_large_a_computation_ends_in_one_line(uq, result, monkeypatch):
     def without_memory(*arguments, **options):
         raise MemoryError("Unable to allocate 7 TiB")
 
-    monkeypatch.setattr("uq.rows.results.open_result", without_memory)
+    monkeypatch.setattr("uq.result.result_file.open_result", without_memory)
     ended = uq("plot", result)
     assert (ended.code, ended.err) == (1, "uq: not enough memory: Unable to allocate 7 TiB\n")
 

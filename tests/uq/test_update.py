@@ -12,13 +12,13 @@ from learnt_studies import exactly, measured, wear
 from scipy.stats import lognorm, norm
 
 from uq.errors import InputError, RunError
-from uq.exploring.updating import update
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.next_inspection import worth
-from uq.learning.result import as_unit, prior_of, unit_quality
-from uq.population.smoothing import smoothed
-from uq.rows.results import open_result
-from uq.store.files import write_result
+from uq.learning.posterior_result import as_unit, prior_of, unit_quality
+from uq.result.result_file import open_result
+from uq.stats.importance_weights import smoothed
 
 SHARED = {"rate": "shared", "samples": 2000, "units": 3}
 

@@ -11,7 +11,7 @@ from wordings import sentence
 
 import uq as api
 from uq.contract import Status
-from uq.running import child
+from uq.execution import child
 
 RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
 

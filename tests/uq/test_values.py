@@ -11,7 +11,7 @@ from study_text import study_text
 
 from uq.contract import Model, Output, Parameter, Setting
 from uq.errors import InputError
-from uq.inputs.values import parameter_problem, read_settings
+from uq.sampling.named_values import parameter_problem, read_settings
 from uq.study.definition import study_from_text
 
 

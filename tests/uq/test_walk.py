@@ -18,16 +18,16 @@ from computed import (
 )
 
 import uq
-from uq.analysis import stopping
-from uq.analysis.as_json import twin_json
-from uq.analysis.convergence import enough, running_estimates
-from uq.analysis.twin import with_twin
-from uq.designs.registry import DESIGNS
+from uq.assess import stopping
+from uq.assess.convergence import enough, running_estimates
+from uq.assess.summary_json import twin_json
+from uq.assess.two_fidelities import with_twin
 from uq.errors import InputError
-from uq.exploring.rare_events import ESTIMATORS as RARE
-from uq.exploring.rare_events import rare_event
-from uq.methods.registry import fed_by
-from uq.rows.elements import study_file_of
+from uq.explore.rare_events import ESTIMATORS as RARE
+from uq.explore.rare_events import rare_event
+from uq.indices.methods import fed_by
+from uq.result.elements import study_file_of
+from uq.sampling.designs import DESIGNS
 
 DRAWN = [name for name, design in DESIGNS.items() if getattr(design, "draw", None) is not None]
 FIRST = {method: name for name in reversed(DRAWN) for method in fed_by(DESIGNS[name])}

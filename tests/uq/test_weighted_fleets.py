@@ -9,12 +9,12 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 import uq as api
-from uq.analysis.fleet import fleet_of
-from uq.analysis.level_shares import by_level
+from uq.assess.fleet import fleet_of
+from uq.assess.level_shares import by_level
 from uq.errors import InputError
-from uq.exploring.updating import update
-from uq.learning.result import as_unit
-from uq.nested_variance import nested_shares
+from uq.explore.updating import update
+from uq.learning.posterior_result import as_unit
+from uq.stats.variance_components import nested_shares
 
 CV, TIME = 0.1, 6e5
 LIVES = np.array([6e5, 7e5, 5e5])

@@ -9,11 +9,11 @@ from scipy.stats import lognorm
 import uq as api
 from uq import plots
 from uq.errors import InputError
-from uq.exploring.updating import update
-from uq.learning.result import as_unit
-from uq.report.page import page
-from uq.rows.elements import elements_of
-from uq.store.files import write_result
+from uq.explore.updating import update
+from uq.files.whole_files import write_result
+from uq.learning.posterior_result import as_unit
+from uq.render.html.page import page
+from uq.result.elements import elements_of
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,9 @@ import pytest
 from learnt_studies import wear
 from scipy import special
 
-from uq.population.means import weighted_moments, weighted_share
-from uq.population.smoothing import per_sample, smoothed, tail_shape
-from uq.rows.elements import replicates_of
+from uq.result.elements import replicates_of
+from uq.stats.importance_weights import per_sample, smoothed, tail_shape
+from uq.stats.weighted_means import weighted_moments, weighted_share
 
 
 def test_listed_values_are_no_tail():

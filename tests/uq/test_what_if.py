@@ -11,13 +11,13 @@ from typer.testing import CliRunner
 
 from benchmarks.coverage import scaled as counted
 from benchmarks.coverage.tally import LOW
-from uq.analysis.what_if import answer, read_changes, what_if, what_if_json
+from uq.assess.population import Population
+from uq.assess.what_if import answer, read_changes, what_if, what_if_json
 from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
-from uq.population.functionals import Population
-from uq.population.smoothing import largest_shape
-from uq.rows.element import Element
+from uq.result.element import Element
+from uq.stats.importance_weights import largest_shape
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 

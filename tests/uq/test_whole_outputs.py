@@ -10,7 +10,7 @@ import uq
 from benchmarks.coverage import whole
 from uq import plots
 from uq.errors import InputError
-from uq.tracing.tracing import traced
+from uq.render.trace.trace import traced
 
 
 def curves(method="saltelli", samples=64, replicates=4, **analysis):

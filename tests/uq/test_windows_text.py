@@ -8,11 +8,11 @@ from computed import as_text
 from input_studies import UNIFORM, tables
 from own_machines import WEAR
 
-from uq.learning.ledger import read
-from uq.outside.machine_file import OutputTable
-from uq.outside.results_of_programs import value_in
-from uq.rows.sampling import row_block
+from uq.learning.inspection_log import read
+from uq.machines.machine_file import OutputTable
+from uq.machines.program_outputs import value_in
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 from uq.study.sources import fingerprint
 
 ROWS = "x1,note\n0.25,a\n0.5,b\n0.75,c\n"

@@ -4,13 +4,12 @@ from math import inf, nan
 
 import pytest
 
-from uq.estimate import Estimate
-from uq.estimate_text import interval_text, rounded_text, share_text, value_text
-from uq.inputs.registry import law_of
-from uq.methods.indices import S1, ST
-from uq.methods.morris import MU, MU_STAR
-from uq.units import Unit
-from uq.wording import (
+from uq.indices.index import S1, ST
+from uq.indices.morris import MU, MU_STAR
+from uq.sampling.laws import law_of
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import interval_text, rounded_text, share_text, value_text
+from uq.text.numbers import (
     capitalized,
     counted,
     duration,
@@ -21,7 +20,8 @@ from uq.wording import (
     percent_interval,
     quantity,
 )
-from uq.written import read_quantity
+from uq.text.quantities import read_quantity
+from uq.text.units import Unit
 
 
 @pytest.mark.parametrize(

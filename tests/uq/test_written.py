@@ -8,9 +8,9 @@ import pytest
 from computed import asking, linear, study_of, summarised, with_output
 
 from uq.errors import InputError
-from uq.store.files import write_result
-from uq.wording import threshold
-from uq.written import misfit, read_quantity, read_threshold
+from uq.files.whole_files import write_result
+from uq.text.numbers import threshold
+from uq.text.quantities import misfit, read_quantity, read_threshold
 
 
 @pytest.mark.parametrize(

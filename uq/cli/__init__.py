@@ -1,6 +1,37 @@
 """The command ``uq``: its start, how it reports mistakes, its end.
 
 Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
+
+Reading order; each part imports only those above it:
+
+    printing         text, numbers and tables on a terminal, and JSON
+    progress         the progress of a run
+    encodings        characters that the encoding of a stream lacks, as it can write them
+    options          arguments and options shared by several verbs of ``uq``, with their help
+    compare          the output of ``uq compare``
+    trace            what ``uq trace`` shows
+    levels           what ``uq levels`` shows
+    estimates        what ``uq twin`` and ``uq convergence`` print
+    guide            what ``uq`` without a command says: what to do next
+    next_inspection  what ``uq next-inspection`` shows
+    sensitivity      what ``uq sensitivity`` shows: tables of 80 columns
+    models           what ``uq models`` shows
+    fleet            what ``uq fleet`` shows
+    summary_tables   the summary of a result, as tables of 80 columns
+    new_machine      what ``uq init --machine NAME`` writes
+    check            what ``uq check`` shows
+    simulate         what ``uq simulate`` does
+    plan             what ``uq plan`` does
+    rare_event       what ``uq rare-event`` shows
+    status           what ``uq status`` and ``uq verify`` do
+    streams          standard streams that are closed, full or no longer read
+    what_if          the output of ``uq what-if``
+    run              what the verbs that compute rows of a result show
+    row              what ``uq row`` shows
+    changed_file     a warning where a result has changed since it was written
+    learning         what ``uq update`` shows
+    verbs            the verbs of ``uq``: what each takes, and what it calls
+    app              the command ``uq``: its verbs, in the order of ``uq --help``
 """
 
 import gc
@@ -13,8 +44,8 @@ from typing import Any, NoReturn
 
 from uq.cli import streams
 from uq.errors import InputError, RunError, described, nearest, one_line
-from uq.interrupts import undo_all
-from uq.running.environment import SINGLE_THREADED
+from uq.execution.environment import SINGLE_THREADED
+from uq.files.interrupts import undo_all
 
 _when_interrupted = "interrupted"
 

@@ -4,17 +4,17 @@ from itertools import combinations
 
 from uq.cli.printing import grid, heading, number, paragraph
 from uq.cli.progress import say
-from uq.designs.levels import OWN
-from uq.designs.registry import DESIGNS
-from uq.methods.registry import fed_by
-from uq.rows.sampling import group_size, rows
-from uq.running import runner
-from uq.running.loading import load_study
+from uq.execution import runner
+from uq.execution.loading import load_study
+from uq.indices.methods import fed_by
+from uq.sampling.designs import DESIGNS
+from uq.sampling.levels import OWN
 from uq.study.definition import Study
 from uq.study.file import DesignTable
 from uq.study.hints import hints
-from uq.units import powers, typical, unit_of
-from uq.wording import counted, in_brackets, law, listed, threshold
+from uq.study.row_sampling import group_size, rows
+from uq.text.numbers import counted, in_brackets, law, listed, threshold
+from uq.text.units import powers, typical, unit_of
 
 
 def check(path: str, model: str | None) -> None:
@@ -67,7 +67,7 @@ def check(path: str, model: str | None) -> None:
 
 def _until(design: DesignTable) -> str:
     """Return at which sizes a run may stop, and on what."""
-    from uq.analysis.stopping import confidence, interim_sizes
+    from uq.assess.stopping import confidence, interim_sizes
 
     assert design.until is not None
     until, *sizes = design.until, *map(str, interim_sizes(design))
@@ -85,7 +85,7 @@ def _unit(study: Study, name: str) -> str:
 
 def _show_sampled(study: Study) -> None:
     """Print the law of each input as stated and in the rows."""
-    from uq.analysis.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
+    from uq.assess.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
 
     count = -(-min(rows(study), MAX_ROWS) // study.design.rows_of_a_sample)
     found = sampled_inputs(study)

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import xarray as xr
 
-from uq.analysis.as_json import convergence_json, twin_json
-from uq.analysis.converging import converging
-from uq.analysis.findings import Findings
-from uq.analysis.twin import with_twin
+from uq.assess.answer.number_targets import Target
+from uq.assess.answer.verdict import verdict
+from uq.assess.findings import Findings
+from uq.assess.running_estimates import converging
+from uq.assess.summary_json import convergence_json, twin_json
+from uq.assess.two_fidelities import with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.conclusions.targets import Target
-from uq.conclusions.verdict import verdict
-from uq.estimate import Estimate
-from uq.estimate_text import failed_bounds_text, interval_text, value_text
-from uq.rows.results import open_result
-from uq.units import typical, unit_of
-from uq.wording import in_brackets
+from uq.result.result_file import open_result
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import failed_bounds_text, interval_text, value_text
+from uq.text.numbers import in_brackets
+from uq.text.units import typical, unit_of
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 

@@ -3,16 +3,16 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from uq.analysis.fleet import fleet_of, reasons, the_life
-from uq.analysis.fleet_json import fleet_json
-from uq.analysis.fleet_numbers import Banded
+from uq.assess.fleet import fleet_of, reasons, the_life
+from uq.assess.fleet_json import fleet_json
+from uq.assess.fleet_numbers import Banded
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.estimate_text import failed_bounds_text, interval_text, value_text
-from uq.rows.elements import independent_rows
-from uq.rows.results import open_result
-from uq.units import typical, unit_of
-from uq.wording import in_brackets, threshold
-from uq.written import read_threshold
+from uq.result.elements import independent_rows
+from uq.result.result_file import open_result
+from uq.stats.estimate_text import failed_bounds_text, interval_text, value_text
+from uq.text.numbers import in_brackets, threshold
+from uq.text.quantities import read_threshold
+from uq.text.units import typical, unit_of
 
 
 def fleet(

@@ -46,8 +46,8 @@ def _with_what_is_here() -> list[tuple[str, str]]:
 
 def _model_option(study: Path) -> str:
     """Return ``--model`` and a file, after a blank, for a study of a model in a file here."""
-    from uq.study.own_files import file_with
-    from uq.study.registry import model_names
+    from uq.study.installed_models import model_names
+    from uq.study.model_files import file_with
 
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         model = tomllib.loads(study.read_text("utf-8-sig"))["study"]["model"]

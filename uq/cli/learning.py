@@ -11,22 +11,21 @@ import xarray as xr
 from uq.cli import progress, say_when_interrupted
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json
 from uq.cli.run import carried_out, loaded
-from uq.estimate import Estimate
-from uq.estimate_text import value_text
-from uq.exploring.new_rows import Budget
-from uq.exploring.updating import is_study, learn, samples_for
+from uq.execution.options import RunOptions
+from uq.execution.runner import output_path, run_study
+from uq.explore.new_rows import Budget
+from uq.explore.updating import is_study, learn, samples_for
+from uq.files.whole_files import check_target
 from uq.learning.answer import Learnt, learnt, learnt_json
-from uq.learning.asked_times import read_times
-from uq.learning.inputs_learnt import InputLearnt
-from uq.learning.ledger import read
-from uq.learning.remaining import ANY, Remaining
-from uq.learning.taught import Taught
-from uq.rows.results import open_result
-from uq.running.options import RunOptions
-from uq.running.runner import output_path, run_study
-from uq.store.files import check_target
-from uq.units import beside, powers, unit_of
-from uq.wording import in_brackets, number, percent
+from uq.learning.information_gain import Taught
+from uq.learning.inspection_log import read
+from uq.learning.posterior_inputs import InputLearnt
+from uq.learning.remaining_life import ANY, Remaining, read_times
+from uq.result.result_file import open_result
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import value_text
+from uq.text.numbers import in_brackets, number, percent
+from uq.text.units import beside, powers, unit_of
 
 MOST_UNITS = 12
 """Inspected units whose own inputs are listed."""

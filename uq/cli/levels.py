@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 
-from uq.analysis.apportioned import SOLVER, LevelShares
-from uq.analysis.as_json import levels_json
-from uq.analysis.level_shares import by_level
+from uq.assess.answer.number_targets import Target
+from uq.assess.level_shares import by_level
+from uq.assess.summary_json import levels_json
+from uq.assess.variance_by_level import SOLVER, LevelShares
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.conclusions.targets import Target
-from uq.designs.levels import LEVELS
-from uq.methods.indices import S1
-from uq.population.smoothing import worth_in_words
-from uq.rows.results import open_result
+from uq.indices.index import S1
+from uq.result.result_file import open_result
+from uq.sampling.levels import LEVELS
+from uq.stats.importance_weights import worth_in_words
 
 
 def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:

@@ -5,12 +5,12 @@ from math import exp
 from pathlib import Path
 from typing import Any
 
-from uq import json_form
 from uq.cli.printing import grid, heading, note, print_json
 from uq.learning.next_inspection import Worth, unit_of_time, worth
-from uq.rows.results import open_result
-from uq.wording import counted, percent, threshold
-from uq.written import read_threshold
+from uq.result.result_file import open_result
+from uq.stats import estimate_json
+from uq.text.numbers import counted, percent, threshold
+from uq.text.quantities import read_threshold
 
 
 def next_inspection(
@@ -57,11 +57,11 @@ def _as_json(found: Worth) -> dict[str, Any]:
     return {
         "life": found.life,
         "inspect": found.output,
-        "spread": json_form.number(found.spread),
+        "spread": estimate_json.number(found.spread),
         "time_units": found.time_unit,
         "notes": found.notes,
         "narrowing": [
-            {"time": time, "units": units, "value": json_form.number(share)}
+            {"time": time, "units": units, "value": estimate_json.number(share)}
             for (time, units), share in found.narrowing.items()
         ],
     }

@@ -8,7 +8,7 @@ import typer
 
 def complete_model(incomplete: str) -> list[str]:
     """Return the names with which a shell may complete a word."""
-    from uq.study.registry import model_names
+    from uq.study.installed_models import model_names
 
     return [name for name in model_names() if name.startswith(incomplete)]
 

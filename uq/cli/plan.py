@@ -3,17 +3,17 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from uq.analysis.joint_bounds import Needed, rows_needed
-from uq.analysis.widths import Widths, expected_widths
+from uq.assess.expected_widths import Widths, expected_widths
+from uq.assess.joint_bounds import Needed, rows_needed
 from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say, say_compiling
-from uq.outside.row_by_row import RowByRow
-from uq.rows.elements import has_independent_samples
-from uq.rows.results import failed
-from uq.running.planning import Cost, pilot
+from uq.execution.planning import Cost, pilot
+from uq.machines.row_by_row import RowByRow
+from uq.result.elements import has_independent_samples
+from uq.result.result_file import failed
 from uq.study.definition import Study
-from uq.units import typical, unit_of
-from uq.wording import counted, in_brackets, quantity, threshold
+from uq.text.numbers import counted, in_brackets, quantity, threshold
+from uq.text.units import typical, unit_of
 
 _SURE = 1.2  # a forecast with a wider margin is shown with its band
 

@@ -13,9 +13,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from uq.literals import plain
-from uq.wording import duration as duration
-from uq.wording import number as number
+from uq.text.literals import plain
+from uq.text.numbers import duration as duration
+from uq.text.numbers import number as number
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod

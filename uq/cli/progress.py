@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from functools import cache, partial
 from math import isinf
 
-from uq.interrupts import undone
-from uq.running.options import Progress, Report
-from uq.wording import duration, number
+from uq.execution.options import Progress, Report
+from uq.files.interrupts import undone
+from uq.text.numbers import duration, number
 
 _PLAIN_SECONDS = 10.0
 _PLAIN_WIDTH = 120

@@ -11,12 +11,12 @@ from uq.cli.printing import grid, heading, note, number, print_json
 from uq.cli.progress import say
 from uq.contract import Model
 from uq.errors import InputError
-from uq.literals import plain_line
 from uq.study.definition import Study
 from uq.study.hints import undeclared_lives
-from uq.wording import quantity
-from uq.wording import threshold as threshold_in_words
-from uq.written import read_threshold
+from uq.text.literals import plain_line
+from uq.text.numbers import quantity
+from uq.text.numbers import threshold as threshold_in_words
+from uq.text.quantities import read_threshold
 
 
 def limit(study: Study, output: str, above: str | None, below: str | None) -> tuple[float, bool]:

@@ -6,15 +6,15 @@ from typing import Any
 from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say_compiling
 from uq.cli.simulate import as_json, check_files, draw, show_outputs
-from uq.compilation import compilation
 from uq.contract import Status
 from uq.errors import InputError
-from uq.exploring.row_again import RowAgain, row_again
-from uq.exploring.simulation import with_trajectory
-from uq.rows.results import open_result
-from uq.running.loading import load_model
-from uq.study.registry import find_model
-from uq.wording import capitalized, quantity
+from uq.execution.loading import load_model
+from uq.explore.row_again import RowAgain, row_again
+from uq.explore.simulation import with_trajectory
+from uq.machines.compilation import compilation
+from uq.result.result_file import open_result
+from uq.study.installed_models import find_model
+from uq.text.numbers import capitalized, quantity
 
 
 def row(

@@ -10,20 +10,20 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from uq.cli import progress, say_when_interrupted, tables
+from uq.cli import progress, say_when_interrupted, summary_tables
 from uq.cli.printing import console
 from uq.contract import Status
-from uq.literals import plain_line
-from uq.rows import results
-from uq.rows.commands import with_model
-from uq.running import runner
-from uq.running.loading import load_study
-from uq.running.options import Progress, RunOptions
-from uq.store import folder_of
+from uq.execution import runner
+from uq.execution.amending import study_of
+from uq.execution.loading import load_study
+from uq.execution.options import Progress, RunOptions
+from uq.execution.row_folder import folder_of
+from uq.result import result_file
+from uq.result.commands import with_model
 from uq.study.definition import Study
 from uq.study.hints import hints
-from uq.upkeep.amending import study_of
-from uq.wording import counted
+from uq.text.literals import plain_line
+from uq.text.numbers import counted
 
 
 def loaded(
@@ -90,15 +90,15 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
     if not mixed and (line := runner.line_on_other_code(study, target, ds)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
-        from uq.analysis.findings import Findings
+        from uq.assess.findings import Findings
 
-        tables.show_findings(Findings(with_model(ds, study.model_reference)))
+        summary_tables.show_findings(Findings(with_model(ds, study.model_reference)))
         console.print()
         console.print(note)
         name = shlex.quote(str(target))
         console.print(f"Next: uq report {name} --open", soft_wrap=True)
         console.print(f"      uq sensitivity {name}", soft_wrap=True)
-    failed = int(np.count_nonzero(results.failed(ds)))
+    failed = int(np.count_nonzero(result_file.failed(ds)))
     share = failed / ds.sizes["sample"]
     if share <= study.analysis.max_failed:
         return 0

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 import xarray as xr
 
+from uq.assess.answer.number_targets import Target
+from uq.assess.ranked_indices import Values, lines
+from uq.assess.sensitivities import Sensitivities
 from uq.cli.printing import grid, heading, paragraph
-from uq.conclusions.targets import Target
-from uq.indices.ranked import Values, lines
-from uq.indices.sensitivities import Sensitivities
-from uq.methods.indices import BY_CORRELATION, S1, IndexKind, Indices
-from uq.units import typical, unit_of
-from uq.wording import counted, in_brackets
+from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
+from uq.text.numbers import counted, in_brackets
+from uq.text.units import typical, unit_of
 
 
 def show(ds: xr.Dataset, found: Sensitivities) -> None:

@@ -8,18 +8,18 @@ import numpy as np
 
 from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.cli.progress import say, say_compiling
-from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
-from uq.greek import readable
-from uq.literals import plain_line, read_number, read_toml
-from uq.places import file_behind
-from uq.rows.one_row import Row
-from uq.running.alone import run_alone
-from uq.running.loading import load_model
+from uq.execution.loading import load_model
+from uq.execution.single_row import run_alone
+from uq.files.paths import file_behind
+from uq.machines.compilation import compilation
+from uq.result.one_row import Row
 from uq.study.hints import undeclared_lives
-from uq.units import typical, unit_of
-from uq.wording import in_brackets
+from uq.text.literals import plain_line, read_number, read_toml
+from uq.text.numbers import in_brackets
+from uq.text.symbols import readable
+from uq.text.units import typical, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,8 +50,8 @@ def simulate(
 
 def check_files(model: Model, output: Path | None, plot: Path | None) -> None:
     """Refuse files that cannot be written, or that the model has nothing for."""
-    from uq.exploring.simulation import holds_trajectory
-    from uq.store.files import check_target
+    from uq.explore.simulation import holds_trajectory
+    from uq.files.whole_files import check_target
 
     for path, option in ((output, "-o"), (plot, "--plot")):
         if path is not None:
@@ -67,8 +67,8 @@ def check_files(model: Model, output: Path | None, plot: Path | None) -> None:
 
 def _keep(row: Row, output: Path | None, plot: Path | None) -> None:
     """Write the row with its time history, draw the history, or both."""
-    from uq.exploring.simulation import dataset
-    from uq.store.files import write
+    from uq.explore.simulation import dataset
+    from uq.files.whole_files import write
 
     ds = dataset(row)
     if output:
@@ -86,8 +86,8 @@ def draw(ds: "xr.Dataset", plot: Path) -> None:
         As from `uq.simulate`.
     plot : Path
     """
-    from uq.drawing.figure import DOTS_PER_INCH, replaced
     from uq.plots import motion
+    from uq.render.figures.figure import DOTS_PER_INCH, replaced
 
     try:
         file_behind(plot).parent.mkdir(parents=True, exist_ok=True)

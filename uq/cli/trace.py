@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.rows.results import open_result
-from uq.tracing.tracing import Trace, trace_json, traced
+from uq.render.trace.trace import Trace, trace_json, traced
+from uq.result.result_file import open_result
 
 _MOST = 40  # characters of a hash
 

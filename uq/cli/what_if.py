@@ -3,10 +3,10 @@
 from math import isfinite
 from pathlib import Path
 
-from uq.analysis.what_if import answer, read_changes, what_if_json
+from uq.assess.what_if import answer, read_changes, what_if_json
 from uq.cli.printing import note, print_json
-from uq.cli.tables import show_summary
-from uq.rows.results import open_result
+from uq.cli.summary_tables import show_summary
+from uq.result.result_file import open_result
 
 
 def what_if(result: Path, changes: list[str], json: bool) -> None:

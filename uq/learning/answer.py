@@ -8,25 +8,20 @@ from unicodedata import normalize
 import numpy as np
 import xarray as xr
 
-from uq import json_form
-from uq.analysis.as_json import quality_json
+from uq.assess.summary_json import quality_json
 from uq.errors import InputError
-from uq.learning.inputs_learnt import Confounded, InputLearnt, Spread, confounded, inputs_learnt
+from uq.learning.information_gain import Taught, taught
 from uq.learning.inspections import Inspection
 from uq.learning.posterior import Posterior, posterior
-from uq.learning.remaining import ANY, Remaining, remaining
-from uq.learning.result import (
-    as_table,
-    inspections_of,
-    prior_of,
-    unit_quality,
-)
-from uq.learning.strangeness import STRANGE, strangeness
-from uq.learning.taught import Taught, taught
-from uq.population.smoothing import Smoothed
-from uq.rows.elements import independent_rows
-from uq.rows.weights import MODEL_ERROR, has_weights
-from uq.wording import percent
+from uq.learning.posterior_inputs import Confounded, InputLearnt, Spread, confounded, inputs_learnt
+from uq.learning.posterior_result import as_table, inspections_of, prior_of, unit_quality
+from uq.learning.prior_predictive import STRANGE, strangeness
+from uq.learning.remaining_life import ANY, Remaining, remaining
+from uq.result.elements import independent_rows
+from uq.result.weights import MODEL_ERROR, has_weights
+from uq.stats import estimate_json
+from uq.stats.importance_weights import Smoothed
+from uq.text.numbers import percent
 
 
 @dataclass(frozen=True)
@@ -173,8 +168,8 @@ def _spread(one: Spread) -> dict[str, Any]:
     quantiles = {repr(p): value for p, value in one.quantiles.items()}
     found: dict[str, Any] = {}
     for name, of in (("mean", one.mean), ("sd", one.sd)):
-        found[name] = json_form.number(of.value)
-        found |= {f"{name}_{end}": value for end, value in json_form.ends(of).items()}
+        found[name] = estimate_json.number(of.value)
+        found |= {f"{name}_{end}": value for end, value in estimate_json.ends(of).items()}
         found |= {f"{name}_reason": of.reason} if of.reason else {}
     return found | {"quantiles": quantiles}
 
@@ -187,8 +182,8 @@ def _life(one: Remaining) -> dict[str, Any]:
     return {
         "units": one.units,
         "seen": one.seen,
-        "runs": json_form.whole(one.runs),
-        "remaining": {repr(p): json_form.whole(found) for p, found in one.life.items()},
-        "by": {repr(time): json_form.whole(p) | spread(time) for time, p in one.by.items()},
+        "runs": estimate_json.whole(one.runs),
+        "remaining": {repr(p): estimate_json.whole(found) for p, found in one.life.items()},
+        "by": {repr(time): estimate_json.whole(p) | spread(time) for time, p in one.by.items()},
         "effective_rows": one.effective_rows,
     }

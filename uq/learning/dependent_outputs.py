@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from uq.assess.row_inputs import inputs_of
+from uq.assess.scaling import scalers
 from uq.learning.importance import own_rows
-from uq.population.row_inputs import inputs_of
-from uq.population.scaling import scalers
-from uq.rows.elements import elements_of
-from uq.rows.nesting import nesting_of
-from uq.rows.variables import error_name, outputs_of
+from uq.result.elements import elements_of
+from uq.result.nesting import nesting_of
+from uq.result.variables import error_name, outputs_of
 
 _CHANCE = 1e-6
 _FEWEST = 20

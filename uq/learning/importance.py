@@ -8,8 +8,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.rows.nesting import is_nested, nesting_of
-from uq.rows.weights import IMPORTANCE, OWN_SIZE, ROUND, has_rounds
+from uq.result.nesting import is_nested, nesting_of
+from uq.result.weights import IMPORTANCE, OWN_SIZE, ROUND, has_rounds
 
 REPETITIONS = 8
 """Independent repetitions of the sampler, where the design has no replicates of its own."""

@@ -9,8 +9,8 @@ from numbers import Real
 from pathlib import Path
 
 from uq.errors import InputError, nearest
-from uq.literals import read_number, shown
-from uq.places import node
+from uq.files.paths import node
+from uq.text.literals import read_number, shown
 
 
 class Kind(StrEnum):

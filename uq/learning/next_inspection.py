@@ -9,10 +9,10 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError, choices
-from uq.learning.asked_times import check_times
 from uq.learning.inspections import Inspection, Kind
-from uq.learning.looks import Look, Quantities, look_at, quantities_of
-from uq.rows.elements import (
+from uq.learning.observables import Look, Quantities, look_at, quantities_of
+from uq.learning.remaining_life import check_times
+from uq.result.elements import (
     Element,
     analysis_of,
     elements_of,
@@ -22,10 +22,10 @@ from uq.rows.elements import (
     weights_of,
     why_no_statistics,
 )
-from uq.rows.nesting import Nesting, nesting_of
-from uq.rows.weights import OF_UNIT
-from uq.units import beside
-from uq.wording import number, percent
+from uq.result.nesting import Nesting, nesting_of
+from uq.result.weights import OF_UNIT
+from uq.text.numbers import number, percent
+from uq.text.units import beside
 
 _ANY = 1e-300  # a value that no depth is beyond
 _FEW, _MOST = 0.01, 0.5

@@ -9,21 +9,21 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.designs.levels import SHARED
 from uq.errors import InputError
 from uq.learning.contradiction import contradictions
 from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
-from uq.learning.integrated import Scale, scale_of
-from uq.learning.looks import Look, look_at, quantities_of
-from uq.learning.own_rows_out import log_worth
+from uq.learning.integrated_input import Scale, scale_of
+from uq.learning.leave_one_out import log_worth
+from uq.learning.observables import Look, look_at, quantities_of
 from uq.learning.rows_as_units import Weighted, inspected, uninspected
 from uq.learning.shared_law import SharedLaw, shared_law
 from uq.learning.unit_likelihood import UnitLikelihoods
-from uq.population.smoothing import Smoothed
-from uq.rows.elements import replicates_of
-from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
+from uq.result.elements import replicates_of
+from uq.result.nesting import Nesting, levels_of, levels_that_vary, nesting_of
+from uq.sampling.levels import SHARED
+from uq.stats.importance_weights import Smoothed
 
 Rows = NDArray[np.intp]
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
-from uq.population.smoothing import effective_rows
+from uq.stats.importance_weights import effective_rows
 
 FREEDOM = 5.0
 """Degrees of freedom: tails heavier than those of a posterior."""

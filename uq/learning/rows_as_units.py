@@ -7,18 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from uq.assess.posterior_scale import SCORES, terms_at
 from uq.contract import Floats, Mask
-from uq.intervals import Replicates, replicates_of_some
+from uq.learning.cell_ends import Allowed, edges_of_rows
 from uq.learning.cell_masses import masses
-from uq.learning.cut_cells import Allowed, edges_of_rows
 from uq.learning.evidence import Evidence
-from uq.learning.integrated import Scale
+from uq.learning.integrated_input import Scale
 from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
 from uq.learning.shared_law import SharedLaw, pulls_of
 from uq.learning.unit_likelihood import UnitLikelihoods
-from uq.population.shared_terms import SCORES, terms_at
-from uq.population.smoothing import Smoothed, smoothed
-from uq.rows.nesting import Nesting
+from uq.result.nesting import Nesting
+from uq.stats.importance_weights import Smoothed, smoothed
+from uq.stats.intervals import Replicates, replicates_of_some
 
 Rows = NDArray[np.intp]
 

@@ -2,7 +2,7 @@
 
 Its density given the inspections is the product of what the units say, each a mean over rows: an
 error of that mean is an error of all that is read from the posterior. The delta method follows it:
-`uq.clusters.LearntTogether`.
+`uq.stats.clusters.LearntTogether`.
 """
 
 from typing import NamedTuple
@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from uq.assess.posterior_scale import SCORES, terms
 from uq.contract import Floats
 from uq.learning.cell_masses import masses
 from uq.learning.evidence import Evidence
 from uq.learning.scale_quantiles import prior_places
-from uq.population.shared_terms import SCORES, terms
 
 
 class SharedLaw(NamedTuple):

@@ -6,9 +6,9 @@ from math import ceil
 import numpy as np
 
 from uq.learning.posterior import Posterior, Weighted
-from uq.population.few_rows import FEW
-from uq.population.smoothing import DOUBTFUL, refusal, rows_to_carry_little
-from uq.wording import percent
+from uq.stats.importance_weights import DOUBTFUL, refusal, rows_to_carry_little
+from uq.stats.weighted_means import FEW
+from uq.text.numbers import percent
 
 HOPELESS = (
     "few rows agree with the inspections, and this takes many times the rows; where"

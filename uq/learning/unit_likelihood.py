@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.learning.importance import Importance
 from uq.learning.inspections import Inspection
-from uq.learning.integrated import Scale
+from uq.learning.integrated_input import Scale
 from uq.learning.likelihood import log_most
-from uq.learning.looks import Look
+from uq.learning.observables import Look
 
 
 class UnitLikelihoods:

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
-from uq.designs.registry import DESIGNS
-from uq.literals import read_toml, shown
+from uq.sampling.designs import DESIGNS
 from uq.study.definition import Study
+from uq.text.literals import read_toml, shown
 
 _FREE = {("study", "name"), ("study", "description"), ("design", "samples"), ("design", "until")}
 """Entries on which no row depends."""

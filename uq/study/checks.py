@@ -5,17 +5,17 @@ from functools import partial
 from typing import Any
 
 from uq.contract import Model
-from uq.designs.design import Design
-from uq.designs.layouts import PATHS
-from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
-from uq.designs.registry import DESIGNS
-from uq.element_names import place_of, places, whole_name
 from uq.errors import choices, nearest
-from uq.inputs.faults import Fault, unknown
-from uq.inputs.values import parameter_problem, read_settings, unknown_name
-from uq.methods.registry import designs_for, fed_by, kinds_with_intervals
-from uq.outside.row_by_row import RowByRow
-from uq.written import misfit
+from uq.indices.methods import designs_for, fed_by, kinds_with_intervals
+from uq.machines.row_by_row import RowByRow
+from uq.sampling.design import Design
+from uq.sampling.designs import DESIGNS
+from uq.sampling.input_faults import Fault, unknown
+from uq.sampling.layouts import PATHS
+from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
+from uq.sampling.named_values import parameter_problem, read_settings, unknown_name
+from uq.text.element_names import place_of, places, whole_name
+from uq.text.quantities import misfit
 
 Tables = Mapping[str, Mapping[str, Any]]
 """The sound entries of a study file: table -> key -> value, as parsed."""

@@ -9,18 +9,18 @@ from pathlib import Path
 from typing import Any, Self
 
 from uq.contract import Model
-from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import InputError, nearest
-from uq.inputs.data_files import columns_of_files, numbers, with_columns
-from uq.inputs.faults import Fault
-from uq.inputs.law import Law
-from uq.inputs.values import read_settings
+from uq.sampling.data_files import columns_of_files, numbers, with_columns
+from uq.sampling.designs import DESIGNS, IMPORTED
+from uq.sampling.input_faults import Fault
+from uq.sampling.law import Law
+from uq.sampling.named_values import read_settings
 from uq.study.checks import design_faults, model_faults
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
+from uq.study.installed_models import find_model, model_at
 from uq.study.reading import parse, shape_faults, sound_entries
-from uq.study.registry import find_model, model_at
-from uq.wording import counted
+from uq.text.numbers import counted
 
 _LONGEST = 1_000_000  # bytes of a study file
 
@@ -34,7 +34,7 @@ class Study:
     name : str
     model : Model
     model_reference : str
-        By which `uq.study.registry.model_at` finds the model, in another process too.
+        By which `uq.study.installed_models.model_at` finds the model, in another process too.
     description : str
     design : DesignTable
         method, samples, replicates, units, repeats, second_order, seed, until.
@@ -56,7 +56,7 @@ class Study:
         Parameters that equal another.
     dependence : DependenceTable or None
     imported : dict of str to str
-        For an imported design: parameter -> its column, for `uq.inputs.data_files.numbers`.
+        For an imported design: parameter -> its column, for `uq.sampling.data_files.numbers`.
     """
 
     name: str
@@ -82,7 +82,7 @@ class Study:
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """The level of each uncertain parameter, in order; see `uq.designs.levels`."""
+        """The level of each uncertain parameter, in order; see `uq.sampling.levels`."""
         return tuple(law.level for law in self.uncertain.values())
 
     def level(self, name: str) -> str:
@@ -157,7 +157,7 @@ class Study:
 
 
 def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
-    """Read and check a study file, as `uq.running.loading.load_study`; a model stays unknown."""
+    """Read and check a study file, as `uq.execution.loading.load_study`; a model stays unknown."""
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
 

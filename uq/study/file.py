@@ -24,15 +24,15 @@ from pydantic import (
 )
 from pydantic_core.core_schema import CoreSchema, no_info_plain_validator_function
 
-from uq.designs.design import MAX_SAMPLES
-from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE
-from uq.designs.registry import DESIGNS
 from uq.errors import nearest
-from uq.inputs.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
-from uq.inputs.registry import any_law, law_of
-from uq.literals import shown
-from uq.methods.registry import METHODS
-from uq.written import EXAMPLE, SHAPE, Written, read_quantity
+from uq.indices.methods import METHODS
+from uq.sampling.design import MAX_SAMPLES
+from uq.sampling.designs import DESIGNS
+from uq.sampling.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
+from uq.sampling.laws import any_law, law_of
+from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE
+from uq.text.literals import shown
+from uq.text.quantities import EXAMPLE, SHAPE, Written, read_quantity
 
 _MOST_LISTED = 200  # each is a row of every table
 

@@ -11,15 +11,15 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from uq.contract import Model, Output
-from uq.designs.layouts import PATHS, PLAIN
-from uq.designs.registry import DESIGNS
-from uq.methods.registry import METHODS, fed_by
-from uq.order_statistics import is_within, rows_for_bound, rows_to_reach
-from uq.outside.row_by_row import RowByRow
-from uq.quantile_functions import student
+from uq.indices.methods import METHODS, fed_by
+from uq.machines.row_by_row import RowByRow
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import PATHS, PLAIN
+from uq.stats.order_statistics import is_within, rows_for_bound, rows_to_reach
+from uq.stats.quantile_functions import student
 from uq.study.file import USUAL
-from uq.wording import counted, listed
-from uq.written import read_quantity
+from uq.text.numbers import counted, listed
+from uq.text.quantities import read_quantity
 
 if TYPE_CHECKING:
     from uq.study.definition import Study

@@ -6,9 +6,16 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Model, Parameter
-from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import nearest
-from uq.inputs.conditioning import (
+from uq.indices.methods import fed_by
+from uq.sampling.data_files import Columns, columns_of_files, numbers
+from uq.sampling.dependence import matrix_problem
+from uq.sampling.designs import DESIGNS, IMPORTED
+from uq.sampling.input_faults import Fault
+from uq.sampling.law import Law
+from uq.sampling.listed_values import Empirical, values_problem
+from uq.sampling.named_values import bounds_of
+from uq.sampling.truncation import (
     OUTSIDE_AT_MOST,
     TOO_EXTREME,
     factor_ends,
@@ -17,16 +24,9 @@ from uq.inputs.conditioning import (
     ppf_within,
     support,
 )
-from uq.inputs.data_files import Columns, columns_of_files, numbers
-from uq.inputs.dependence import matrix_problem
-from uq.inputs.faults import Fault
-from uq.inputs.law import Law
-from uq.inputs.observed import Empirical, values_problem
-from uq.inputs.values import bounds_of
-from uq.methods.registry import fed_by
 from uq.study.file import ENTRY, Tied
 from uq.study.reading import parse, shape_faults, sound_entries
-from uq.wording import counted
+from uq.text.numbers import counted
 
 Entries = Mapping[str, Any]
 """Parameter -> `Law` or `Tied`."""

@@ -5,14 +5,14 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from uq.designs.registry import IMPORTED
 from uq.errors import InputError, first_fault_alone, nearest, one_line
-from uq.inputs.faults import MISSING, Fault, fault_of, unknown
-from uq.inputs.law import Law
-from uq.inputs.registry import LAWS
-from uq.literals import key as written_key
-from uq.literals import read_toml
+from uq.sampling.designs import IMPORTED
+from uq.sampling.input_faults import MISSING, Fault, fault_of, unknown
+from uq.sampling.law import Law
+from uq.sampling.laws import LAWS
 from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
+from uq.text.literals import key as written_key
+from uq.text.literals import read_toml
 
 _MOST_ENTRIES = 2_000  # of a table; the time for its faults grows with their square
 

@@ -8,13 +8,13 @@ from pydantic import TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from uq.contract import Model
-from uq.designs.design import MAX_SAMPLES, Design
-from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.inputs.values import setting_types
-from uq.methods.registry import fed_by
+from uq.indices.methods import fed_by
+from uq.sampling.design import MAX_SAMPLES, Design
+from uq.sampling.designs import DESIGNS
+from uq.sampling.named_values import setting_types
 from uq.study.file import StudyFile
-from uq.study.registry import find_model, model_names
+from uq.study.installed_models import find_model, model_names
 
 Schema = dict[str, Any]
 

@@ -9,13 +9,13 @@ from typing import Any
 from pydantic import BaseModel
 
 from uq.contract import Model, Parameter
-from uq.designs.registry import DESIGNS
-from uq.inputs.conditioning import law_problem
-from uq.inputs.law import Law
-from uq.inputs.registry import LAWS, law_of
-from uq.inputs.values import bounds_of
-from uq.literals import toml
+from uq.sampling.designs import DESIGNS
+from uq.sampling.law import Law
+from uq.sampling.laws import LAWS, law_of
+from uq.sampling.named_values import bounds_of
+from uq.sampling.truncation import law_problem
 from uq.study.file import AnalysisTable, DesignTable
+from uq.text.literals import toml
 
 _DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3

@@ -9,8 +9,8 @@ from hard_rows import DELAYED, GRAZING, LIGHT, STEPPED, SWITCHING, TRANSIENT
 from models.beam import MODEL
 from models.beam.parameters import REGIMES, Settings
 from uq.contract import Status
-from uq.rows.sampling import row_block
 from uq.study.definition import load_study
+from uq.study.row_sampling import row_block
 
 STUDIES = Path(__file__).parents[3] / "studies"
 ANY = Settings(depths=(1e-6,), accuracy=1.0)

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from uq.cli import options as given
-from uq.running.options import RunOptions
+from uq.execution.options import RunOptions
 
 
 def update(

@@ -10,15 +10,15 @@ import typer
 
 from uq.cli import options as given
 from uq.errors import InputError
-from uq.literals import plain_line
-from uq.running.options import RunOptions
+from uq.execution.options import RunOptions
+from uq.text.literals import plain_line
 
 
 def status(result: given.ResultFile, json: given.Json = False) -> None:
     """Show the progress of a run, also while it runs."""
-    from uq.cli import upkeep
+    from uq.cli import status
 
-    upkeep.status(result, json)
+    status.status(result, json)
 
 
 def extend(
@@ -33,7 +33,7 @@ def extend(
 ) -> int:
     """Add samples to a result; existing rows are kept."""
     from uq.cli.run import amended
-    from uq.upkeep import amending
+    from uq.execution import amending
 
     options = RunOptions(workers, scheduler, row_limit=row_limit, mixed=mixed)
     action = partial(amending.extend, result, samples, model)
@@ -54,7 +54,7 @@ def rerun(
     """Recompute the failed rows of a result."""
     from uq.cli.run import amended
     from uq.cli.simulate import literal
-    from uq.upkeep.amending import rerun_failed
+    from uq.execution.amending import rerun_failed
 
     if not failed:
         raise InputError("uq rerun: give --failed, the rows to compute again")
@@ -65,9 +65,9 @@ def rerun(
 
 def verify(result: given.ResultFile, model: given.ModelReference = None) -> int:
     """Check a result, and recompute a few of its rows."""
-    from uq.cli import upkeep
+    from uq.cli import status
 
-    return upkeep.verify(result, model)
+    return status.verify(result, model)
 
 
 def row(
@@ -104,28 +104,28 @@ def summary(
     json: given.Json = False,
 ) -> None:
     """Show the answer, and statistics of each output."""
-    from uq.analysis.as_json import summary_json
-    from uq.analysis.boundary import boundary_json
-    from uq.analysis.findings import Findings
-    from uq.analysis.summary import summarise
-    from uq.cli import tables
-    from uq.cli.altered import warn_if_altered
+    from uq.assess.answer.answer import conclude
+    from uq.assess.answer.answer_json import answer_json
+    from uq.assess.findings import Findings
+    from uq.assess.regime_boundary import boundary_json
+    from uq.assess.summary import summarise
+    from uq.assess.summary_json import summary_json
+    from uq.cli import summary_tables
+    from uq.cli.changed_file import warn_if_altered
     from uq.cli.printing import print_json
-    from uq.conclusions.answer import conclude
-    from uq.conclusions.as_json import answer_json
-    from uq.rows.results import open_result
+    from uq.result.result_file import open_result
 
     ds = open_result(result)
     findings = Findings(ds)
     answered = regime is None and not plain  # the answer is that of all rows
     if answered and not (fits or json):
-        tables.show_findings(findings)
+        summary_tables.show_findings(findings)
         warn_if_altered(result)
         return
     asked = regime is not None or fits or plain
     found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
     if not json:
-        tables.show_summary(ds, found)
+        summary_tables.show_summary(ds, found)
         warn_if_altered(result)
         return
     answer = {"answer": answer_json(conclude(findings))} if answered else {}
@@ -145,11 +145,11 @@ def sensitivity(
     json: given.Json = False,
 ) -> None:
     """Show which inputs cause the scatter."""
+    from uq.assess.sensitivities import sensitivities
+    from uq.assess.sensitivity_json import sensitivity_json
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import show
-    from uq.indices.as_json import sensitivity_json
-    from uq.indices.sensitivities import sensitivities
-    from uq.rows.results import open_result
+    from uq.result.result_file import open_result
 
     ds = open_result(result)
     found = sensitivities(ds, method, output, regime)
@@ -206,9 +206,9 @@ def compare(
     json: given.Json = False,
 ) -> None:
     """Show how two studies of one model differ."""
-    from uq.cli import comparing
+    from uq.cli import compare
 
-    comparing.compare(first, second, json)
+    compare.compare(first, second, json)
 
 
 def what_if(
@@ -257,7 +257,7 @@ def plot(
 ) -> None:
     """Draw the figures of a result into a folder."""
     from uq.plots import save_all
-    from uq.rows.results import open_result
+    from uq.result.result_file import open_result
 
     for path in save_all(open_result(result), folder or result.with_suffix("")):
         print(path)
@@ -275,9 +275,9 @@ def report(
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one self-contained page with everything."""
-    from uq.cli.altered import warn_if_altered
-    from uq.report import page, write_report
-    from uq.report.dossier import dossier as in_order
+    from uq.cli.changed_file import warn_if_altered
+    from uq.render.html.dossier.chapters import dossier as in_order
+    from uq.render.html.page import page, write_report
 
     path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
     write_report(result, path, in_order if dossier else page)

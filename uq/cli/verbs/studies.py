@@ -11,7 +11,7 @@ import typer
 from uq.cli import options as given
 from uq.cli import say_when_interrupted
 from uq.errors import InputError
-from uq.running.options import RunOptions
+from uq.execution.options import RunOptions
 
 
 def models(
@@ -22,16 +22,16 @@ def models(
     json: given.Json = False,
 ) -> None:
     """List the models, or show what one of them declares."""
-    from uq.cli import catalogue
+    from uq.cli import models
     from uq.cli.printing import print_json
-    from uq.running.loading import load_model
+    from uq.execution.loading import load_model
 
     if name is None:
-        listed = catalogue.list_models()
-        print_json(listed) if json else catalogue.show_list(listed)
+        listed = models.list_models()
+        print_json(listed) if json else models.show_list(listed)
     else:
         model = load_model(name)
-        print_json(catalogue.as_json(model)) if json else catalogue.show(model)
+        print_json(models.as_json(model)) if json else models.show(model)
 
 
 def simulate(
@@ -75,7 +75,7 @@ def init(
         write_machine(machine)
         return
     assert model is not None
-    from uq.running.loading import load_model
+    from uq.execution.loading import load_model
     from uq.study.template import template
 
     print(template(load_model(model), model), end="")
@@ -96,8 +96,8 @@ def serve(
     ] = "127.0.0.1",
 ) -> None:
     """Offer a model to other programs (UM-Bridge)."""
-    from uq.outside.serving import address_of, server_of
-    from uq.running.loading import load_model
+    from uq.execution.loading import load_model
+    from uq.machines.serving import address_of, server_of
 
     found = load_model(model)
     server = server_of(found, host, port)
@@ -113,7 +113,7 @@ def schema(
 ) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
-    from uq.outside.machine import machine_schema
+    from uq.machines.machine import machine_schema
     from uq.study.schema import json_schema
 
     print_json(machine_schema() if machine else json_schema())
@@ -157,7 +157,7 @@ def run(
 ) -> int:
     """Run a study, or resume it; show the summary."""
     from uq.cli.run import carried_out, end, loaded
-    from uq.running.runner import finished, output_path, run_study
+    from uq.execution.runner import finished, output_path, run_study
 
     asked = loaded(study, model, samples, row_limit)
     target = output_path(asked, output)
@@ -191,8 +191,8 @@ def rare_event(
     """Estimate the probability of a rare event."""
     from uq.cli.progress import say
     from uq.cli.rare_event import limit, show, warn
-    from uq.exploring import rare_events
-    from uq.running.loading import load_study
+    from uq.execution.loading import load_study
+    from uq.explore import rare_events
 
     loaded = load_study(study, model, say)
     threshold, is_below = limit(loaded, output, above, below)

@@ -1,1 +1,0 @@
-"""What a result says: statistics, lives, regimes, comparison, convergence."""

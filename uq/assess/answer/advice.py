@@ -1,0 +1,208 @@
+"""What to do, by rules: mend, add rows, measure, tighten, or nothing."""
+
+from collections.abc import Iterator, Sequence
+from math import ceil, isfinite, isinf, isnan
+
+import xarray as xr
+
+from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.facts import Answer
+from uq.assess.answer.levels import Levels
+from uq.assess.answer.parts import Event, Quantity
+from uq.assess.answer.remedies import Advice
+from uq.assess.answer.sample_size import MOST, bounds_unsettled
+from uq.assess.answer.sources import ASSUMED, CHOSEN, mark_of
+from uq.assess.answer.sufficiency import Enough, needed
+from uq.assess.answer.tighter_tolerances import tighten
+from uq.assess.answer.wording import called, called_together, share_text
+from uq.assess.findings import Findings
+from uq.result.commands import file_of, model_option
+from uq.result.elements import analysis_of, why_no_statistics
+from uq.result.nesting import levels_of
+from uq.result.result_file import failed
+from uq.result.weights import has_weights
+from uq.sampling.levels import CHANCE
+from uq.text.keys import key_of
+from uq.text.numbers import counted, grouped
+
+_AS_SETTLED = ("known", "source", "tighten", "keep", "chance")
+"""Rules of advice that is given also where everything is settled."""
+
+
+def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
+    """Yield what to do, the most urgent first; nothing where inspections have weighted the rows.
+
+    Parameters
+    ----------
+    findings : Findings
+    found : Answer
+        Without advice.
+    """
+    if has_weights(findings.ds):
+        return
+    enough = found.enough
+    told = [
+        *_mend(findings, found.quantities),
+        *([Advice("finer", enough.finer)] if enough.finer else []),
+        *_unknown(found),
+        *_leave_to_chance(found.levels),
+        *_measure(findings, found),
+        *([] if found.regimes_first else [*_tighten(findings, found)] or _keep(findings.ds, found)),
+        *(_add_rows(findings.ds, enough) if found.quantities else ()),
+    ]
+    answered = found.quantities
+    if answered and not enough.question and all(one.rule in _AS_SETTLED for one in told):
+        known = any(one.rule == "known" for one in told)
+        told = [one for one in told if one.rule != "known"]  # it says so, too
+        nothing = "Nothing else" if told else "Nothing"
+        noisy = any(one.own_error is not None and one.own_error.share >= 1 for one in answered)
+        settled = f"what the study {'is about' if enough.besides or noisy else 'asks'} is settled"
+        settled += ", and no law that matters is an assumption" * known
+        told.append(Advice("nothing", f"{nothing}: {settled}."))
+    yield from told
+
+
+def _leave_to_chance(levels: Levels | None) -> Iterator[Advice]:
+    """Yield that tolerances change little, where something that differs each time decides."""
+    leader = None if levels is None else levels.leader
+    if levels is not None and leader is not None and leader.name == CHANCE:
+        yield Advice(
+            "chance",
+            f"Expect little of tolerances: {leader.words} decides {levels.of}, and differs between"
+            " repeats of one machine.",
+            leader.inputs,
+        )
+
+
+def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+    ds = findings.ds
+    lost, rows = int(failed(ds).sum()), ds.sizes["sample"]
+    most = analysis_of(ds).max_failed
+    why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
+    why += [one.what for one in bounds_unsettled(findings, answered) if isinf(one.factor)]
+    if why:
+        yield Advice(
+            "failed",
+            f"Fix the {counted(lost, 'failed row')} first: {why[0]};"
+            f" 'uq rerun {file_of(ds)} --failed{model_option(ds)}' computes failed rows again,"
+            " if necessary with other settings.",
+        )
+
+
+def _unknown(found: Answer) -> Iterator[Advice]:
+    """Yield that no number of rows settles an event of which nothing is known."""
+    unknown = [one.sentence for one in found.asked_events if isnan(one.share.value)]
+    for said in [one for one in unknown if one][:1]:
+        yield Advice("unknown", f"More rows would not help: {said[:1].lower()}{said[1:]}")
+
+
+def _leading(found: Answer) -> tuple[Contribution | None, Event | None]:
+    """Return what contributes most to what the study is about, and the event that it decides."""
+    about = [(event.ranking, event) for event in found.asked_events]
+    own = None if found.lead is None or found.regimes_first else found.lead.ranking
+    for ranking, event in (*about, (own, None)):
+        if ranking is not None and ranking.leads:
+            return ranking.leader, event
+    return None, None
+
+
+def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
+    leader, event = _leading(found)
+    if leader is None:
+        return
+    marks = {name: mark_of(findings.ds, name) for name in leader.sure}
+    levels = levels_of(findings.ds)
+    to_what = f" to how many {event.clause}" if event else ""
+    starts = {name for name in marks if "initial" in findings.ds[name].attrs}
+    lasting = [
+        name
+        for name, how in marks.items()
+        if how != CHOSEN and levels[name] != CHANCE and name not in starts
+    ]
+    assumed = tuple(name for name in lasting if marks[name] == ASSUMED)
+    unstated = tuple(name for name in lasting if not marks[name])
+    if not assumed and unstated:
+        one = len(unstated) == 1
+        yield Advice(
+            "source",
+            f"State how well {called_together(unstated)} {'is' if one else 'are'} known:"
+            f" {'it matters' if one else 'they matter'} most{to_what}, and no source says it"
+            " (given, inferred, fitted, assumed or chosen).",
+            unstated,
+        )
+    elif not assumed and lasting:
+        one = len(lasting) == 1
+        yield Advice(
+            "known",
+            f"Nothing needs to be measured first: {'the law' if one else 'the laws'} of"
+            f" {called_together(lasting)}, which {'matters' if one else 'matter'} most{to_what},"
+            f" {'is' if one else 'are'} not assumed.",
+            tuple(lasting),
+        )
+    if not assumed:
+        return
+    one = len(assumed) == 1
+    words = called_together(assumed)
+    matters = "it matters" if one else "they matter"
+    if leader.doubtful:
+        matters = f"{'it' if one else 'they'} may matter"
+    single = event is not None and event.is_of_single
+    measure = "Of single inputs, measure" if single else "Measure"
+    yield Advice(
+        "measure",
+        f"{measure} {words} first: {matters} most{to_what}, and"
+        f" {'its law is' if one else 'their laws are'} assumed.",
+        assumed,
+    )
+
+
+def _tighten(findings: Findings, found: Answer) -> Iterator[Advice]:
+    leader, _ = _leading(found)
+    if leader is not None and any(mark_of(findings.ds, one) != CHOSEN for one in leader.inputs):
+        yield from tighten(findings.ds, found.quantities[0], leader)
+
+
+def _keep(ds: xr.Dataset, found: Answer) -> Iterator[Advice]:
+    """Yield where to keep the input that decides an event, where the event is settled to differ."""
+    _, event = _leading(found)
+    lead = found.lead
+    if event is None or event.curve is None or lead is None or (more := lead.wants_more) is None:
+        return
+    place = event.curve.most if more else event.curve.least
+    there, overall = event.curve.shares[place], event.share
+    if mark_of(ds, event.over) == ASSUMED:  # it is what it is
+        return
+    if there.low > overall.high if more else there.high < overall.low:
+        where, what = f"{event.part(place)}: {share_text(there)} do there", "decided_by"
+        if event.limit is not None and not event.limit.why:
+            limit, what = event.limit, "limit"
+            where = f"{limit.place}: {limit.few} do there{limit.averaged}"
+        yield Advice(
+            "keep",
+            f"So that {'more' if more else 'fewer'} {event.said}, keep {called(event.over)}"
+            f" {where}.",
+            (event.over,),
+            key=key_of("quantities", lead.name, "events", event.name, what, verb="answer"),
+        )
+
+
+def _add_rows(ds: xr.Dataset, enough: Enough) -> Iterator[Advice]:
+    """Yield that intervals are missing, or how many rows would settle what the study is about."""
+    rows = ds.sizes["sample"]
+    if enough.unknown:
+        wanted = "know what can be promised" if why_no_statistics(ds) else "have intervals"
+        yield Advice("rows", f"To {wanted}: {enough.unknown}.")
+    open_ones = [one for one in enough.question if isfinite(one.factor)]
+    if not open_ones or not rows or enough.errors is not None:
+        return
+    worst, less = open_ones[0], [one for one in enough.every if one is not open_ones[0]]
+    more = ""
+    if less:
+        are, them = ("is", "it") if len(less) == 1 else ("are", "them")
+        listed = f"'uq convergence {file_of(ds)}' lists {them}"
+        more = f"; {len(less)} more {are} not settled ({listed})"
+    yield Advice(
+        "rows",
+        f"Compute {needed(worst, ds)} instead of {grouped(rows)}: {worst.what}{more}.",
+        rows=ceil(min(worst.factor, MOST) * rows),
+    )

@@ -1,0 +1,140 @@
+"""The answer of a study, computed once from what is known of its result."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from weakref import WeakKeyDictionary
+
+import xarray as xr
+
+from uq.assess.answer.advice import advise
+from uq.assess.answer.assumptions import assumptions
+from uq.assess.answer.facts import Answer
+from uq.assess.answer.levels import Levels, levels_of, starts_alike
+from uq.assess.answer.parts import Event
+from uq.assess.answer.quantities import event, only_ranked, quantities
+from uq.assess.answer.regime_mixing import intermingled
+from uq.assess.answer.sufficiency import enough_of
+from uq.assess.answer.wording import called
+from uq.assess.findings import Findings
+from uq.assess.summary import REGIME
+from uq.result.elements import analysis_of, study_file_of
+from uq.result.result_file import failed
+from uq.study.file import Tied
+from uq.text.numbers import capitalized
+
+
+def answer(ds: xr.Dataset) -> Answer:
+    """Say what can be promised, what it depends on, and what to do.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    Answer
+        Displays itself; its parts hold the numbers behind each sentence.
+
+    Examples
+    --------
+    >>> found = uq.answer(uq.run("studies/exponential-wear.toml"))
+    >>> found.lead.promise.lower < found.lead.range.low.value  # a cautious bound
+    True
+    """
+    return conclude(Findings(ds))
+
+
+_KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
+
+
+def conclude(findings: Findings) -> Answer:
+    """Return the answer from what is known of a result, computed once."""
+    if findings not in _KNOWN:
+        found = without_advice(findings)
+        _KNOWN[findings] = replace(found, advice=tuple(advise(findings, found)))
+    return _KNOWN[findings]
+
+
+def without_advice(findings: Findings) -> Answer:
+    """Return the answer but for what to do, for which rows are weighted."""
+    ds = findings.ds
+    found = tuple((quantities if findings.rows.sizes["sample"] else only_ranked)(findings))
+    regimes = tuple(regimes_of(findings))
+    plain = Answer(
+        str(ds.attrs["title"]),
+        ds.sizes["sample"],
+        int(failed(ds).sum()),
+        found,
+        regimes,
+        (),
+        tuple(findings.summary.notes),
+        regimes_first=bool(regimes) and analysis_of(ds).outputs[:1] == (REGIME,),
+        starts_alike=starts_alike(ds) if regimes else "",
+        assumptions=assumptions(ds),
+    )
+    known = beside_levels(plain, _levels(findings, plain))
+    about = known.main_regimes if known.regimes_first else ()
+    return replace(
+        known,
+        enough=enough_of(findings, known.quantities, about),
+        ties=ties_of(ds, known),
+        mixing=intermingled(findings) if known.regimes_first else known.mixing,
+    )
+
+
+def beside_levels(found: Answer, levels: Levels | None) -> Answer:
+    """Return an answer that says which level decides, and if single inputs are not on it."""
+    leader = None if levels is None else levels.leader
+    if leader is None:
+        return replace(found, levels=levels)
+
+    def beside(event: Event) -> Event:
+        first = None if event.ranking is None else event.ranking.leader
+        other = first is not None and not set(first.inputs) <= set(leader.inputs)
+        return replace(event, is_of_single=other)
+
+    regimes = found.regimes
+    quantities = found.quantities
+    if found.regimes_first:
+        regimes = tuple(beside(one) for one in regimes)
+    else:
+        events = tuple(beside(one) for one in quantities[0].events)
+        quantities = (replace(quantities[0], events=events), *quantities[1:])
+    return replace(found, levels=levels, regimes=regimes, quantities=quantities)
+
+
+def _levels(findings: Findings, found: Answer) -> Levels | None:
+    """Return which level decides what the study is about; None where that is not known."""
+    if found.regimes_first:
+        (first, *_) = found.regimes
+        return levels_of(findings, first.name, f"whether it is {first.said}", first.ranking)
+    lead = found.lead
+    return None if lead is None else levels_of(findings, lead.name, "its scatter", lead.ranking)
+
+
+def ties_of(ds: xr.Dataset, found: Answer) -> str:
+    """Return which inputs have the value of one that contributes most in every row, or ""."""
+    own = [] if found.lead is None else [found.lead.ranking]
+    rankings = [*(event.ranking for event in found.asked_events), *own]
+    leading = {
+        name
+        for one in rankings
+        if one is not None and one.leader is not None
+        for name in one.leader.inputs
+    }
+    tied = {
+        name: law.equals
+        for name, law in study_file_of(ds).uncertain.items()
+        if isinstance(law, Tied) and law.equals in leading
+    }
+    same = (f"{called(name)} equals {called(other)}" for name, other in tied.items())
+    text = ", and ".join(same)
+    return f"{capitalized(text)} in every row." if text else ""
+
+
+def regimes_of(findings: Findings) -> Iterator[Event]:
+    """Yield the regimes that occur, the most frequent first; one alone needs no words."""
+    shares = [one for one in findings.summary.regimes.values() if one.facts["count"]]
+    for one in sorted(shares, key=lambda one: -one.facts["count"]) * (len(shares) > 1):
+        yield event(findings, f"P(regime={one.label})", one.label, one)

@@ -1,0 +1,254 @@
+"""What inputs contribute: shares, directions and sizes, and the sentences from them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isnan
+
+from uq.assess.answer.wording import Unit, called, called_together, joined, sentence
+from uq.stats.estimate import NOTHING, Estimate
+from uq.text.numbers import capitalized
+
+SMALL = 0.05
+"""A smaller share of the variance does not lead."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """How a target changes with one input, on average.
+
+    Attributes
+    ----------
+    direction : int
+        1 if it rises with the input, -1 if it falls, 0 where that is not clear.
+    step : str
+        The change of the input: ``10 %``; "" where only the direction is known.
+    amount : str
+        How much that is in the unit of the input, where the step does not say it.
+    by : Estimate
+        The change of the target.
+    unit : Unit
+        Of `by`: ``%`` for relative changes, ``percentage points`` for probabilities.
+    verbs : tuple of str
+        What a fall and a rise of the target is called.
+    """
+
+    direction: int = 0
+    step: str = ""
+    by: Estimate = NOTHING
+    unit: Unit = field(default_factory=Unit)
+    verbs: tuple[str, str] = ("lowers it", "raises it")
+    amount: str = ""
+
+    def sentence(self, name: str = "") -> str:
+        """Return direction and size in words, of an input with this name."""
+        if self.direction == 0:
+            return f"{name} has no clear direction" if name else "no clear direction"
+        verb, of = self.verbs[self.direction > 0], f" {name}" if name else ""
+        if not self.step or not self.by.has_interval:
+            return f"more{of} {verb}"
+        low, high = sorted(map(abs, (self.by.low, self.by.high)))
+        step = f"{self.step} ({self.amount})" if self.amount else self.step
+        text = f"{step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
+        if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
+            return text
+        return f"{text} ({self.unit.bare_between(low, high)})"
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """Inputs that contribute alike to the scatter of a target, or to an event.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+        One; or several whose indices do not distinguish them, or twins.
+    indices : tuple of Estimate
+        Of each.
+    share_of_variance : bool
+        Whether an index is one.
+    changes : tuple of Change
+        Of each; empty where they are not known.
+    unit : Unit
+        Of an index in the unit of the output.
+    doubtful : tuple of str
+        Those of the inputs that may as well have no effect.
+    """
+
+    inputs: tuple[str, ...]
+    indices: tuple[Estimate, ...]
+    share_of_variance: bool
+    changes: tuple[Change, ...] = ()
+    unit: Unit = field(default_factory=Unit)
+    doubtful: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """The inputs by their names."""
+        if not self.doubtful:
+            return called_together(self.inputs)
+        return joined([called_together(self.sure), *map(called, self.doubtful)], "or")
+
+    @property
+    def sure(self) -> tuple[str, ...]:
+        """The inputs that have more effect than one without."""
+        return tuple(one for one in self.inputs if one not in self.doubtful)
+
+    @property
+    def value(self) -> float:
+        """The largest index."""
+        return max(one.value for one in self.indices)
+
+    @property
+    def size(self) -> str:
+        """The indices with their intervals; shares in per cent, not beyond 0 and 100."""
+        texts = [self._size(one) for one in self.indices]
+        return " and ".join(texts) if len(texts) < 3 else f"at most {texts[0]} each"
+
+    def _size(self, one: Estimate) -> str:
+        if self.share_of_variance:
+            value, low, high = (min(max(end, 0.0), 1.0) for end in one.numbers)
+            text = f"{100 * value:.0f} %"
+            ends = f"{100 * low:.0f} to {100 * high:.0f} %"
+        elif self.unit.name:
+            text, ends = self.unit.text(one.value), self.unit.bare_between(one.low, one.high)
+        else:
+            text, ends = f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}"
+        return text + (f" ({ends})" if one.has_interval else "")
+
+    @property
+    def effect(self) -> str:
+        """Direction and size in words."""
+        if not self.changes:
+            return ""
+        if len(self.changes) == 1:
+            return self.changes[0].sentence()
+        names = (called_together([name]) for name in self.inputs)
+        each = zip(self.changes, names, strict=True)
+        return "; ".join(one.sentence(name) for one, name in each)
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Which inputs contribute to a target.
+
+    Attributes
+    ----------
+    target, method : str
+    kind : str
+        Key of the index that ranks.
+    what : str
+        What the index is, such as a share of the variance.
+    contributions : tuple of Contribution
+        The largest first; only those that exceed inputs without effect.
+    reason : str
+        Why there is no ranking: no index, or nothing settled; "" where there is one.
+    rows_factor : float
+        How many times the rows would settle it; NaN where that does not apply.
+    is_flat : bool
+        Whether it is settled that no input contributes measurably.
+    rivals : tuple of str
+        Inputs of which one would contribute most with another seed, with 95 %; none if not known.
+    of : str
+        Whose share an index is: ``its variance``; "" of another index, and of an event.
+    unexplained : Estimate
+        Share of the variance that no single input explains, where inputs are ranked by what each
+        explains alone.
+    runner_up : float
+        The largest index of the inputs that stand behind the first.
+    totals : dict of str to float
+        Input -> total index, the largest first, where an expansion of these rows gives it.
+    remedy : str
+        What shows interactions where `totals` are not known.
+    """
+
+    target: str
+    method: str
+    kind: str = ""
+    what: str = ""
+    contributions: tuple[Contribution, ...] = ()
+    reason: str = ""
+    rows_factor: float = float("nan")
+    is_flat: bool = False
+    rivals: tuple[str, ...] = ()
+    of: str = ""
+    unexplained: Estimate = NOTHING
+    runner_up: float = 0.0
+    totals: Mapping[str, float] = field(default_factory=dict)
+    remedy: str = ""
+
+    @property
+    def leader(self) -> Contribution | None:
+        """What contributes most, where that is settled."""
+        return self.contributions[0] if self.contributions and not self.reason else None
+
+    @property
+    def leads(self) -> bool:
+        """Whether what contributes most contributes much."""
+        one = self.leader
+        if one is None or (one.share_of_variance and one.value < SMALL):
+            return False
+        return self.of_event or not self.may_be_overturned
+
+    @property
+    def of_event(self) -> bool:
+        """Whether the target is an event."""
+        return self.target.startswith("P(")
+
+    @property
+    def may_be_overturned(self) -> bool:
+        """Whether another input may contribute more together with others than the first does.
+
+        A total index is at most the index alone and all that no single input explains.
+        """
+        if self.leader is None or isnan(self.unexplained.value):
+            return False
+        if self.totals:
+            return next(iter(self.totals)) not in self.leader.sure
+        most = self.unexplained.high if self.unexplained.has_interval else self.unexplained.value
+        return most > max(self.leader.value - self.runner_up, 0.0) and most > SMALL
+
+    @property
+    def denies_a_leader(self) -> bool:
+        """Whether it is settled that no single input contributes much."""
+        return self.is_flat or (self.leader is not None and not self.leads)
+
+    @property
+    def sentence(self) -> str:
+        """What contributes most, or why that is not known."""
+        if self.reason:
+            return sentence(self.reason)
+        leader = self.leader
+        if leader is None:
+            return ""
+        if leader.share_of_variance and leader.value < SMALL:
+            text = f"No single input explains much: {leader.words} {leader.size}{self._of}."
+            return " ".join(filter(None, (text, self.beyond_single)))
+        verb = "contribute" if len(leader.inputs) > 1 else "contributes"
+        if leader.doubtful:
+            verb = "may contribute"
+        alone = " alone" * self.may_be_overturned
+        text = f"{capitalized(leader.words)}{alone} {verb} most: {leader.size}{self._of}."
+        return " ".join(filter(None, (text, self.beyond_single)))
+
+    @property
+    def beyond_single(self) -> str:
+        """How much no single input explains, where that could change the order; else ""."""
+        if not self.may_be_overturned or self.of_event:
+            return ""
+        share = Contribution(("",), (self.unexplained,), True).size
+        text = f"No single input explains {share}"
+        if not self.totals:
+            return f"{text}: interactions could change the order; {self.remedy}."
+        first = [(name, one) for name, one in self.totals.items()][:2]
+        named = joined([f"{called(name)} {100 * min(one, 1.0):.0f} %" for name, one in first])
+        return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
+
+    @property
+    def _of(self) -> str:
+        return f" of {self.of}" if self.of else ""
+
+    @property
+    def with_effect(self) -> str:
+        """What contributes most, with direction and size."""
+        effect = self.leader.effect if self.leader is not None and self.leads else ""
+        return " ".join(filter(None, (self.sentence, effect and sentence(effect))))

@@ -1,0 +1,157 @@
+"""Which rows end first, and what distinguishes them."""
+
+import shlex
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from uq.assess.answer.wording import Unit, called, joined, sentence, share_text, unit_of_input
+from uq.assess.earliest import (
+    FEWEST,
+    Apart,
+    RegimeOfFirst,
+    earliest_rows,
+    inputs_apart,
+    regimes_of_first,
+)
+from uq.assess.findings import Findings
+from uq.errors import InputError
+from uq.result.commands import file_of, model_option
+from uq.result.elements import Element
+from uq.result.row_choice import lowest_rows
+from uq.stats.intervals import Replicates
+from uq.text.numbers import grouped, percent
+
+_MOST_ROWS = 3
+_MOST_INPUTS = 3
+
+
+@dataclass(frozen=True)
+class Earliest:
+    """The rows that end first, and what distinguishes them from the others.
+
+    Attributes
+    ----------
+    element : str
+    rows : tuple of int
+        The numbers of the first, of all rows of the result.
+    lives : tuple of float
+        Theirs.
+    size, of : int
+        How many rows count as the earliest, and of how many.
+    inputs : tuple of Apart, or None
+        Those whose values differ, the most different first; None where that cannot be known.
+    units : tuple of Unit
+        Theirs.
+    regimes : tuple of RegimeOfFirst
+        Those that the earliest are in more often than all, else that of most of them.
+    unit : Unit
+        Of the lives.
+    command : str
+        What shows the first of them.
+    """
+
+    element: str
+    rows: tuple[int, ...]
+    lives: tuple[float, ...]
+    unit: Unit
+    command: str
+    size: int = 0
+    of: int = 0
+    inputs: tuple[Apart, ...] | None = None
+    units: tuple[Unit, ...] = ()
+    regimes: tuple[RegimeOfFirst, ...] = ()
+
+    @property
+    def first(self) -> str:
+        """The rows that end first."""
+        named = [
+            f"{number} ({self.unit.text(life)})"
+            for number, life in zip(self.rows, self.lives, strict=True)
+        ]
+        rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
+        return sentence(f"{rows} {joined(named)} {verb} first")
+
+    @property
+    def why(self) -> str:
+        """What distinguishes the earliest rows; "" where that cannot be known."""
+        if self.inputs is None:
+            return ""
+        share = f"{100 * self.size / self.of:.2g} %"
+        who = f"the earliest {share} ({grouped(self.size)} rows)"
+        if not self.inputs:
+            return f"No input distinguishes {who} measurably from the others."
+        pairs = list(zip(self.inputs, self.units, strict=True))[:_MOST_INPUTS]
+        text = f"{who} have {joined([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
+        return sentence(text)
+
+    @property
+    def where(self) -> str:
+        """The regime of most of the earliest, and whether it is less frequent among all."""
+        if not self.regimes:
+            return ""
+        one = self.regimes[0]
+        by_chance = one.share.low <= one.overall <= one.share.high
+        also = ": chance may explain the difference" * by_chance
+        return (
+            f"{share_text(one.share)} of them are {one.label}, of all rows"
+            f" {percent(one.overall)}{also}."
+        )
+
+    @property
+    def sentence(self) -> str:
+        """What distinguishes the earliest rows, and their regime."""
+        return " ".join(filter(None, (self.why, self.where)))
+
+    @property
+    def lines(self) -> list[str]:
+        """All of it."""
+        return [*filter(None, (self.sentence, f"{self.first} To see the first: {self.command}"))]
+
+
+def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates) -> Earliest | None:
+    """Return which rows end first, and what distinguishes them; None where none does.
+
+    Parameters
+    ----------
+    findings : Findings
+    element : Element
+        A life, in the independent rows.
+    unit : Unit
+        Of its lives.
+    part : ndarray of int, shape (n,), or None
+        The replicate of each independent row.
+    """
+    try:
+        chosen = lowest_rows(findings.ds, element.name, _MOST_ROWS)
+    except InputError:
+        return None
+    rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
+    if not rows or (len(rows) > 1 and not np.ptp(element.values[element.present])):
+        return None
+    ds, lowest = findings.ds, shlex.quote(element.name)
+    command = f"uq row {file_of(ds)} --lowest {lowest}{model_option(ds)}"
+    found = Earliest(element.name, rows, lives, unit, command)
+    places = earliest_rows(element)
+    if len(places) < FEWEST:
+        return found
+    inputs = inputs_apart(findings.rows, places, findings.input_ranks, part)
+    return replace(
+        found,
+        size=len(places),
+        of=int(element.present.sum()),
+        inputs=None if inputs is None else tuple(inputs),
+        units=tuple(unit_of_input(findings.ds, one.name) for one in inputs or ()),
+        regimes=tuple(regimes_of_first(findings.rows, places, part)),
+    )
+
+
+def _in_words(one: Apart, unit: Unit, is_first: bool) -> str:
+    name = called(one.name)
+    if one.direction == 0:
+        place = "away from" if one.outwards > 0 else "near"
+        return f"values of {name} {place} the middle of its range"
+    side = "higher" if one.direction > 0 else "lower"
+    of_others = " of the others" if is_first else ""
+    against = f"{unit.number(one.median)} against {unit.text(one.others)}"
+    return f"a {side} {name} (median {against}{of_others})"

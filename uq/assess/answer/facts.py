@@ -1,0 +1,146 @@
+"""The answer as a whole: its parts in the order in which they are read."""
+
+from dataclasses import dataclass, field
+
+from uq.assess.answer.levels import Levels
+from uq.assess.answer.parts import Event, Quantity
+from uq.assess.answer.regime_mixing import Intermingled
+from uq.assess.answer.remedies import Advice
+from uq.assess.answer.sufficiency import Enough
+from uq.assess.answer.wording import share_text
+from uq.text.numbers import grouped
+
+RARE = 0.01
+MOST_REGIMES = 3
+"""Rarer regimes, and more of them, are left to the table."""
+
+
+@dataclass(frozen=True, repr=False)
+class Answer:
+    """The answer of a study.
+
+    Attributes
+    ----------
+    title : str
+    rows, failed : int
+    quantities : tuple of Quantity
+        The one that the study is about first.
+    regimes : tuple of Event
+        Shares of the regimes, the most frequent first.
+    advice : tuple of Advice
+    notes : tuple of str
+        What could not be said, and why.
+    regimes_first : bool
+        Whether the study is about the regimes: it names them before all other outputs.
+    levels : Levels or None
+        Which level decides what the study is about, where a sample has several rows.
+    starts_alike : str
+        That the start is the same in all rows, where it might decide the regime, or "".
+    enough : Enough
+        Whether the rows are.
+    assumptions : tuple of str
+        Which laws and fixed values are assumed.
+    ties : str
+        Which inputs have the value of one that contributes most to what the study is about, or "".
+    mixing : Intermingled
+        How intermingled the regimes are, of a study about them.
+    """
+
+    title: str
+    rows: int
+    failed: int
+    quantities: tuple[Quantity, ...]
+    regimes: tuple[Event, ...]
+    advice: tuple[Advice, ...]
+    notes: tuple[str, ...] = ()
+    regimes_first: bool = False
+    levels: Levels | None = None
+    starts_alike: str = ""
+    enough: Enough = field(default_factory=Enough)
+    assumptions: tuple[str, ...] = ()
+    ties: str = ""
+    mixing: Intermingled = field(default_factory=Intermingled)
+
+    @property
+    def rows_sentence(self) -> str:
+        """How many rows were computed."""
+        if self.failed:
+            return f"{grouped(self.failed)} of {grouped(self.rows)} rows failed."
+        return (
+            f"All {grouped(self.rows)} rows were computed." if self.rows else "There are no rows."
+        )
+
+    @property
+    def main_regimes(self) -> tuple[Event, ...]:
+        """The regimes that are not rare."""
+        return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
+
+    @property
+    def asked_events(self) -> tuple[Event, ...]:
+        """The events that the study is about."""
+        if self.regimes_first:
+            return self.main_regimes
+        return () if self.lead is None else self.lead.events
+
+    @property
+    def events(self) -> list[Event]:
+        """All events, those of the regimes last."""
+        return [one for own in self.quantities for one in own.events] + [*self.regimes]
+
+    @property
+    def regimes_sentence(self) -> str:
+        """The shares of the main regimes; "" where there is one at most."""
+        shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
+        return f"{', '.join(shares)}." if shares else ""
+
+    @property
+    def regime_causes(self) -> list[Event]:
+        """The main regimes of which is known what decides them; the first, the rest, only alone."""
+        known = [
+            one
+            for one in self.main_regimes
+            if one.ranking is not None and one.ranking.leader is not None
+        ]
+        others = [one for one in known if one is not self.main_regimes[0]]
+        return others or known
+
+    @property
+    def lines(self) -> list[str]:
+        """The answer in a few sentences."""
+        lead = self.lead
+        found = [] if not self.failed and lead else [self.rows_sentence]
+        regimes = [one.with_cause for one in self.main_regimes]
+        of_lead = []
+        if lead is not None:
+            of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
+        own = [*self.level_lines, self.enough.sentence]
+        if self.regimes_first:
+            found += [*regimes, self.mixing.sentence, *own, *of_lead]
+        else:
+            found += [*of_lead, *own, *regimes]
+        found += [self.starts_alike, *([] if lead is None else [lead.ranking_sentence]), self.ties]
+        if lead is not None and lead.earliest is not None:
+            found += lead.earliest.lines
+        return [*filter(None, found), *(one.text for one in self.advice)]
+
+    @property
+    def level_lines(self) -> list[str]:
+        """Which level decides, as far as that is known."""
+        if self.levels is None:
+            return []
+        return [*filter(None, (self.levels.sentence, self.levels.switching))]
+
+    def __repr__(self) -> str:
+        """Return the answer in sentences, one a line."""
+        return "\n".join([self.title, *self.lines])
+
+    def _repr_html_(self) -> str:
+        """Return the answer as a notebook shows it."""
+        from uq.render.html.answer import notebook
+
+        return notebook(self)
+
+    @property
+    def lead(self) -> Quantity | None:
+        """The quantity that the study is about."""
+        return self.quantities[0] if self.quantities else None

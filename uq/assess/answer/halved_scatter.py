@@ -1,0 +1,77 @@
+"""Laws with half their scatter: the entries of the study file that give them, and in words."""
+
+from collections.abc import Sequence
+from math import sqrt
+
+import xarray as xr
+
+from uq.assess.answer.wording import Unit, called, unit_of_input
+from uq.result.elements import study_file_of
+from uq.sampling.law import Law
+from uq.sampling.scipy_laws import LogUniform
+from uq.study.file import Tied
+from uq.text.numbers import percent
+
+_WIDTHS = ("sd", "cv", "sigma")
+
+
+def halved(law: Law) -> dict[str, float]:
+    """Return the arguments that give a law half its scatter about its middle; none if unknown.
+
+    Parameters
+    ----------
+    law : Law
+    """
+    for name in _WIDTHS:
+        if (width := getattr(law, name, None)) is not None:
+            return {name: width / 2}
+    lower, upper = getattr(law, "lower", None), getattr(law, "upper", None)
+    if lower is None or upper is None:
+        return {}
+    if isinstance(law, LogUniform):
+        centre, ratio = sqrt(lower * upper), (upper / lower) ** 0.25
+        return {"lower": centre / ratio, "upper": centre * ratio}
+    mode: float | None = getattr(law, "mode", None)
+    middle = (lower + upper) / 2 if mode is None else mode
+    return {"lower": (lower + middle) / 2, "upper": (upper + middle) / 2}
+
+
+def halvings(ds: xr.Dataset, inputs: Sequence[str]) -> dict[str, dict[str, float]]:
+    """Return the arguments that give each input half its scatter; none if one has no middle.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    inputs : sequence of str
+    """
+    laws = study_file_of(ds).uncertain
+    found = {}
+    for name in inputs:
+        law = laws[name]
+        found[name] = {} if isinstance(law, Tied) else halved(law)
+    return found if all(found.values()) else {}
+
+
+def halvings_in_words(ds: xr.Dataset, changes: dict[str, dict[str, float]]) -> str:
+    """Return what half the scatter is: ``sd 0.5 mm instead of 1``; once for laws alike."""
+    texts = {name: _in_words(ds, name, arguments) for name, arguments in changes.items()}
+    if len(set(texts.values())) == 1:
+        return next(iter(texts.values()))
+    return "; ".join(f"{called(name)}: {text}" for name, text in texts.items())
+
+
+def _in_words(ds: xr.Dataset, name: str, new: dict[str, float]) -> str:
+    law = study_file_of(ds).uncertain[name]
+    old = {key: float(getattr(law, key)) for key in new}
+    if "lower" in new:
+        is_factor = getattr(law, "times", None) is not None
+        unit = Unit() if is_factor else unit_of_input(ds, name)
+        then = unit.between(new["lower"], new["upper"])
+        return f"{then} instead of {unit.bare_between(old['lower'], old['upper'])}"
+    ((key, before),) = old.items()
+    if key == "sd":
+        unit = unit_of_input(ds, name)
+        return f"sd {unit.text(new[key])} instead of {unit.number(before)}"
+    shown = percent if key == "cv" else "{:.3g}".format
+    return f"{key} {shown(new[key])} instead of {shown(before)}"

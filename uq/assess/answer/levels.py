@@ -1,0 +1,172 @@
+"""Which level decides: what units share, what is each one's own, or what changes each time."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isnan
+
+import xarray as xr
+
+from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.wording import called, joined, sentence, share_text
+from uq.assess.findings import Findings
+from uq.assess.targets import FORMS, split_name
+from uq.result.nesting import is_nested
+from uq.result.weights import has_weights
+from uq.sampling.levels import CHANCE, LEVELS, OWN, SHARED
+from uq.stats.estimate import Estimate
+
+_MOST_NAMED = 4
+
+
+@dataclass(frozen=True)
+class Level:
+    """The share of the variance that a level has.
+
+    Attributes
+    ----------
+    name : {"shared", "own", "chance"}
+    words : str
+        ``the start``, ``the machine``.
+    inputs : tuple of str
+        On this level, those that contribute most first.
+    ranked : int
+        How many of them contribute.
+    share : Estimate
+    """
+
+    name: str
+    words: str
+    inputs: tuple[str, ...]
+    share: Estimate
+    ranked: int = 0
+
+    @property
+    def inputs_named(self) -> str:
+        """Its inputs by their names: those that contribute, or the first ones."""
+        named = [
+            called(name) for name in self.inputs[: min(self.ranked or _MOST_NAMED, _MOST_NAMED)]
+        ]
+        more = len(self.inputs) - len(named)
+        return joined([*named, f"{more} more"] if more else named)
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Which level decides.
+
+    Attributes
+    ----------
+    target : str
+        What they are shares of, as `uq.levels` names it.
+    of : str
+        What is decided: ``its scatter``, ``whether it is periodic``.
+    variance : str
+        Whose shares they are: ``the variance of its logarithm``.
+    levels : tuple of Level
+        Those on which something varies, the largest share first.
+    another : Estimate or None
+        Probability that a repeat ends in another regime, of a target that is one.
+    """
+
+    target: str
+    of: str
+    variance: str
+    levels: tuple[Level, ...]
+    another: Estimate | None = None
+
+    @property
+    def leader(self) -> Level | None:
+        """The level that has most of the variance, if that is settled."""
+        first = self.levels[0]
+        return first if first.share.has_interval and first.share.low > 0.5 else None
+
+    @property
+    def sentence(self) -> str:
+        """Which level decides, with its share."""
+        first, rest = self.levels[0], self.levels[1:]
+        if self.leader is None:
+            shares = [f"{one.words} {share_text(one.share)}" for one in self.levels]
+            return f"No level alone decides {self.of}: of {self.variance}, {', '.join(shares)}."
+        named = f" ({first.inputs_named})" if first.inputs else ""
+        share = f"{share_text(first.share)} of {self.variance}"
+        least = [f"{one.words} {share_text(one.share)}" for one in rest]
+        text = f"{first.words}{named} decides {self.of}: {share}"
+        return sentence(", ".join([text, *least]))
+
+    @property
+    def switching(self) -> str:
+        """How often a repeat ends in another regime; "" where that is not known."""
+        if self.another is None or isnan(self.another.value):
+            return ""
+        return f"{share_text(self.another)} of repeats end in another regime."
+
+
+def levels_of(
+    findings: Findings, target: str, of: str, ranking: Ranking | None = None
+) -> Levels | None:
+    """Return which level decides a target; None where that is not known.
+
+    Parameters
+    ----------
+    findings : Findings
+    target : str
+        Of an element, such as ``life``, or of an event.
+    of : str
+        What is decided, in words.
+    ranking : Ranking, optional
+        Of the inputs: a level names first those that contribute most.
+    """
+    if not is_nested(findings.ds) or has_weights(findings.ds):
+        return None
+    known = findings.levels
+    name = next((one for one in known.outputs if target in (one, split_name(one)[1])), None)
+    if name is None:
+        return None
+    words = _words(findings, known.inputs, known.units)
+    shares = known.outputs[name].shares
+    ranked = () if ranking is None else [n for one in ranking.contributions for n in one.sure]
+    place = {name: i for i, name in enumerate(ranked)}
+
+    def on(level: str) -> tuple[str, ...]:
+        return tuple(sorted(known.inputs_on(level), key=lambda name: place.get(name, len(place))))
+
+    found = [
+        Level(level, words[level], on(level), shares[level], len(place.keys() & set(on(level))))
+        for level in LEVELS
+        if known.inputs_on(level) or shares[level].value > 0
+    ]
+    if len(found) < 2 or any(isnan(one.share.value) for one in found):
+        return None
+    form = FORMS.get(split_name(name)[0])
+    return Levels(
+        name,
+        of,
+        f"the variance of its {form}" if form else "the variance",
+        tuple(sorted(found, key=lambda one: -one.share.value)),
+        known.another_regime if target.startswith("P(regime=") else None,
+    )
+
+
+def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[str, str]:
+    """Return what the levels are called: by what is on them."""
+    drawn_anew = [name for name, level in inputs.items() if level == CHANCE]
+    starts = any("initial" in findings.ds[name].attrs for name in drawn_anew)
+    return {
+        SHARED: "what all units share",
+        OWN: "the machine" if units == 1 else "what is each unit's own",
+        CHANCE: "the start" if starts else "chance",
+    }
+
+
+def starts_alike(ds: xr.Dataset) -> str:
+    """Return that the start is the same in all rows, where a model has one to vary, or ""."""
+    starts = [
+        name
+        for name, one in ds.variables.items()
+        if one.attrs.get("role") in ("input", "fixed") and "initial" in one.attrs
+    ]
+    if not starts or any(ds[name].attrs.get("role") == "input" for name in starts):
+        return ""
+    named = joined([called(str(name)) for name in starts])
+    verb = "is" if len(starts) == 1 else "are"
+    return f"Whether the start decides the regime is not known: {named} {verb} fixed."

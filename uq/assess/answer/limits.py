@@ -1,0 +1,161 @@
+"""In which range of the input that decides an event the unwanted side is rare on average."""
+
+from dataclasses import dataclass, field, replace
+from math import inf, nan
+
+from uq.assess.answer.wording import Unit, called, sentence
+from uq.assess.event_curve import EventCurve
+from uq.stats.estimate import Estimate
+from uq.text.numbers import percent_range
+
+RARE = 0.05
+"""The unwanted side of an event is rare below this probability."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A range of an input over which an event is rare on average; or why there is none.
+
+    Attributes
+    ----------
+    over : str
+        The input.
+    said : str
+        What is rare in it: ``end within 60 s``; or what is then frequent.
+    is_wanted : bool
+        Whether that is wanted, so that it is the frequent side.
+    at : float
+        The limit, its inner end; NaN where there is none.
+    end : float
+        Its outer end, the last value in the rows; NaN where there is no limit.
+    is_lower : bool
+        Whether the input has to be larger than the limit.
+    of_values : bool
+        Whether the input has few values, so that nothing is averaged.
+    share : Estimate
+        How probable it is in the part of the input next to the limit, or in the last part.
+    unit : Unit
+        Of the input.
+    why : str
+        Why there is no limit, or "".
+    """
+
+    over: str
+    said: str
+    is_wanted: bool = False
+    at: float = nan
+    end: float = nan
+    is_lower: bool = False
+    of_values: bool = False
+    share: Estimate = field(default_factory=lambda: Estimate(nan))
+    unit: Unit = field(default_factory=Unit)
+    why: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The range, or why there is none."""
+        if self.why:
+            return sentence(self.why)
+        where = f"where {called(self.over)} is {self.place}"
+        return sentence(f"with 95 % confidence, {self.few} {self.said}{self.averaged} {where}")
+
+    @property
+    def place(self) -> str:
+        """Where it is rare: ``between 2.16 and 3.01``."""
+        if self.of_values:
+            side, inwards = ("least", inf) if self.is_lower else ("most", -inf)
+            return f"at {side} {self.unit.text(self.at, inwards)}"
+        low, high = sorted((self.at, self.end))
+        return f"between {self.unit.between(low, high, ' and ')}"
+
+    @property
+    def averaged(self) -> str:
+        """That the range is averaged over, as its rows are distributed; "" for single values."""
+        return "" if self.of_values else " on average"
+
+    @property
+    def few(self) -> str:
+        """How many there are in the range."""
+        return _few(self.is_wanted)
+
+
+def _few(is_wanted: bool) -> str:
+    return f"more than {100 * (1 - RARE):g} %" if is_wanted else f"fewer than {100 * RARE:g} %"
+
+
+def limit_of(
+    curve: EventCurve, over: str, unit: Unit, said: str, is_unwanted: bool
+) -> Limit | None:
+    """Return the range of an input over which an event is rare on average, as far as is settled.
+
+    Parameters
+    ----------
+    curve : EventCurve
+        The probability of the event in parts of the input.
+    over : str
+        The input.
+    unit : Unit
+        Of the input.
+    said : str
+        What happens, in words.
+    is_unwanted : bool
+        Whether that is unwanted; otherwise that it does not happen.
+
+    Returns
+    -------
+    Limit or None
+        None where it is rare in all parts. The range is that of the last parts, from the wanted end
+        of the input on, whose mean probabilities are all smaller with confidence, so that the mean
+        over the range is. Tested in this order until one fails, at least one of them is larger in
+        no more repetitions than a single one would be [1]_. Rows show means alone: within a part, a
+        single value may have any probability. Where each part is a value, it is that of the value.
+
+    References
+    ----------
+    .. [1] W. Maurer, L. A. Hothorn, W. Lehmacher, "Multiple comparisons in drug clinical trials and
+       preclinical assays: a-priori ordered hypotheses", in J. Vollmar (ed.), Biometrie in der
+       chemisch-pharmazeutischen Industrie 6, Fischer, 3-18 (1995).
+    """
+    shares = [one if is_unwanted else _opposite(one) for one in curve.shares]
+    is_lower = shares[0].value > shares[-1].value
+    edges = [float(edge) for edge in curve.edges]
+    if not is_lower:  # from the unwanted to the wanted end
+        shares, edges = shares[::-1], edges[::-1]
+    best, names = shares[-1], called(over)
+    plain = Limit(
+        over,
+        said,
+        not is_unwanted,
+        is_lower=is_lower,
+        of_values=curve.of_values,
+        share=best,
+        unit=unit,
+    )
+    if all(one.high < RARE for one in shares):
+        return None
+    if any(one.high < later.low for i, one in enumerate(shares) for later in shares[i + 1 :]):
+        why = f"no limit of {names}: how many {said} does not change steadily with it"
+        return replace(plain, why=why)
+    rare = len(shares)
+    while shares[rare - 1].high < RARE:
+        rare -= 1
+    if rare < len(shares):
+        return replace(plain, at=edges[rare], end=edges[-1], share=shares[rare])
+    last = replace(plain, at=edges[-2], end=edges[-1])
+    if not best.has_interval:
+        why = f"whether {plain.few} {said} where {names} is {last.place} is not settled"
+        return replace(plain, why=why)
+    shown = best if is_unwanted else _opposite(best)
+    many = f"{percent_range(shown.low, shown.high)} {said}"
+    low, high = sorted(edges[-2:])
+    ends = unit.between(low, high)
+    why = f"averaged over the best of {len(shares)} parts of {names} ({ends}), {many}"
+    if curve.of_values:
+        why = f"where {names} is {last.place}, {many}"
+    if best.low <= RARE:
+        why += f"; whether {plain.few} do is not settled"
+    return replace(plain, why=why)
+
+
+def _opposite(one: Estimate) -> Estimate:
+    return Estimate(1 - one.value, 1 - one.high, 1 - one.low)

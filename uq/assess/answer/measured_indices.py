@@ -1,0 +1,152 @@
+"""The index of each input, and what tells it from the others."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite, nan, sqrt
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.chosen_targets import chosen
+from uq.assess.design_sample import sample_of
+from uq.assess.independent_inputs import why_dependent
+from uq.assess.sensitivities import TargetIndices, methods
+from uq.indices.given_data import MIN_ROWS
+from uq.indices.index import IndexKind, Null, RefusedError
+from uq.indices.method import Method
+from uq.indices.methods import METHODS, fed_by
+from uq.result.elements import has_independent_samples
+from uq.result.nesting import one_of_each_sample
+from uq.result.weights import has_weights
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import PLAIN
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import scatter_interval
+
+_PARTS = 8
+_FEWEST_PARTS = 4
+_DOUBTFUL = 2.0  # times the error of an index that is too uncertain for an interval
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The index of one input.
+
+    Attributes
+    ----------
+    name : str
+    index : Estimate
+        With an interval where one is known.
+    half : float
+        Half the width of its interval, or what tells it from another.
+    counts : bool
+        Whether it is larger than those of inputs without effect.
+    shared : dict of str to float
+        Other input -> covariance of the errors of both indices, in units of half-widths.
+    """
+
+    name: str
+    index: Estimate
+    half: float
+    counts: bool
+    shared: Mapping[str, float] = field(default_factory=dict)
+
+    def apart(self, other: "Measured") -> float:
+        """Return the half-width of the interval of the difference from another index."""
+        return sqrt(max(self.half**2 + other.half**2 - 2 * self.shared.get(other.name, 0.0), 0.0))
+
+
+def method_for(ds: xr.Dataset, event: bool) -> str | None:
+    """Return the method that ranks: the first that the study asks for, or that its design feeds.
+
+    Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
+    probability of a rare one. None for rows with weights. Of shares of the variance alone, the ones
+    with intervals where the design has such: a leader is not named without.
+    """
+    if has_weights(ds):
+        return None
+    fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
+    found = [_with_intervals(name, fed) for name in (*methods(ds), *fed) if name in fed]
+    known = [name for name in found if not METHODS[name].conditional]
+    if not event:
+        return next((name for name in known if METHODS[name].takes_numbers), None)
+    of_events = [name for name in known if METHODS[name].takes_events]
+    return min(of_events, key=lambda name: not _has_scale(METHODS[name]), default=None)
+
+
+def _with_intervals(name: str, fed: Sequence[str]) -> str:
+    """Return a method, or one that estimates the same indices with intervals."""
+    if METHODS[name].intervals:
+        return name
+    same = (one for one in fed if METHODS[one].kinds == METHODS[name].kinds)
+    return next((one for one in same if METHODS[one].kinds and METHODS[one].intervals), name)
+
+
+def _has_scale(method: Method) -> bool:
+    return method.of_variance or not method.takes_numbers
+
+
+def measured_inputs(
+    ds: xr.Dataset, method: str, name: str, kind: IndexKind, found: TargetIndices
+) -> Iterator[Measured]:
+    """Yield the indices of one kind, the largest first, of inputs with an effect of their own."""
+    every, borrowed = found.kinds()[kind], found.indices.by_correlation
+    values = {label: one for label, one in every.items() if label not in borrowed} or every
+    null = found.indices.nulls.get(kind, Null(nan))
+    limit = null.largest if isfinite(null.largest) else null.one
+    products = found.indices.half_products
+    has_errors = bool(products) or any(one.has_interval for one in values.values())
+    scatter = {} if has_errors else _parts(ds, method, name).get(kind.key, {})
+    known = sorted(values, key=lambda label: -_size(values[label]))
+    # Where no other input has an effect in any row, it is certain without an interval.
+    alone = kind.unit == "variance" and all(values[label].value == 0 for label in known[1:])
+    for label in known:
+        one = values[label]
+        if not isfinite(one.value):
+            continue
+        half = (one.high - one.low) / 2 if one.has_interval else null.one
+        if products and not one.has_interval:
+            half = _DOUBTFUL * sqrt(products[label, label])
+        if label in scatter:  # estimates from fewer rows, which may be biased: no interval
+            low, high = scatter_interval(one.value, np.array(scatter[label]))
+            half = (high - low) / 2
+        counts = one.low > 0 if one.has_interval or not isfinite(limit) else one.value > limit
+        counts |= alone and one.value > 0 and not one.has_interval
+        shared = {
+            other: product
+            for pair, product in products.items()
+            if label in pair and (other := pair[pair[0] == label]) != label
+        }
+        yield Measured(label, one, half, bool(counts and not one.low <= 0), shared)
+
+
+def _size(one: Estimate) -> float:
+    return one.value if isfinite(one.value) else -1.0
+
+
+def _parts(ds: xr.Dataset, method: str, name: str) -> dict[str, dict[str, list[float]]]:
+    """Return the indices from independent parts of the rows: kind -> input -> one of each part."""
+    if DESIGNS[ds.attrs["design"]].layout is not PLAIN:
+        return {}
+    ds = one_of_each_sample(ds)
+    (target,) = chosen(ds, method, [name])
+    sample = replace(sample_of(ds), values=target.values, nulls=False)
+    rows = np.flatnonzero(sample.whole)
+    if (most := METHODS[method].most_rows) and len(rows) > most:
+        rows = np.sort(np.random.default_rng(0).choice(rows, most, replace=False))
+    if has_independent_samples(ds):
+        part = np.arange(len(rows)) % max(min(_PARTS, len(rows) // MIN_ROWS), 1)
+    else:
+        part = ds["replicate"].values[rows]
+    found: dict[str, dict[str, list[float]]] = {}
+    if len(np.unique(part)) < _FEWEST_PARTS:
+        return found
+    for one in np.unique(part):
+        try:
+            indices = METHODS[method].indices(sample.rows(rows[part == one]))
+        except RefusedError:
+            return {}
+        for kind, values in indices.values.items():
+            for label, index in values.items():
+                found.setdefault(kind.key, {}).setdefault(label, []).append(index.value)
+    return found

@@ -1,0 +1,52 @@
+"""What a number of a result is about, by the name that a person reads."""
+
+import xarray as xr
+
+from uq.assess.answer.wording import element_called
+from uq.assess.targets import split_name
+from uq.result.elements import analysis_of, named_elements
+from uq.result.variables import is_category, outputs_of
+from uq.text.numbers import compared, estimated
+from uq.text.symbols import readable
+
+
+class Target:
+    """An element of an output, or what is derived from one.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    name : str
+        As `uq.sensitivity` returns it.
+
+    Attributes
+    ----------
+    name : str
+        The same for a person, which ``--output`` takes too: ``P(life < 24 hours)``.
+    units : str
+        CF unit of the numbers; ``"1"`` for those of a logarithm, a rank or an event.
+    meaning : str
+        Of the element, with its place.
+    """
+
+    def __init__(self, ds: xr.Dataset, name: str):
+        form, inside, _ = split_name(name)
+        output = inside.partition("=" if "[" not in inside else "[")[0]
+        self.name, self.units, self.meaning = name, "1", ""
+        self._compared, self._asked = "", analysis_of(ds).thresholds.get(output, ())
+        if is_category(ds, output):
+            self.meaning = str(ds[output].attrs["long_name"])
+        elif output in (known := outputs_of(ds)):
+            element, *others = named_elements(ds, inside)
+            declared = known[output]
+            self._units = declared.unit
+            self._compared = compared(inside, declared.is_angle)
+            self.meaning = element_called(ds, element)
+            if others:
+                self.meaning = f"{readable(element.meaning)}, all {1 + len(others)} elements"
+            self.units = "1" if form else declared.unit
+            self.name = self.label(name)
+
+    def label(self, label: str) -> str:
+        """Return the name of one of its estimates for a person."""
+        return estimated(label, self._units, self._compared, self._asked)

@@ -1,0 +1,190 @@
+"""Which bounds of an output are promised: joint ones where a study asks for them, else its own."""
+
+from collections.abc import Iterator
+from math import inf, isfinite, isnan, nan
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.answer.tolerance_bound import Known, Pile, Promise
+from uq.assess.answer.wording import Unit
+from uq.assess.joint_bounds import SIDES
+from uq.assess.statistic import Statistic
+from uq.assess.summary import Described
+from uq.result.elements import Element
+from uq.result.nesting import is_nested
+from uq.result.weights import has_weights
+from uq.stats.estimate import NOTHING, Estimate
+from uq.study.file import AnalysisTable
+from uq.text.numbers import percent
+
+COVERAGE = 0.95
+CONFIDENCE = 0.95
+"""Of a bound where the study does not ask for others."""
+
+MIDDLE = 0.5
+
+
+def promise_of(
+    ds: xr.Dataset,
+    described: Described,
+    element: Element,
+    analysis: AnalysisTable,
+    wanted: str,
+    unit: Unit,
+) -> Promise:
+    """Return what can be promised of an element.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    described : Described
+        With the quantiles and bounds that the answer needs.
+    element : Element
+    analysis : AnalysisTable
+        What the study asks for.
+    wanted : {"", "above", "below"}
+        The good side of a limit.
+    unit : Unit
+
+    Returns
+    -------
+    Promise
+    """
+    coverage, confidence = analysis.tolerance or (COVERAGE, CONFIDENCE)
+    joint = SIDES.get(analysis.joint_bounds.get(element.output, ""), ())
+    sides = _sides(element, described, analysis.thresholds.get(element.output, ()), wanted)
+    if joint:
+        sides = "lower" in joint, "upper" in joint
+    part = "joint_bounds" if joint else "tolerance"
+    both = [described.find(part, name) for name in ("lower", "upper")]
+    bounds = [
+        one.estimate.value if matters and one else nan
+        for one, matters in zip(both, sides, strict=True)
+    ]
+    piled = () if joint else tuple(piles(element, sides, coverage))
+    upper_piled = {one.upper for one in piled}
+    sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
+    bounds = [one if matters else nan for one, matters in zip(bounds, sides, strict=True)]
+    # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
+    signed = bool(joint) and element.is_angle
+    found = [
+        described.find("quantiles", repr(p)) if matters and not signed else None
+        for p, matters in zip((round(1 - coverage, 12), coverage), sides, strict=True)
+    ]
+    ends = [one.best.estimate if one else NOTHING for one in found]
+    with_failed = [one.best.failed if one else None for one in found]
+    reason = ""
+    if any(sides) and not any(map(isfinite, bounds)):
+        reason = _why_no_bound(ds, element, both, bounds)
+    elif isfinite(wrong := _contradicted(bounds, ends)):
+        reason = f"counted from the rows, {unit.text(wrong)}, it lies beyond the quantile itself"
+        bounds = [nan, nan]
+    return Promise(
+        coverage,
+        confidence,
+        bounds[0],
+        bounds[1],
+        unit,
+        (ends[0], ends[1]),
+        (with_failed[0], with_failed[1]),
+        reason,
+        element.is_lifetime,
+        element.is_angle and not joint,
+        end_of(element),
+        tuple(analysis.joint_bounds) if joint else (),
+        known_of(element),
+        _recurs(element),
+        (0, 0) if joint else _ranks(element, bounds),
+        int((element.present | element.failed).sum()),
+        piled,
+    )
+
+
+def _ranks(element: Element, bounds: list[float]) -> tuple[int, int]:
+    """Return the places of bounds among the rows, failed ones beyond them; 0 without a bound."""
+    values, lower, upper = element.for_thresholds[element.present], *bounds
+    first = int(element.failed.sum() + (values < lower).sum()) + 1 if isfinite(lower) else 0
+    return first, int((values <= upper).sum()) if isfinite(upper) else 0
+
+
+def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[Pile]:
+    """Yield the sides on which more rows have the last value than a bound would leave out."""
+    values = element.for_thresholds[element.present]
+    if element.is_lifetime or not len(values) or values.min() == values.max():
+        return
+    for upper, matters in enumerate(sides):
+        last = values.max() if upper else values.min()
+        count = int((values == last).sum())
+        if matters and count > 1 and count >= (1 - coverage) * len(values):
+            yield Pile(bool(upper), float(last), count / len(values))
+
+
+def known_of(element: Element) -> Known:
+    """Return which values numbers are about: those of sound rows that are defined."""
+    sound = ~element.failed
+    share = float(element.undefined[sound].mean()) if sound.any() else 0.0
+    return Known(bool(element.failed.any()), share)
+
+
+def _recurs(element: Element) -> bool:
+    """Return whether rows have equal values."""
+    if element.law is not None:
+        return False
+    values = element.for_thresholds[element.present & ~element.censored]
+    values = values[np.isfinite(values)]
+    return len(np.unique(values)) < len(values)
+
+
+def quantile_of(described: Described, p: float) -> Estimate:
+    """Return a quantile that was asked for, else nothing."""
+    found = described.find("quantiles", repr(p))
+    return found.best.estimate if found else NOTHING
+
+
+def end_of(element: Element) -> str:
+    """Return what a life does at its end, in words."""
+    return "succeed" if element.declared.success else "end"
+
+
+def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
+    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+
+    By chance few rows give one, where the quantile is better known since lives are integrated.
+    """
+    lower, upper = bounds
+    if lower > ends[0].value:
+        return lower
+    return upper if upper < ends[1].value else nan
+
+
+def _sides(
+    element: Element, described: Described, thresholds: tuple[float, ...], wanted: str
+) -> tuple[bool, bool]:
+    """Return whether a lower and an upper bound are what matters."""
+    if element.is_lifetime:
+        early = bool(element.declared.success)  # the latest time of a success is what matters
+        return not early, early
+    if wanted:
+        return wanted == "above", wanted == "below"
+    middle = quantile_of(described, MIDDLE).value
+    if thresholds and isfinite(middle):
+        return any(t < middle for t in thresholds), any(t >= middle for t in thresholds)
+    return True, True
+
+
+def _why_no_bound(
+    ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
+) -> str:
+    needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    if needed == inf:
+        return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
+    if needed:
+        return f"it needs {needed:.0f} rows"
+    if any(not isnan(one) for one in bounds):
+        return f"too few {end_of(element)}"
+    if has_weights(ds):
+        return "the rows are weighted by inspections"
+    if is_nested(ds):
+        return "the rows of one sample are not independent"
+    return f"the rows of a '{ds.attrs['design']}' design are not independent"

@@ -1,0 +1,296 @@
+"""What can be promised of an output, its likely range, and the probabilities asked for."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isfinite, nan
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.earliest import earliest
+from uq.assess.answer.measured_indices import method_for
+from uq.assess.answer.parts import Event, Quantity
+from uq.assess.answer.promised_bounds import (
+    CONFIDENCE,
+    COVERAGE,
+    MIDDLE,
+    end_of,
+    known_of,
+    promise_of,
+    quantile_of,
+)
+from uq.assess.answer.rankings import ranking_of
+from uq.assess.answer.solver_error import own_error_of
+from uq.assess.answer.sources import ASSUMED, mark_of
+from uq.assess.answer.tolerance_bound import Range
+from uq.assess.answer.wording import Unit, element_called, unit_for, unit_of_input
+from uq.assess.chosen_targets import chosen
+from uq.assess.event_curve import EventCurve, event_curve
+from uq.assess.findings import Findings
+from uq.assess.independent_inputs import independent_inputs
+from uq.assess.statistic import Context, Statistic
+from uq.assess.statistics.counts import never_ending
+from uq.assess.statistics.quantiles import quantiles
+from uq.assess.statistics.tolerance import tolerance
+from uq.assess.summary import Described, resolution_of, summarise
+from uq.assess.targets import lightened, number_of, split_name
+from uq.errors import InputError
+from uq.indices.methods import METHODS
+from uq.result.elements import (
+    Element,
+    analysis_of,
+    are_independent,
+    elements_of,
+    replicates_of,
+    shown_outputs,
+    weights_of,
+)
+from uq.result.variables import outputs_of
+from uq.result.weights import has_weights
+from uq.stats.estimate import NOTHING
+from uq.study.file import AnalysisTable
+from uq.text.numbers import threshold
+from uq.text.symbols import readable
+
+LOW, HIGH = 0.05, 0.95
+"""Probabilities of the ends of the likely range."""
+
+_NARROW = 0.003  # a range over its values, of which three digits show but few steps
+
+
+def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
+    """Return the answer for each element that the study asks for, the one it is about first.
+
+    Parameters
+    ----------
+    findings : Findings
+    only : str, optional
+        The name of an element: the answer for no other.
+
+    Returns
+    -------
+    list of Quantity
+    """
+    ds = findings.ds
+    asked = analysis_of(ds, only and only.partition("[")[0])
+    wanted = with_bounds(asked, findings)
+    summary = summarise(ds, asked) if only else findings.summary
+    parts = [part for part in ("quantiles", "tolerance") if _asks(wanted, asked, part)]
+    more = summarise(ds, wanted, parts=parts).outputs if parts else {}
+    part = replicates_of(findings.rows)
+    context = Context(findings.rows, wanted, part, weights_of(findings.rows))
+    return [
+        _quantity(findings, _with(summary.outputs[one.name], more.get(one.name)), context, one)
+        for one in elements_of(findings.rows, _by_importance(ds, asked))  # one at a time in memory
+        if one.present.any() and only in (None, one.name)
+    ]
+
+
+def only_ranked(findings: Findings) -> list[Quantity]:
+    """Return what the inputs contribute, of rows that have indices but no statistics."""
+    ds = findings.ds
+    found = []
+    for element in elements_of(ds, _by_importance(ds, analysis_of(ds))):
+        values = np.abs(element.values[np.isfinite(element.values)])
+        if not len(values):
+            continue
+        ranking = _ranking(findings, element, unit_for(element.units, float(np.median(values))))
+        words, meaning = element_called(ds, element), readable(element.meaning)
+        found.append(Quantity(element.name, words, meaning, ranking=ranking))
+    return found
+
+
+def _by_importance(ds: xr.Dataset, asked: AnalysisTable) -> list[str]:
+    """Return the outputs that a study asks for, the one that it is about first."""
+    declared = outputs_of(ds)
+    return sorted(
+        shown_outputs(ds, asked),
+        key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
+    )
+
+
+def _asks(wanted: AnalysisTable, asked: AnalysisTable, part: str) -> bool:
+    """Return whether a part of the table asks for more than the study."""
+    return bool(getattr(wanted, part) != getattr(asked, part))
+
+
+def _with(described: Described, more: Described | None) -> Described:
+    """Return an element with more statistics."""
+    if more is None:
+        return described
+    return replace(described, parts={**described.parts, **more.parts})
+
+
+def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
+    """Return what a study asks for, with the bounds and quantiles that the answer needs."""
+    coverage = asked.tolerance.coverage if asked.tolerance else COVERAGE
+    needed = {LOW, MIDDLE, HIGH, coverage, round(1 - coverage, 12)}
+    missing = tuple(sorted(needed - set(asked.quantiles)))
+    changes: dict[str, object] = {}
+    if missing:
+        changes["quantiles"] = (*asked.quantiles, *missing)
+    if asked.tolerance is None and are_independent(findings.rows):
+        tolerances = type(asked).model_validate(
+            {"tolerance": {"coverage": COVERAGE, "confidence": CONFIDENCE}}
+        )
+        changes["tolerance"] = tolerances.tolerance
+    return asked.model_copy(update=changes) if changes else asked
+
+
+def _quantity(
+    findings: Findings, described: Described, context: Context, element: Element
+) -> Quantity:
+    folded = element
+    if element.is_angle:  # its sign is only a direction
+        folded = replace(element, values=element.for_thresholds)
+        described = Described(
+            described.units,
+            {
+                **described.parts,
+                "quantiles": tuple(quantiles(folded, context)),
+                "tolerance": tuple(tolerance(folded, context)),
+            },
+        )
+    middle = quantile_of(described, MIDDLE)
+    wanted = context.analysis.wanted.get(element.output, "below" if element.is_angle else "")
+    others = (quantile_of(described, p).value for p in (LOW, HIGH))
+    least = element.at_least[np.isfinite(element.at_least)]  # of lives, also those of censored rows
+    shortest = float(least.min()) if len(least) else nan
+    typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
+    unit = unit_for(element.units, abs(typical))
+    fine = unit._replace(resolution=resolution_of(folded, _NARROW))
+    promise = promise_of(findings.ds, described, element, context.analysis, wanted, fine)
+    return Quantity(
+        element.name,
+        element_called(findings.ds, element),
+        readable(element.meaning),
+        promise,
+        Range(
+            quantile_of(described, LOW),
+            middle,
+            quantile_of(described, HIGH),
+            fine,
+            element.is_angle,
+            end_of(element),
+            never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
+            known_of(element),
+            element.is_lifetime,
+        ),
+        tuple(_events(findings, described, element, unit)),
+        _as_computed(_ranking(findings, element, unit), described),
+        wanted,
+        earliest(findings, element, unit, context.replicate)
+        if _may_end_badly(findings.ds, element)
+        else None,
+        assumed_scales(findings.ds, element),
+        own_error_of(promise, described, folded, context),
+    ).with_limits()
+
+
+def assumed_scales(ds: xr.Dataset, element: Element) -> tuple[str, ...]:
+    """Return what all lives are proportional to, or to the reciprocal of, and is assumed."""
+    scales = (name for name in element.declared.scales if name in ds)
+    return tuple(name for name in scales if mark_of(ds, name) == ASSUMED)
+
+
+def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:
+    """Return whether the rows that end first are of interest, and stand for themselves."""
+    return element.is_lifetime and not element.declared.success and not has_weights(ds)
+
+
+def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None:
+    method = method_for(findings.ds, event=False)
+    if method is None:
+        return None
+    target = number_of(element)
+    name = (target if METHODS[method].scale_free else lightened(target)).name
+    verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
+    if element.is_angle:  # of all that is said, this alone is not of its magnitude
+        verb = ("lowers its signed value", "raises its signed value")
+    try:
+        found = ranking_of(findings, name, method, verb)
+    except InputError as refused:
+        return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
+    if element.is_angle and found.what:
+        found = replace(found, what=f"{found.what}, of the angle with its sign")
+    if split_name(name)[0]:
+        return found
+    # Changes of the output itself are in its unit, as are indices that are not relative.
+    kind = next((one for one in METHODS[method].kinds if one.key == found.kind), None)
+    of_index = unit if kind is not None and kind.unit == "output" else Unit()
+    own = tuple(
+        replace(
+            one,
+            changes=tuple(replace(change, unit=unit) for change in one.changes),
+            unit=of_index,
+        )
+        for one in found.contributions
+    )
+    return replace(found, contributions=own)
+
+
+def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
+    """Return a ranking that says if it is of lives as computed, while other numbers integrate."""
+    facts = [one.facts.get("integrated") for one in described.parts["integrated"]]
+    if ranking is None or not ranking.what or not any(facts):
+        return ranking
+    return replace(ranking, what=f"{ranking.what}, of lives as computed")
+
+
+def _events(
+    findings: Findings, described: Described, element: Element, unit: Unit
+) -> Iterator[Event]:
+    side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
+    for one in described.parts["thresholds"]:
+        if one.key[-1] != side or one.at is None:
+            continue
+        at = threshold(one.at, element.units)
+        said = f"exceed {at}"
+        if element.is_lifetime:  # what ends at the time itself is not counted
+            ended = element.values[~element.censored]
+            at_it = element.law is None and (ended == one.at).any()
+            said = f"{end_of(element)} {'before' if at_it else 'within'} {at}"
+        said += " in magnitude" * element.is_angle
+        target = f"P({element.name}{sign}{one.at!r})"
+        undefined = one.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, said, one), undefined=undefined)
+
+
+def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
+    """Return what is known of an event: its probability, what decides it, and where.
+
+    Parameters
+    ----------
+    findings : Findings
+    target : str
+        Its name as that of a target of indices.
+    said : str
+        What happens, in words.
+    one : Statistic
+        Its probability.
+    """
+    found = Event(target, said, one.best.estimate, one.failed)
+    method = method_for(findings.ds, event=True)
+    if method is None or one.best.estimate.value in (0.0, 1.0):
+        return found
+    verb = ("lowers the probability", "raises the probability")
+    try:
+        ranking = ranking_of(findings, target, method, verb)
+    except InputError as refused:
+        why = str(refused)
+        if not split_name(target)[2]:  # a regime, of which the rows that could rank have none
+            why = f"no ranking of the inputs: no row that it could rest on is {said}"
+        return replace(found, ranking=Ranking(target, method, reason=why))
+    found = replace(found, ranking=ranking)
+    if ranking.leader is None:
+        return found
+    over, rows = ranking.leader.inputs[0], findings.ranked.rows
+    curve = curve_over(rows, target, method, over)
+    return replace(found, over=over, curve=curve, over_unit=unit_of_input(findings.ds, over))
+
+
+def curve_over(rows: xr.Dataset, target: str, method: str, over: str) -> EventCurve | None:
+    """Return the probability of an event over an input."""
+    hits = next(chosen(rows, method, [target])).values
+    return event_curve(hits, independent_inputs(rows)[over], replicates_of(rows))

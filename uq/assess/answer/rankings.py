@@ -1,0 +1,272 @@
+"""Which inputs contribute most to a target; those that cannot be distinguished stand together."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import expm1, isfinite, log1p, nan
+
+import xarray as xr
+
+from uq.assess.answer.contributions import SMALL, Change, Contribution, Ranking
+from uq.assess.answer.measured_indices import Measured, measured_inputs
+from uq.assess.answer.repeat_interval import AGAIN
+from uq.assess.answer.wording import Unit, called, twin_of, unit_of_input
+from uq.assess.chosen_targets import chosen
+from uq.assess.effects import Effect, effects
+from uq.assess.findings import Findings
+from uq.assess.independent_inputs import independent_inputs, why_dependent
+from uq.assess.targets import FORMS, Target, split_name
+from uq.errors import choices
+from uq.indices.index import S1, ST, IndexKind, Indices
+from uq.indices.methods import fed_by
+from uq.result.elements import replicates_of, study_file_of
+from uq.result.ranked_rows import ranked_in_words
+from uq.sampling.designs import DESIGNS
+from uq.stats.estimate import Estimate
+from uq.study.file import Tied
+
+GOAL = 0.1
+"""Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
+
+MOST_TIED = 3
+"""With more indistinguishable inputs than this, there is no ranking."""
+
+ALIKE = 0.5
+"""Twins stand together if the index of one is at least this part of that of the other."""
+
+LEAST = 0.01
+"""A smaller index is not listed."""
+
+_EXPANSION = "hdmr"  # the method that finds total indices in a plain sample
+
+_STEPS = (0.1, 0.01, 0.001)
+_WITHIN = 4.0  # standard deviations that a step may span
+
+
+def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
+    """Return which inputs contribute to a target.
+
+    Parameters
+    ----------
+    findings : Findings
+        Of a result; its `ranked` rows decide.
+    name : str
+        Of a target.
+    method : str
+    verbs : tuple of str
+        What a fall and a rise of the target is called.
+
+    Returns
+    -------
+    Ranking
+    """
+    ranking = _ranking(findings.ranked, name, method, verbs)
+    by = ranked_in_words(findings.ranked.ds, findings.ds)
+    if not by:
+        return ranking
+    reason = f"{ranking.reason} ({by})" if ranking.reason else ""
+    return replace(ranking, what=f"{ranking.what}, {by}", reason=reason, rows_factor=nan)
+
+
+def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
+    found = findings.indices(method, name)
+    if found.refused:
+        why = f"no ranking of the inputs: {found.refused}"
+        return Ranking(name, method, reason=why, rows_factor=found.rows_factor)
+    kinds = found.kinds()
+    kind = list(kinds)[-1]
+    measured = list(measured_inputs(findings.ds, method, name, kind, found))
+    form = FORMS.get(split_name(name)[0])
+    of = f" of the {form}" if form else ""
+    share = f"share of the variance{of}, " if kind.unit == "variance" else ""
+    by = "" if method in kind.words.lower() else f", by {method}"
+    what = f"{share}{kind.words}{'' if share else of}{by}"
+    if not measured[0].counts:
+        reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
+        needed = found.indices.rows_factors.get(measured[0].name, 1.0)
+        if needed > 1:
+            factor = max(factor, needed)
+        return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
+    # What does not exceed inputs without effect may yet contribute as much as the first.
+    weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
+    groups = list(_groups(findings.ds, weighed))
+    if len({twin_of(one.name) for one in groups[0]}) > MOST_TIED:
+        names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
+        first, second = groups[0][0], groups[0][MOST_TIED]
+        apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
+        factor = (first.apart(second) / apart) ** 2
+        reason, is_flat = f"the order of {names} is not settled", False
+        if factor <= 1:  # the rows tell apart what differs by more
+            is_flat = kind.unit == "variance" and first.index.value < SMALL
+            reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
+        return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
+    least = LEAST * _scale(measured[0], kind)
+    listed = [group for group in groups if group[0].index.value >= least]
+    moved = _effects(findings, method, name, [one.name for group in listed for one in group])
+    units = {one: unit_of_input(findings.ds, one) for one in moved}
+    contributions = tuple(_contribution(group, kind, name, moved, verbs, units) for group in listed)
+    is_share = kind.unit == "variance" and split_name(name)[0] != "P"
+    of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
+    rivals = _rivals(measured)
+    ranking = Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+    if kind != S1 or len(kinds) > 1:
+        return ranking
+    behind = (one.index.value for one in measured if one not in groups[0])
+    ranking = replace(
+        ranking,
+        unexplained=unexplained(found.indices),
+        runner_up=max(behind, default=0.0),
+        remedy="a 'saltelli' design shows them",
+    )
+    if ranking.may_be_overturned and not ranking.of_event:
+        ranking = replace(ranking, totals=_totals(findings, name))
+    return ranking
+
+
+def unexplained(indices: Indices) -> Estimate:
+    """Return the share of the variance that no single input explains.
+
+    Parameters
+    ----------
+    indices : Indices
+        With first-order indices of all inputs.
+    """
+    if indices.unexplained.has_interval:
+        return indices.unexplained
+    return Estimate(1 - sum(one.value for one in indices.values[S1].values()))
+
+
+def _totals(findings: Findings, name: str) -> dict[str, float]:
+    """Return the total indices, the largest first, of an expansion that represents the rows."""
+    dependent = bool(why_dependent(findings.ds))
+    if _EXPANSION not in fed_by(DESIGNS[findings.ds.attrs["design"]], dependent):
+        return {}
+    found = findings.indices(_EXPANSION, name)
+    values = {} if found.refused else found.indices.values[ST]
+    return {label: values[label].value for label in sorted(values, key=lambda x: -values[x].value)}
+
+
+def _scale(first: Measured, kind: IndexKind) -> float:
+    """Return what an index is compared with: those in the unit of the output, with the largest."""
+    return abs(first.index.value) if kind.unit == "output" else 1.0
+
+
+def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
+    """Return the inputs of which one would contribute most with another seed, with 95 %.
+
+    None where there is no other, or nothing tells them apart.
+    """
+    first = measured[0]
+    if len(measured) == 1 or not all(isfinite(one.half) for one in measured):
+        return ()
+    return tuple(one.name for one in measured if _are_tied(first, one, AGAIN))
+
+
+def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
+    """Return why no index counts, how many times the rows would settle it, and if none is large."""
+    text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
+    which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
+    if not isfinite(first.half):
+        return f"{which}: {text}, without an interval", nan, False
+    goal = GOAL * _scale(first, kind)
+    if first.index.reason:
+        return f"{which}: {text}, and {first.index.reason}", (first.half / goal) ** 2, False
+    if first.half > goal:
+        ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
+        interval = f" ({ends})" if first.index.has_interval else ""
+        return f"{which}: {text}{interval}", (first.half / goal) ** 2, False
+    verb = "decides that" if of_event else "contributes"
+    return f"no single input {verb} measurably: {text} at most", nan, True
+
+
+def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat: bool) -> str:
+    """Return that inputs contribute alike, or none of them much."""
+    most = f"is {first.index.value:.2f} at most"
+    if is_flat:
+        does = "decides that alone" if of_event else "explains much"
+        return f"no single input {does}: {kind.key} of {names} {most}"
+    return f"{names} {'decide that' if of_event else 'contribute'} alike: {kind.key} {most}"
+
+
+def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]]:
+    """Yield inputs together that are twins or whose indices do not distinguish them."""
+    laws = {
+        name: None if isinstance(one, Tied) else one.model_dump(exclude={"source"})
+        for name, one in study_file_of(ds).uncertain.items()
+    }
+
+    def are_twins(one: Measured, other: Measured) -> bool:
+        less, more = sorted((one.index.value, other.index.value))
+        same = twin_of(one.name) == twin_of(other.name) and less >= ALIKE * more
+        return same and laws[one.name] is not None and laws[one.name] == laws[other.name]
+
+    left = list(measured)
+    while left:
+        first, others = left[0], left[1:]
+        tied = [one for one in others if _are_tied(first, one)]
+        group = [first, *tied]
+        group += [
+            one for one in others if one not in group and any(are_twins(one, of) for of in group)
+        ]
+        yield group
+        left = [one for one in left if one not in group]
+
+
+def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
+    """Return whether another input may have as large an index, errors multiplied by `times`."""
+    return first.index.value - other.index.value <= times * first.apart(other)
+
+
+def _effects(
+    findings: Findings, method: str, name: str, inputs: Sequence[str]
+) -> dict[str, Effect]:
+    """Return the effects that have an interval; without one, no direction is clear."""
+    rows = findings.rows
+    targets: list[Target] = list(chosen(rows, method, [name]))
+    if len(targets) != 1:
+        return {}
+    columns, part = independent_inputs(rows), replicates_of(rows)
+    found = effects(targets[0].values, columns, part, inputs)
+    return {name: one for name, one in found.items() if one.slope.has_interval}
+
+
+def _contribution(
+    group: Sequence[Measured],
+    kind: IndexKind,
+    target: str,
+    moved: Mapping[str, Effect],
+    verbs: tuple[str, str],
+    units: Mapping[str, Unit],
+) -> Contribution:
+    names = tuple(one.name for one in group)
+    form = split_name(target)[0]
+    changes = tuple(
+        _change(moved[name], form, verbs, units[name]) for name in names if name in moved
+    )
+    return Contribution(
+        names,
+        tuple(one.index for one in group),
+        kind.unit == "variance",
+        changes if len(changes) == len(names) else (),
+        doubtful=tuple(one.name for one in group if not one.counts),
+    )
+
+
+def _change(effect: Effect, form: str, verbs: tuple[str, str], of_input: Unit) -> Change:
+    """Return the change of a target with a usual step of an input."""
+    if effect.direction == 0 or effect.of_values or form == "rank":
+        return Change(effect.direction, verbs=verbs)
+    amount = ""
+    if effect.logarithmic:
+        size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])
+        step, by = f"{100 * size:g} %", log1p(size)
+    else:
+        step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)
+    value, low, high = (by * one for one in effect.slope.numbers)
+    unit = Unit()
+    if form == "log":
+        value, low, high = (100 * expm1(one) for one in (value, low, high))
+        unit = Unit("%")
+    elif form == "P":
+        value, low, high = 100 * value, 100 * low, 100 * high
+        unit = Unit("percentage points")
+    return Change(effect.direction, step, Estimate(value, low, high), unit, verbs, amount)

@@ -1,0 +1,209 @@
+"""What could be done: what a tighter tolerance would change, and each piece of advice."""
+
+from dataclasses import dataclass, field
+from math import isfinite
+
+from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.answer.wording import Unit, called_together, joined
+from uq.stats.estimate import NOTHING, Estimate
+from uq.text.numbers import capitalized, percent, percent_interval
+
+SHARE_OF = "the share of rows that "
+"""How the number is called that is the probability of an event."""
+
+
+@dataclass(frozen=True)
+class Tightened:
+    """What half the scatter of an input would change.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+    what : str
+        The number that changes: ``the 5 % quantile``.
+    before, after : Estimate
+    is_share : bool
+    unit : Unit
+    reason : str
+        Why the rows cannot show it, or "".
+    effective_rows : float
+    key : str
+        Of `after`, for ``uq trace``; "" where it is not known.
+    wants_more : bool or None
+        Whether a larger number is better; None where that is not known.
+    law : str
+        What half the scatter is: ``sd 0.5 mm instead of 1``.
+    promise : Promise or None
+        What is promised of the same quantile now; None where an end of the interval of `after`
+        could not be promised instead.
+    failed : Estimate or None
+        The ends of that interval with failed rows at worst, where rows failed.
+    """
+
+    inputs: tuple[str, ...]
+    what: str
+    before: Estimate = NOTHING
+    after: Estimate = NOTHING
+    is_share: bool = False
+    unit: Unit = field(default_factory=Unit)
+    reason: str = ""
+    effective_rows: float = float("nan")
+    key: str = ""
+    wants_more: bool | None = None
+    law: str = ""
+    promise: Promise | None = None
+    failed: Estimate | None = None
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether the number differs to the digits shown."""
+        return self.text(self.before) != self.text(self.after)
+
+    @property
+    def helps(self) -> bool:
+        """Whether the number moves to its better side, or none is known to be better."""
+        return self.wants_more in (None, self.rises)
+
+    @property
+    def may_stay(self) -> bool:
+        """Whether the number may be as before, for all that its interval says."""
+        return self.after.has_interval and self.after.low <= self.before.value <= self.after.high
+
+    @property
+    def harms(self) -> bool:
+        """Whether the number surely moves to its worse side."""
+        is_sure = self.after.has_interval and not self.may_stay
+        return not self.helps and is_sure and self.is_seen
+
+    @property
+    def rises(self) -> bool:
+        """Whether the number becomes larger."""
+        return self.after.value > self.before.value
+
+    @property
+    def gain(self) -> float:
+        """By how much the number moves to its better side, or at all where none is better."""
+        moved = self.after.value - self.before.value
+        return abs(moved) if self.wants_more is None else moved if self.wants_more else -moved
+
+    @property
+    def half(self) -> float:
+        """Half the width of the interval; 0 without one."""
+        return (self.after.high - self.after.low) / 2 if self.after.has_interval else 0.0
+
+    def text(self, one: Estimate) -> str:
+        """Return one of the numbers with its unit."""
+        return percent(one.value) if self.is_share else self.unit.text(one.value)
+
+    @property
+    def after_in_words(self) -> str:
+        """The number that it would be; a quantile says which."""
+        what = "" if self.is_share else f"{self.what.removeprefix('the ')} "
+        return f"{what}{self.text(self.after)}"
+
+    @property
+    def interval(self) -> str:
+        """The interval of the number that it would be; "" without one."""
+        if not self.after.has_interval:
+            return ""
+        low, high = self.after.low, self.after.high
+        return percent_interval(low, high) if self.is_share else self.unit.between(low, high)
+
+    @property
+    def sentence(self) -> str:
+        """What would change, or why the rows cannot show it."""
+        words = called_together(self.inputs)
+        if self.reason:
+            return f"Tightening {words}: {self.reason}."
+        law = f" ({self.law})" if self.law else ""
+        first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
+        moved = f"move {self.what} from {first} to {self._then}"
+        return f"Half the scatter of {words}{law} would {moved}."
+
+    @property
+    def promised(self) -> str:
+        """What could then be promised: an end of the interval; "" where nothing could.
+
+        As in the bounds of now, failed rows are beyond it.
+        """
+        if self.promise is None:
+            return ""
+        before = self.promise.failed[isfinite(self.promise.upper)] or self.before
+        return self.promise.would_be(self.failed or self.after, before)
+
+    @property
+    def besides(self) -> str:
+        """What would change for the worse, after a number that gets better."""
+        if self.is_share:
+            does = self.what.removeprefix(SHARE_OF)
+            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._then}."
+        return f"But {self.what} would {'rise' if self.rises else 'fall'} to {self._then}."
+
+    @property
+    def _then(self) -> str:
+        if not self.after.has_interval:
+            return self.text(self.after)
+        bare = self.unit.bare_between(self.after.low, self.after.high)
+        return f"{self.text(self.after)} ({self.interval if self.is_share else bare})"
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One thing to do.
+
+    Attributes
+    ----------
+    rule : str
+        Why: ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
+        ``keep``, ``rows`` or ``nothing``.
+    said : str
+        The sentence, without what would help about as much.
+    inputs : tuple of str
+    rows : int or None
+        How many there should be in all, where more help.
+    tightened : Tightened or None
+    key : str
+        Of its number, for ``uq trace``; "" if it has none.
+    alike : tuple of Tightened
+        Which other tolerances would help about as much.
+    tolerances : tuple of Tightened
+        All that were compared: of each tolerance, every number that it would change.
+    """
+
+    rule: str
+    said: str
+    inputs: tuple[str, ...] = ()
+    rows: int | None = None
+    tightened: Tightened | None = None
+    key: str = ""
+    alike: tuple[Tightened, ...] = ()
+    tolerances: tuple[Tightened, ...] = ()
+
+    @property
+    def also(self) -> str:
+        """Which other tolerances would help about as much; "" for none."""
+        named = [f"{called_together(one.inputs)} ({one.after_in_words})" for one in self.alike]
+        return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
+
+    @property
+    def own(self) -> list[Tightened]:
+        """All numbers that the tolerance which is advised would change."""
+        of = None if self.tightened is None else self.tightened.inputs
+        return [one for one in self.tolerances if one.inputs == of]
+
+    @property
+    def sure(self) -> Tightened | None:
+        """The number of which it says what could then be promised."""
+        return next((one for one in self.own if one.promised), None)
+
+    @property
+    def harmed(self) -> list[Tightened]:
+        """The numbers that the tolerance which is advised would worsen."""
+        return [one for one in self.own if one.harms]
+
+    @property
+    def text(self) -> str:
+        """All of it."""
+        sure = "" if self.sure is None else self.sure.promised
+        worse = [one.besides for one in self.harmed]
+        return " ".join(filter(None, (self.said, sure, *worse, self.also)))

@@ -1,0 +1,128 @@
+"""What the same study with another seed would most likely find."""
+
+from dataclasses import dataclass, field
+from math import isfinite, nan, sqrt
+
+from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.tolerance_bound import Promise, Range
+from uq.assess.answer.wording import Unit, called, joined
+from uq.stats.estimate import Estimate
+from uq.text.numbers import percent_interval
+
+AGAIN = sqrt(2)
+"""An estimate from other rows differs from this one so many times as much as the truth does."""
+
+MOST_NAMED = 3
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """What the same study with another seed would most likely find.
+
+    Attributes
+    ----------
+    what : str
+        ``the 5 % quantile``, or of whom there is a share: ``end within 24 hours``; "" for none.
+    low, high : float
+        Between which it would lie with a probability of 95 %.
+    is_share : bool
+    unit : Unit
+    ranking : str
+        What would contribute most; "" where that is not known.
+    """
+
+    what: str = ""
+    low: float = nan
+    high: float = nan
+    is_share: bool = False
+    unit: Unit = field(default_factory=Unit)
+    ranking: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """What it would find; "" where that is not known."""
+        number = ""
+        if self.what and self.is_share:
+            number = f"{percent_interval(self.low, self.high)} would {self.what} (95 %)"
+        elif self.what:
+            number = f"{self.what} would {self._lie} (95 %)"
+        text = "; ".join(filter(None, (number, self.ranking)))
+        return f"With another seed, {text}." if text else ""
+
+    @property
+    def _lie(self) -> str:
+        first, last = self.unit.text(self.low), self.unit.text(self.high)
+        if first == last:  # to the digits shown
+            return f"again be {first}"
+        return f"lie between {self.unit.between(self.low, self.high, ' and ')}"
+
+
+def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
+    """Return between which values an estimate from as many other rows lies with 95 %.
+
+    Parameters
+    ----------
+    one : Estimate
+        With its 95 % interval.
+    is_positive : bool
+        Whether it is a life, whose logarithm scatters evenly.
+
+    Returns
+    -------
+    low, high : float
+        NaN where the interval is not known.
+
+    References
+    ----------
+    G. J. Hahn, W. Q. Meeker, "Statistical Intervals" (Wiley, 1991): the difference of two
+    independent estimates has twice the variance of one.
+    """
+    if not (one.has_interval and isfinite(one.value)):
+        return nan, nan
+    value, low, high = one.numbers
+    if is_positive and low > 0:
+        return value * (low / value) ** AGAIN, value * (high / value) ** AGAIN
+    return value - AGAIN * (value - low), value + AGAIN * (high - value)
+
+
+def repeated_quantile(
+    promise: Promise | None, likely: Range | None, ranking: Ranking | None
+) -> Repeated:
+    """Return what would be found of the quantile that a promise bounds, and of the ranking.
+
+    A low quantile is no larger than the upper end of the likely range, which matters where values
+    jump, and a high one no smaller than its lower end.
+    """
+    order = _ranked_again(ranking)
+    if promise is not None:
+        for p, one in zip(promise.probabilities, promise.quantiles, strict=True):
+            low, high = found_again(one, promise.is_life)
+            if isfinite(low):
+                if likely is not None and p < 0.5:
+                    high = min(high, max(likely.high.value, one.high))
+                elif likely is not None:
+                    low = max(low, min(likely.low.value, one.low))
+                of = " of the magnitudes" if promise.of_magnitude else ""
+                what = f"the {100 * p:.3g} % quantile{of}"
+                return Repeated(what, low, high, False, promise.unit, order)
+    return Repeated(ranking=order)
+
+
+def repeated_share(said: str, share: Estimate, ranking: Ranking | None) -> Repeated:
+    """Return what would be found of the share of rows that do what is said, and of the ranking."""
+    low, high = found_again(share, False)
+    known = said if isfinite(low) else ""
+    return Repeated(known, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking))
+
+
+def _ranked_again(one: Ranking | None) -> str:
+    """Return what would contribute most, in words; "" where that is not known."""
+    if one is None or one.denies_a_leader:
+        return ""
+    if one.leader is None:
+        return "the order of the inputs could differ" if isfinite(one.rows_factor) else ""
+    names = [called(name) for name in one.rivals]
+    if len(names) > MOST_NAMED:
+        return "the order of the inputs could differ"
+    again = "again " if len(names) == 1 else ""
+    return f"{joined(names, 'or')} would {again}contribute most" if names else ""

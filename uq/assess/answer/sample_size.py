@@ -1,0 +1,113 @@
+"""What is not settled, and how many rows would settle it: intervals narrow as one over root n."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, isnan
+
+from uq.assess.answer.parts import Event, Quantity
+from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.findings import Findings
+from uq.text.numbers import percent
+
+SHARE = 0.2
+"""A probability is settled if half its interval is at most this part of the rarer side ..."""
+
+POINT = 0.01
+"""... or at most a percentage point."""
+
+BOUND = 0.1
+"""A promise is settled if it is within this part of the quantile that it bounds (of a life), or of
+the likely range."""
+
+MOST = 100.0
+"""Beyond so many times the rows, the root of n is no forecast."""
+
+
+_BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
+
+
+@dataclass(frozen=True)
+class Unsettled:
+    """Something that the rows do not settle.
+
+    Attributes
+    ----------
+    what : str
+        A clause.
+    factor : float
+        How many times the rows would settle it; infinite where no number would.
+    """
+
+    what: str
+    factor: float
+
+
+def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
+    """Yield what is not settled about a quantity, and how many times the rows would settle it.
+
+    References
+    ----------
+    JCGM 101:2008, "Evaluation of measurement data - Supplement 1 to the GUM", 7.9: the standard
+    deviation of an estimate falls as one over the root of the number of rows.
+    """
+    for event in quantity.events:
+        yield from unsettled_share(event)
+    if quantity.promise is not None:
+        yield from _of_promise(quantity.promise, quantity)
+    ranking = quantity.ranking
+    if ranking is not None and isfinite(ranking.rows_factor):
+        yield Unsettled(ranking.reason, ranking.rows_factor)
+    for event in quantity.events:
+        if event.ranking is not None and isfinite(event.ranking.rows_factor):
+            what = f"what decides how many {event.clause} is not settled"
+            yield Unsettled(what, event.ranking.rows_factor)
+
+
+def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
+    """Yield the bounds that the study asks for and the rows do not give."""
+    rows = findings.rows.sizes["sample"]
+    for key, words in _BOUNDS.items():
+        described = (findings.summary.outputs[one.name] for one in answered)
+        found = (one.find(key, side) for one in described for side in ("lower", "upper"))
+        needed = max((one.rows_needed or 0.0 for one in found if one), default=0.0)
+        if needed:
+            asked = f"the {words} that the study asks for"
+            what = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
+            yield Unsettled(what or f"too many rows failed for {asked}", needed / max(rows, 1))
+
+
+def unsettled_share(event: Event) -> Iterator[Unsettled]:
+    """Yield that the probability of an event is not settled."""
+    one = event.share
+    if isnan(one.value) and event.sentence:
+        yield Unsettled(f"{event.sentence[:1].lower()}{event.sentence[1:-1]}", inf)
+    if not one.has_interval:
+        return
+    half = (one.high - one.low) / 2
+    goal = max(SHARE * min(one.value, 1 - one.value), POINT)
+    if half > goal:
+        what = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
+        yield Unsettled(what, (half / goal) ** 2)
+
+
+def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
+    likely = quantity.range
+    if likely is None:
+        return
+    for bound, estimate, end, outwards in (
+        (promise.lower, likely.low, promise.quantiles[0].low, -inf),
+        (promise.upper, likely.high, promise.quantiles[1].high, inf),
+    ):
+        reached = bound if isfinite(bound) else end
+        if not (isfinite(reached) and isfinite(estimate.value)):
+            continue
+        scale = abs(estimate.value)
+        if not promise.is_life:
+            scale = abs(likely.high.value - likely.low.value)
+        away = abs(estimate.value - reached)
+        # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
+        if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
+            text = promise.unit.text(reached, outwards)
+            best = promise.unit.text(estimate.value)
+            what = f"the cautious bound, {text}, is far from the estimate, {best}"
+            yield Unsettled(what, (away / (BOUND * scale)) ** 2)

@@ -1,0 +1,159 @@
+"""What the numerical error of the rows themselves would do to a promise, in words."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from math import inf, isfinite, nan
+
+from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.answer.wording import Unit, joined
+from uq.assess.scaling import population
+from uq.assess.solver_error import error_share, off_by_error, stating_none
+from uq.assess.statistic import Context
+from uq.assess.statistics.counts import stated_error
+from uq.assess.statistics.quantiles import quantiles
+from uq.assess.statistics.tolerance import tolerance
+from uq.assess.summary import Described
+from uq.result.elements import Element
+from uq.text.numbers import capitalized, counted, percent
+
+NOTABLE = 0.01
+"""A smaller share of the variance is not worth a word."""
+
+Sides = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class OwnError:
+    """What the rows' own error would do.
+
+    Attributes
+    ----------
+    bounds : tuple of float
+        Lower and upper, as promised; NaN without one.
+    worse : tuple of float
+        The same if every value were wrong by its own error, to the unsafe side.
+    are_quantiles : bool
+        Whether quantiles are promised, for want of tolerance bounds.
+    share : float
+        Mean square of the errors as a share of the variance; NaN if unknown.
+    unit : Unit
+        Of the bounds.
+    is_life : bool
+        Whether it is of lives; the share is then of their logarithms.
+    asked, missed : float
+        The accuracy that the settings ask for, and the share of the rows that miss it; NaN without.
+    unstated : int
+        How many rows state no error.
+    """
+
+    bounds: Sides = (nan, nan)
+    worse: Sides = (nan, nan)
+    are_quantiles: bool = False
+    share: float = nan
+    unit: Unit = field(default_factory=Unit)
+    is_life: bool = False
+    asked: float = nan
+    missed: float = nan
+    unstated: int = 0
+
+    @property
+    def sentence(self) -> str:
+        """What the error would do; "" where it is not worth a word."""
+        if not (self._moved or self.share >= NOTABLE or self.unstated):
+            return ""
+        about = (self._moved, self._of_variance, self._missing)
+        return " ".join(f"{capitalized(one)}." for one in about if one)
+
+    @property
+    def _moved(self) -> str:
+        """Where the bounds would lie, of those that move by a digit that is shown."""
+        noun, ways = "life" if self.is_life else "value", ("overestimated", "underestimated")
+        now, then = ([*self._texts(ends)] for ends in (self.bounds, self.worse))
+        moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
+        if not moved:
+            return ""
+        how = joined([ways[i] for i in moved], "or")
+        what = "quantile" if self.are_quantiles else "bound"
+        does, it = (f"{what} does", "it") if len(moved) == 1 else (f"{what}s do", "they")
+        return (
+            f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
+            f" by as much, {it} would be {joined([then[i] for i in moved])}"
+        )
+
+    def _texts(self, ends: Sides) -> Iterator[str]:
+        for end, towards in zip(ends, (-inf, inf), strict=True):
+            yield self.unit.text(end, towards) if isfinite(end) else ""
+
+    @property
+    def _of_variance(self) -> str:
+        if not self.share >= NOTABLE:
+            return ""
+        of = "variance of the logarithm" if self.is_life else "variance"
+        which = "this error" if self._moved else "the rows' own numerical error"
+        if self.share >= 1:
+            return f"the mean square of {which} exceeds the {of}: all scatter may be numerical"
+        return f"the mean square of {which} is {percent(self.share)} of the {of}"
+
+    @property
+    def _missing(self) -> str:
+        parts = []
+        if self.missed > 0:
+            asked = f"{100 * self.asked:g} %"
+            parts.append(f"{percent(self.missed)} of the rows miss the accuracy asked for, {asked}")
+        if self.unstated:
+            verb = "states" if self.unstated == 1 else "state"
+            parts.append(f"{counted(self.unstated, 'row')} {verb} no error")
+        return "; ".join(parts)
+
+
+def own_error_of(
+    promise: Promise, described: Described, element: Element, context: Context
+) -> OwnError | None:
+    """Return what the rows' own error would do to a promise; None where no error is stated.
+
+    Parameters
+    ----------
+    promise : Promise
+    described : Described
+        The statistics that it is from.
+    element : Element
+        Of an angle, its magnitude.
+    context : Context
+    """
+    error = stated_error(context.rows, element)
+    if error is None:
+        return None
+    are_quantiles = not (isfinite(promise.lower) or isfinite(promise.upper))
+    bounds = promise.lower, promise.upper
+    if are_quantiles:
+        bounds = promise.quantiles[0].value, promise.quantiles[1].value
+    worse = [nan, nan]
+    for side in (0, 1):
+        if isfinite(bounds[side]) and not promise.joint:
+            moved = off_by_error(element, error, (-1, 1)[side])
+            worse[side] = _again(promise, are_quantiles, moved, context)[side]
+    known = [one.facts["accuracy"] for one in described.parts.get("accuracy", ())]
+    asked, missed = next(((one["asked"], one["share"] or 0.0) for one in known), (nan, 0.0))
+    return OwnError(
+        bounds,
+        (worse[0], worse[1]),
+        are_quantiles,
+        error_share(element, error),
+        promise.unit,
+        element.is_lifetime,
+        asked,
+        missed,
+        stating_none(element, error),
+    )
+
+
+def _again(promise: Promise, are_quantiles: bool, element: Element, context: Context) -> Sides:
+    """Return the bounds of other values of the same rows."""
+    if not are_quantiles:
+        bounds = {one.key[-1]: one.estimate.value for one in tolerance(element, context)}
+        return bounds["lower"], bounds["upper"]
+    alike = (one for one in population(context.rows, [element.output]) if one.name == element.name)
+    drawn = replace(next(alike), values=element.values)  # with the law of what scales its lives
+    known = {one.key[-1]: one.best.estimate.value for one in quantiles(drawn, context)}
+    low, high = (known[repr(p)] for p in promise.probabilities)
+    return low, high

@@ -1,0 +1,290 @@
+"""What can be promised of an output, and its likely range."""
+
+from dataclasses import dataclass, field, replace
+from math import inf, isfinite, nan
+
+from uq.assess.answer.wording import Unit, rounded, sentence, share_text
+from uq.stats.estimate import NOTHING, Estimate
+from uq.stats.intervals import CONFIDENCE
+from uq.text.numbers import grouped, listed, percent
+
+_ONE_END = (1 + CONFIDENCE) / 2
+"""Confidence in one end of an interval."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """Which values a number is about.
+
+    Attributes
+    ----------
+    rows_failed : bool
+        Whether there are rows without a value because they failed.
+    undefined : float
+        Share of the rows in which there is none.
+    """
+
+    rows_failed: bool = False
+    undefined: float = 0.0
+
+    def of(self, noun: str) -> str:
+        """Return which they are: ``of the computed lives``; "" for all."""
+        if self.undefined > 0:
+            return f"of the defined {noun}"
+        return f"of the computed {noun}" if self.rows_failed else ""
+
+
+@dataclass(frozen=True)
+class Pile:
+    """Rows that share the smallest or the largest value of all, so that no bound leaves them out.
+
+    Attributes
+    ----------
+    upper : bool
+        Whether it is the largest.
+    value, share : float
+        The value, and how many rows have it.
+    """
+
+    upper: bool
+    value: float
+    share: float
+
+    def sentence(self, unit: Unit) -> str:
+        """Return how many they are, in words."""
+        which = "largest" if self.upper else "smallest"
+        text = f"{percent(self.share)} of the rows share the {which} value, {unit.text(self.value)}"
+        return f"{text}, at which values may be cut off"
+
+
+@dataclass(frozen=True)
+class Promise:
+    """A value that can be promised.
+
+    Attributes
+    ----------
+    coverage, confidence : float
+        At least this share of all lies on the right side of the bound, with this confidence.
+    lower, upper : float
+        Bounds; NaN where there is none, or it is not asked for.
+    quantiles : tuple of Estimate
+        Where there is no tolerance bound: quantiles of one less the coverage and of the coverage,
+        those that are asked for (else without numbers).
+    failed : tuple
+        The same quantiles with failed rows at either side; None where none failed.
+    reason : str
+        Why there is no tolerance bound, or "".
+    unit : Unit
+    is_life, of_magnitude : bool
+        Whether it is a life that ends; whether it is the magnitude of an angle.
+    ends : str
+        What a life does at its end.
+    joint : tuple of str
+        Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
+    known : Known
+        Which values it is about.
+    recurs : bool
+        Whether rows have equal values, so that many may have that of a bound.
+    ranks : tuple of int
+        Places of the bounds among all rows, the smallest first; 0 without one.
+    rows : int
+        How many rows these are.
+    piled : tuple of Pile
+        Instead of bounds: sides on which too many rows have the last value for one.
+    """
+
+    coverage: float
+    confidence: float
+    lower: float
+    upper: float
+    unit: Unit
+    quantiles: tuple[Estimate, Estimate] = (NOTHING, NOTHING)
+    failed: tuple[Estimate | None, Estimate | None] = (None, None)
+    reason: str = ""
+    is_life: bool = False
+    of_magnitude: bool = False
+    ends: str = "end"
+    joint: tuple[str, ...] = ()
+    known: Known = field(default_factory=Known)
+    recurs: bool = False
+    ranks: tuple[int, int] = (0, 0)
+    rows: int = 0
+    piled: tuple[Pile, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """What can be promised, and where rows pile up; "" where nothing can be said."""
+        piles = (f"{one.sentence(self.unit)}." for one in self.piled)
+        return " ".join(filter(None, (self._promised, *piles)))
+
+    @property
+    def probabilities(self) -> tuple[float, float]:
+        """Those of its quantiles."""
+        return round(1 - self.coverage, 12), self.coverage
+
+    @property
+    def _promised(self) -> str:
+        share = f"{100 * self.coverage:g} %"
+        covered = " ".join(filter(None, (share, self._of_bounded)))
+        bounds = [
+            f"{self._side(i)} {self.unit.text(bound, (-inf, inf)[i])}"
+            for i, bound in enumerate((self.lower, self.upper))
+            if isfinite(bound)
+        ]
+        if bounds and self.joint:
+            return f"{self._sure}, at least {covered} {' and '.join(bounds)}{self._others}."
+        if bounds:
+            each, joined = " each" * (len(bounds) > 1), f", and at least {covered} ".join(bounds)
+            return f"{self._sure}{each}, at least {covered} {joined}."
+        share = " ".join(filter(None, (share, self.known.of(self._noun))))
+        cautious: list[str] = []
+        for i, one in enumerate(self.quantiles):
+            end = (one.low, one.high)[i]
+            if not isfinite(one.value):
+                continue
+            text = f"{share} {self._side(i)} {self.unit.text(one.value)}"
+            if isfinite(end):
+                text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
+            else:
+                text = f"about {text}" if cautious else f"About {text}"
+            cautious.append(text)
+        return f"{'; '.join(cautious)}." if cautious else ""
+
+    def of_quantile(self, probability: float) -> "Promise | None":
+        """Return the same with the bound of one quantile alone.
+
+        None where there is none, or an end of the interval of the quantile would not bound it with
+        this confidence.
+        """
+        if self.confidence > _ONE_END or self.joint or self.of_magnitude:
+            return None
+        if probability == self.coverage:
+            return replace(self, lower=nan) if isfinite(self.upper) else None
+        return replace(self, upper=nan) if isfinite(self.lower) else None
+
+    def would_be(self, quantile: Estimate, before: Estimate) -> str:
+        """Return what an end of the interval of the quantile would be, beside the same now.
+
+        "" without it, or where it is no better than now: the rows may be too few. It is called what
+        it is, and not a bound of its coverage: the tolerance bound, of another estimator, is.
+        """
+        is_upper = isfinite(self.upper)
+        bound, now = ((one.low, one.high)[is_upper] for one in (quantile, before))
+        if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
+            return ""
+        then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
+        return f"{self.end_of_quantile} {then}; as studied, {studied}."
+
+    @property
+    def end_of_quantile(self) -> str:
+        """What an end of the interval of the quantile that it bounds would be, up to the number."""
+        is_upper = isfinite(self.upper)
+        side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
+        of = " of magnitudes" if self.of_magnitude else ""
+        return f"The {side} end of the interval of the {100 * p:.3g} % quantile{of} would then be"
+
+    def opening(self) -> str:
+        """Return what a single bound promises, up to the bound."""
+        side = self._side(isfinite(self.upper))
+        share = f"at least {100 * self.coverage:g} %"
+        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
+
+    @property
+    def _sure(self) -> str:
+        return f"With {100 * self.confidence:g} % confidence"
+
+    @property
+    def basis(self) -> str:
+        """What kind of bound it is, or why there is none."""
+        if not (isfinite(self.lower) or isfinite(self.upper) or self.reason):
+            return ""
+        if not self.reason:
+            several = isfinite(self.lower) and isfinite(self.upper)
+            bound = f"{'joint ' * bool(self.joint)}tolerance bound{'s' * several}"
+            known = [grouped(rank) for rank in self.ranks if rank]
+            places = f"{'s' * several} {' and '.join(known)} of {grouped(self.rows)} in order"
+            which = f": value{places}" if known else ""
+            return f"{bound.capitalize()} from order statistics{which}, valid for any distribution."
+        end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
+        bound = f"{'joint ' * bool(self.joint)}tolerance bound"
+        return f"No {bound}: {self.reason}.{end}"
+
+    @property
+    def _others(self) -> str:
+        """With which other outputs the bounds hold at once."""
+        if len(self.joint) == 1:
+            return ""
+        return f", within the joint bounds of {listed(self.joint)}"
+
+    @property
+    def _noun(self) -> str:
+        return "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
+
+    @property
+    def _of_bounded(self) -> str:
+        """Which values a tolerance bound is about: failed rows count as beyond it."""
+        return replace(self.known, rows_failed=False).of(self._noun)
+
+    @property
+    def _is_cautious(self) -> bool:
+        ends = (self.quantiles[0].low, self.quantiles[1].high)
+        return any(isfinite(end) for end in ends)
+
+    def _side(self, upper: int) -> str:
+        if self.of_magnitude:
+            return "stay within" if upper else "are at least" if self.recurs else "exceed"
+        if self.is_life and upper:
+            return f"{self.ends} within"
+        if self.is_life:
+            return "reach" if self.recurs else "last longer than"
+        if self.recurs:
+            return "do not exceed" if upper else "do not fall below"
+        return "stay below" if upper else "stay above"
+
+
+@dataclass(frozen=True)
+class Range:
+    """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
+
+    ``ends`` is what a life does at its end, ``known`` which values they are.
+    """
+
+    low: Estimate
+    median: Estimate
+    high: Estimate
+    unit: Unit
+    of_magnitude: bool = False
+    ends: str = "end"
+    never: Estimate = NOTHING
+    known: Known = field(default_factory=Known)
+    is_life: bool = False
+
+    @property
+    def sentence(self) -> str:
+        """Range, median, and how many never end, as far as they are known."""
+        parts = []
+        noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
+        of = self.known.of(noun) or "of the magnitudes" * self.of_magnitude
+        what = f"{of} " if of else ""
+        if isfinite(self.low.value) and isfinite(self.high.value):
+            ends = self.unit.between(self.low.value, self.high.value, " and ")
+            parts.append(f"90 % {what}lie between {ends}")
+        elif isfinite(self.low.value) and self.high.value == inf:
+            parts.append(f"5 % {what}{self.ends} within {self.unit.text(self.low.value)}")
+            if "value" in self.high.beyond:
+                parts.append("more than 5 % exceed the horizon")
+        if isfinite(self.median.value):
+            parts.append(f"median {self.unit.text(self.median.value)}")
+        parts.append(self._never)
+        if self.known.undefined > 0:
+            parts.append(f"{percent(self.known.undefined)} of the rows have none")
+        return sentence("; ".join(filter(None, parts))) if any(parts) else ""
+
+    @property
+    def _never(self) -> str:
+        """How many never end; "" where that is not known, or it is no life."""
+        if self.never.value == 0 and self.never.has_interval:
+            most = rounded(100 * self.never.high, inf)
+            verb = self.ends + "s"
+            return f"every row {verb} (at most {most} % never {self.ends})"
+        return f"{share_text(self.never)} never {self.ends}" if self.never.value > 0 else ""

@@ -1,0 +1,40 @@
+"""Whether the rows are enough for all that a study asks, in sentences."""
+
+from math import isfinite
+
+from uq.assess.answer.answer import without_advice
+from uq.assess.answer.quantities import quantities
+from uq.assess.answer.sufficiency import enough_of, settled
+from uq.assess.answer.wording import sentence
+from uq.assess.findings import Findings
+
+
+def verdict(findings: Findings, output: str | None = None) -> list[str]:
+    """Return whether the rows are enough, in sentences, the least settled first.
+
+    Parameters
+    ----------
+    findings : Findings
+    output : str, optional
+        Only for this output, or this element of one.
+    """
+    ds = findings.ds
+    if output is None:
+        answer = without_advice(findings)
+        asked, found = answer.quantities, answer.enough
+    else:
+        asked = tuple(one for one in quantities(findings) if output in (one.name, one.output))
+        found = enough_of(findings, asked)
+    if not ds.sizes["sample"]:
+        return []
+    if found.unknown:
+        return [f"Whether the rows are enough is not known: {found.unknown}."]
+    if not found.every:
+        return ["Enough rows: what the study asks is settled."] if asked else []
+    lines = [
+        f"Not enough rows: {settled(one, ds)}"
+        if isfinite(one.factor)
+        else f"{sentence(one.what)} More rows would not help."
+        for one in found.every
+    ]
+    return lines if found.question else ["Enough rows for what the study is about.", *lines]

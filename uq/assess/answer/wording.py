@@ -1,0 +1,158 @@
+"""Inputs and elements by their names, and numbers in the units that a person would use."""
+
+import re
+from collections.abc import Sequence
+from math import ceil, floor, isfinite, log10
+from typing import NamedTuple
+
+import xarray as xr
+
+from uq.result.element import Element
+from uq.result.variables import input_unit
+from uq.stats.estimate import Estimate
+from uq.text.numbers import capitalized, digits, percent, percent_interval
+from uq.text.symbols import readable
+from uq.text.units import beside, powers, unit_of
+
+_TWIN = re.compile(r"(.+)_(\d+)")
+
+
+class Unit(NamedTuple):
+    """A unit in which numbers are shown.
+
+    Attributes
+    ----------
+    name : str
+        "" for a pure number.
+    per : float
+        What numbers are divided by.
+    resolution : float
+        The smallest difference that digits must show, before the division; 0 for three digits.
+    """
+
+    name: str = ""
+    per: float = 1.0
+    resolution: float = 0.0
+
+    def number(self, value: float, towards: float = 0.0) -> str:
+        """Return a number in this unit to its digits; `towards` -inf or inf rounds that way."""
+        return rounded(value / self.per, towards, self.resolution / self.per)
+
+    def text(self, value: float, towards: float = 0.0) -> str:
+        """Return a number with its unit."""
+        if not isfinite(value):
+            return "never" if value > 0 else "-"
+        return beside(self.number(value, towards), self.name)
+
+    def between(self, low: float, high: float, joined: str = " to ") -> str:
+        """Return two numbers with their unit once."""
+        if not (isfinite(low) and isfinite(high)):
+            return f"{self.text(low)}{joined}{self.text(high)}"
+        return beside(f"{self.number(low)}{joined}{self.number(high)}", self.name)
+
+    def bare_between(self, low: float, high: float) -> str:
+        """Return the ends of an interval beside a number that has the unit."""
+        return f"{self.number(low)} to {self.number(high)}"
+
+
+def rounded(value: float, towards: float = 0.0, resolution: float = 0.0) -> str:
+    """Return a number to three digits, or its resolution; `towards` -inf or inf rounds that way."""
+    if not 1e-300 < abs(value) < 1e300:  # a digit of others may be 0 or infinite
+        return f"{value or 0.0:.3g}"  # no minus before a zero
+    count = digits(value, resolution, 3)
+    digit = 10.0 ** (floor(log10(abs(value))) - count + 1)
+    places = value / digit
+    if towards and abs(places - round(places)) > 1e-9:
+        places = ceil(places) if towards > 0 else floor(places)
+    shown = f"{places * digit:.{count}g}"
+    return f"{float(shown):.0f}" if 1e3 <= abs(float(shown)) < 1e4 else shown
+
+
+def unit_for(units: str, typical: float) -> Unit:
+    """Return the unit for numbers of a typical size.
+
+    Parameters
+    ----------
+    units : str
+        CF unit string.
+    typical : float
+        NaN if unknown.
+    """
+    return _printed(*unit_of(units, typical))
+
+
+def unit_of_input(ds: xr.Dataset, name: str) -> Unit:
+    """Return the unit for numbers of an input of a result."""
+    return _printed(*input_unit(ds, name))
+
+
+def _printed(name: str, size: float) -> Unit:
+    return Unit() if name == "1" else Unit(powers(name), size)
+
+
+def called(name: str) -> str:
+    """Return an input or output in words: ``contact stiffness``."""
+    return name.replace("_", " ")
+
+
+def called_together(names: Sequence[str]) -> str:
+    """Return several inputs in words: ``both bearing constants``, ``stiffness x and stiffness y``.
+
+    Parameters
+    ----------
+    names : sequence of str
+    """
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(twin_of(name), []).append(name)
+    words = [_twins_called(stem, own) for stem, own in groups.items()]
+    return joined(words)
+
+
+def joined(words: Sequence[str], last: str = "and") -> str:
+    """Return words as a list: ``a, b and c``; "" without any."""
+    return f" {last} ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
+def _twins_called(stem: str, names: Sequence[str]) -> str:
+    if len(names) == 1:
+        return called(names[0])
+    count = "both" if len(names) == 2 else f"all {len(names)}"
+    return f"{count} {_plural(called(stem))}"
+
+
+def twin_of(name: str) -> str:
+    """Return what the name of an input is without its number: ``unbalance`` of ``unbalance_2``."""
+    found = _TWIN.fullmatch(name)
+    return found[1] if found else name
+
+
+def _plural(words: str) -> str:
+    if words.endswith("y") and words[-2:-1] not in "aeiou":
+        return f"{words[:-1]}ies"
+    return words + ("es" if words.endswith(("s", "x")) else "s")
+
+
+def element_called(ds: xr.Dataset, element: Element) -> str:
+    """Return an element in words: ``time to wear depth, left, 250 µm``."""
+    words = [readable(element.meaning)]
+    for dim, value in element.place.items():
+        attrs = ds[element.output][dim].attrs if dim in ds[element.output].coords else {}
+        if isinstance(value, str):
+            words.append(value)
+        elif attrs.get("units") in ("m", "s", "Hz"):
+            words.append(unit_for(attrs["units"], float(value)).text(float(value)))
+        else:
+            words.append(f"{dim} {value:g}")
+    return ", ".join(words)
+
+
+def sentence(text: str) -> str:
+    """Return text as a sentence."""
+    return f"{capitalized(text)}."
+
+
+def share_text(one: Estimate) -> str:
+    """Return a share in per cent, with its interval."""
+    interval = f" ({percent_interval(one.low, one.high)})" if one.has_interval else ""
+    return percent(one.value) + interval

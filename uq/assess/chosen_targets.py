@@ -1,0 +1,159 @@
+"""Which targets a user means: those that suit a method, or those of some names."""
+
+import re
+from collections.abc import Iterator, Sequence
+
+import xarray as xr
+
+from uq.assess import targets
+from uq.assess.joint_targets import wholes
+from uq.assess.targets import (
+    Target,
+    canonical,
+    category_targets,
+    lightened,
+    split_name,
+    threshold_text,
+    with_tail_note,
+)
+from uq.errors import InputError, choices, nearest
+from uq.indices.method import Method
+from uq.indices.methods import METHODS
+from uq.result.element import Element
+from uq.result.elements import analysis_of, elements_of, named_elements, shown_outputs
+from uq.result.result_file import failed
+from uq.result.variables import is_category
+from uq.text.element_names import is_whole, whole_name
+from uq.text.quantities import read_threshold
+
+
+def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> Iterator[Target]:
+    """Yield the targets that a user means.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    method : str
+    output : str or sequence of str, optional
+        Names; by default all that suit the method, of the outputs that the study asks for.
+
+    Yields
+    ------
+    Target
+        One at a time, as each holds a number per row. Of several names, unknown ones are skipped.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    asked = METHODS[method]
+    if output is None:
+        found = False
+        for name in shown_outputs(ds, analysis_of(ds)):
+            for target in targets_of(ds, name):
+                if _suits(asked, target):
+                    yield target if asked.scale_free else lightened(target)
+                    found = True
+            if asked.aggregates:
+                yield from wholes(_elements(ds, name))
+        if not found and failed(ds).all():
+            raise InputError("every row failed: there is nothing to explain")
+        if not found and not asked.takes_numbers:
+            raise InputError(
+                f"'{method}' needs an event: a category, or a time of a lifetime in"
+                " [analysis] thresholds; name that of a value with such a threshold t:"
+                " --output 'P(y > t)'"
+            )
+        if not found:
+            raise InputError("none of the outputs is a number: there is nothing to apportion")
+        return
+    named = [
+        target
+        for name in ([output] if isinstance(output, str) else output)
+        for target in _named(ds, name, asked.aggregates)
+    ]
+    if not named and isinstance(output, str):
+        output = canonical(output)
+        form, inside, threshold = split_name(output)
+        if is_whole(inside) and form == "P":
+            raise InputError(f"'{output}': an event is that of one element; name it instead of [:]")
+        if is_whole(inside) and not asked.aggregates:
+            able = ", ".join(name for name, one in METHODS.items() if one.aggregates)
+            raise InputError(
+                f"'{method}' has no index of all elements together (methods that do: {able})"
+            )
+        if output == inside:
+            raise InputError(f"no row has a {output}: there is nothing to apportion")
+        names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
+        if form == "P" and threshold:
+            events = choices(name for name in names if split_name(name)[0] == "P")
+            raise InputError(
+                f"no such event '{output}' (allowed: {events}); [analysis] thresholds make others"
+            )
+        raise InputError(f"no such output '{output}'{nearest(output, names)}")
+    yield from named if asked.scale_free else map(with_tail_note, named)
+
+
+def _suits(method: Method, target: Target) -> bool:
+    if target.event:
+        return method.takes_events and not (method.conditional and target.element is None)
+    return method.takes_numbers
+
+
+def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
+    """Return the targets that a user means by a name; none for an unknown name."""
+    written, name = name, canonical(name)
+    form, inside, _ = split_name(name)
+    if (output := inside.partition("[")[0]) in ds and (text := threshold_text(written)):
+        read_threshold("threshold", text, output, ds[output].attrs["units"])  # or refuse it
+    if is_whole(inside):
+        every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
+        return [target for target in every if target.name == name] or every[: not form]
+    found = list(targets_of(ds, output_in(inside), every=True))
+    name = _as_stored(name, output_in(inside), found)
+    if form:
+        return [target for target in found if target.name == name]
+    own = [target for target in found if split_name(target.name)[0] == ""]
+    has_whole = aggregated and name in ds and len(_elements(ds, name)) > 1
+    whole = _named(ds, whole_name(name), aggregated) if has_whole else []
+    return [*(own or targets_of(ds, name)), *whole]
+
+
+def _as_stored(name: str, element: str, found: Sequence[Target]) -> str:
+    """Return a name with that of its element, of which some targets are, as the result has it."""
+    one = found[0].element if found else None
+    return name if one is None or "[" not in element else name.replace(element, one.name)
+
+
+def output_in(inside: str) -> str:
+    """Return the output or element that the name of a target is about, without any label."""
+    return re.sub(r"^([^\[=]*(?:\[.*?\])?)=.*$", r"\1", inside)
+
+
+def _elements(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements that belong together: none of a category."""
+    return [] if is_category(ds, name.partition("[")[0]) else named_elements(ds, name)
+
+
+def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
+    """Return the targets of an output or of one element of it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+    every : bool, optional
+        Whether also those that must be asked for by name.
+
+    Returns
+    -------
+    iterator of Target
+        Of a category, or an element of one, whether a row is in each that occurs.
+    """
+    if is_category(ds, name.partition("[")[0]):
+        return category_targets(ds, name)
+    known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
+    return targets.targets(known, analysis_of(ds).thresholds, every)

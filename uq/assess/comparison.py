@@ -1,0 +1,171 @@
+"""Two studies of one model: what was changed, and how their outputs differ."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import pandas as pd
+import xarray as xr
+
+from uq.assess.differences import Compared, ComparedOutput, compared_output, compared_shares
+from uq.assess.input_changes import Change, OnlyChange, changes, only_change
+from uq.assess.pairing import Pair
+from uq.assess.scaling import population
+from uq.assess.summary import Summary, summarise
+from uq.errors import InputError
+from uq.result.elements import Element, analysis_of, output_names, shown_outputs, why_no_statistics
+from uq.study.file import AnalysisTable
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of two results: its title, and a summary of what either study asks for."""
+
+    title: str
+    summary: Summary
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """The comparison of two results.
+
+    Attributes
+    ----------
+    first, second : Side
+    changed : list of Change
+        Differences between the studies.
+    only : OnlyChange, optional
+        The input that differs, if nothing else does.
+    pairing : str
+        ``rows`` or ``replicates`` where these are paired by number, ``strangers`` where the samples
+        are independent, else ``unknown``.
+    shares : dict of str to dict
+        Category, such as the regime -> label -> `Compared`.
+    outputs : dict of str to ComparedOutput
+    notes : list of str
+    """
+
+    first: Side
+    second: Side
+    changed: list[Change]
+    only: OnlyChange | None
+    pairing: str
+    shares: Mapping[str, Mapping[str, Compared]]
+    outputs: Mapping[str, ComparedOutput]
+    notes: list[str]
+
+
+def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
+    """Compare the outputs of two studies of one model.
+
+    Parameters
+    ----------
+    first, second : xarray.Dataset
+        Results.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index: ``output`` (its element, or a category such as ``regime``), ``estimate`` (``mean``,
+        ``sd``, ``quantile 0.5``, ``B10``, ``P(>t)``, ``P(<t)``, or a label). Columns:
+        ``first`` and ``second``, the estimates; ``difference``, the second less the first, with
+        its 95 % interval ``low``, ``high``. NaN where there is none.
+
+    Raises
+    ------
+    InputError
+        When the two are not of one model, or have nothing to compare.
+    """
+    found = comparison(first, second)
+    pairs = {(name, label): one for name, of in found.shares.items() for label, one in of.items()}
+    for name, output in found.outputs.items():
+        pairs |= {(name, one.first.label): one for one in output.statistics}
+    lines = [
+        [*(side.estimate.finite.value for side in (one.first, one.second)), *one.difference.numbers]
+        for one in pairs.values()
+    ]
+    columns = ["first", "second", "difference", "low", "high"]
+    index = pd.MultiIndex.from_tuples(list(pairs), names=["output", "estimate"])
+    return pd.DataFrame(lines, index, columns, dtype=float)
+
+
+def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
+    """Return the findings of `compare`, and what was changed."""
+    _refuse(first, second)
+    results = (first, second)
+    analyses = [analysis_of(ds) for ds in results]
+    outputs = _outputs(results, analyses)
+    asked = _asked(analyses, outputs)
+    found = [summarise(ds, asked) for ds in results]
+    pair = Pair(first, second)
+    elements = [
+        {element.name: element for element in population(rows, outputs)} for rows in pair.rows
+    ]
+    changed = changes(*results)
+    return Comparison(
+        first=Side(str(first.attrs["title"]), found[0]),
+        second=Side(str(second.attrs["title"]), found[1]),
+        changed=changed,
+        only=only_change(first, second, changed),
+        pairing=pair.kinship.name.lower().partition("_")[0],
+        shares=compared_shares(pair, found),
+        outputs={
+            name: compared_output(pair, [one[name] for one in elements], found)
+            for name in elements[0]
+            if name in elements[1]
+        },
+        notes=list(_notes(pair, found, elements)),
+    )
+
+
+def _refuse(first: xr.Dataset, second: xr.Dataset) -> None:
+    names = [ds.attrs["model"] for ds in (first, second)]
+    if names[0] != names[1]:
+        raise InputError(
+            f"the first is of model '{names[0]}', the second of '{names[1]}': only studies of the"
+            " same model can be compared"
+        )
+    for which, ds in zip(("first", "second"), (first, second), strict=True):
+        if why := why_no_statistics(ds):
+            raise InputError(
+                f"the rows of the {which}, a '{ds.attrs['design']}' design, {why}: compare studies"
+                " with another design; 'uq sensitivity' shows its indices"
+            )
+
+
+def _outputs(results: tuple[xr.Dataset, ...], analyses: list[AnalysisTable]) -> list[str]:
+    wanted = dict.fromkeys(
+        name for ds, one in zip(results, analyses, strict=True) for name in shown_outputs(ds, one)
+    )
+    outputs = [name for name in wanted if all(name in output_names(ds) for ds in results)]
+    if not outputs:
+        raise InputError(
+            "the results have no output in common; name one in [analysis] outputs of both studies"
+        )
+    return outputs
+
+
+def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
+    """Return what either study asks for."""
+
+    def both(*parts: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(sorted({number for part in parts for number in part}))
+
+    thresholds = {
+        name: both(*(one.thresholds.get(name, ()) for one in analyses))
+        for name in outputs
+        if any(name in one.thresholds for one in analyses)
+    }
+    quantiles = both(*(one.quantiles for one in analyses))
+    asked = {"outputs": tuple(outputs), "quantiles": quantiles, "thresholds": thresholds}
+    return AnalysisTable().model_copy(update=asked)
+
+
+def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]]) -> Iterator[str]:
+    yield pair.kinship.value
+    for which, one in zip("AB", found, strict=True):
+        yield from (f"{which}: {note}" for note in one.notes)
+    if any(one.most_failed for one in found):
+        yield "Differences are between the rows that did not fail."
+    for which, mine, other in zip("AB", elements, elements[::-1], strict=True):
+        if alone := [name for name in mine if name not in other]:
+            yield f"Only {which} has {', '.join(alone)}."

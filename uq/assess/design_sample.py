@@ -1,0 +1,154 @@
+"""The sample of a sensitivity method: the place of each row of its design in a result."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.assess.independent_inputs import correlated_inputs, independent_inputs
+from uq.contract import Floats
+from uq.errors import InputError
+from uq.indices.sample import Sample
+from uq.result.elements import flags, has_independent_samples, study_file_of
+from uq.sampling.conditional_draws import conditional_paths
+from uq.sampling.dependence import normal_correlations
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import PLAIN
+from uq.study.file import Tied
+from uq.study.input_checks import laws_of
+
+
+def with_scores(sample: Sample, ds: xr.Dataset, unit: Floats) -> Sample:
+    """Return a sample of paths with the normal scores of its inputs.
+
+    Parameters
+    ----------
+    sample : Sample
+        Without scores.
+    ds : xarray.Dataset
+        The result that it is of.
+    unit : ndarray, shape (R, N, k, d)
+        The points of its design, independent.
+
+    Returns
+    -------
+    Sample
+    """
+    from scipy.special import ndtri
+
+    names, laws = list(sample.inputs), laws_of(ds.attrs["study"])
+    unit, matrix = unit.copy(), np.eye(len(names))
+    stated = study_file_of(ds).dependence
+    discrete = {name for name, law in laws.items() if law.discrete}
+    if stated is not None:
+        places = [names.index(name) for name in stated.parameters]
+        if discrete & set(stated.parameters):  # scores behind their values are not known
+            discrete |= set(stated.parameters)
+        else:
+            paths = unit[..., places].reshape(-1, unit.shape[2], len(places))
+            none = [None] * len(places)
+            paths = conditional_paths(paths, stated.rank_correlation, none)
+            unit[..., places] = paths.reshape(*unit.shape[:-1], len(places))
+            matrix[np.ix_(places, places)] = normal_correlations(stated.rank_correlation)
+    scores = ndtri(unit)
+    scores[..., [names.index(name) for name in discrete]] = np.nan
+    return replace(sample, scores=scores, matrix=matrix)
+
+
+def sample_of(ds: xr.Dataset) -> Sample:
+    """Find the groups of a design, in which no row has a value yet.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, its rows in any order.
+
+    Returns
+    -------
+    Sample
+
+    Raises
+    ------
+    InputError
+        When a group lacks rows, or rows are not those of the design.
+    """
+    layout = DESIGNS[ds.attrs["design"]].layout
+    nothing = np.full(ds.sizes["sample"], np.nan)
+    sample = Sample.plain(nothing, independent_inputs(ds), random=bool(ds.attrs.get("random")))
+    if layout is PLAIN:
+        independent = has_independent_samples(ds)
+        return replace(sample, replicate=None if independent else ds["replicate"].values)
+    groups, blocks = _grouped_rows(ds)
+    sample = replace(
+        sample,
+        groups=groups.transpose(0, 2, 1) if layout.by_block else groups,
+        blocks=blocks,
+        correlated=correlated_inputs(ds),
+    )
+    if not layout.one_at_a_time:
+        return sample
+    unit = _unit(ds, groups, len(sample.inputs))
+    sample = replace(sample, direction=_directions(ds, groups, unit))
+    return with_scores(sample, ds, unit) if layout.given_the_rest else sample
+
+
+def _grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+    """Return the row of each replicate, group and block, shape (R, N, k), and the blocks' names."""
+    labels = flags(ds["block"])
+    keys = np.stack([ds[name].values for name in ("replicate", "group", "block")])
+    order = np.lexsort(keys[::-1])
+    if order.size % len(labels) == 0:
+        groups = keys[:, order].reshape(3, -1, len(labels))
+        whole = (np.ptp(groups[:2], axis=2) == 0).all()
+        if whole and (groups[2] == [code for code, _ in labels]).all():
+            order = order.reshape(ds.attrs["replicates"], -1, len(labels))
+            return order, tuple(label for _, label in labels)
+    raise InputError("rows of the design are missing: its indices need whole groups")
+
+
+def _directions(ds: xr.Dataset, order: NDArray[np.intp], unit: Floats) -> Floats:
+    """Return the steps of a design in which one input changes at a time: `Sample.direction`.
+
+    Raises
+    ------
+    InputError
+        When the rows are not those of the design.
+    """
+    entries = study_file_of(ds).uncertain
+    scales = {name: e.times for name, e in entries.items() if not isinstance(e, Tied)}
+    parameters = list(scales)
+    direction = np.sign(np.diff(unit, axis=2))
+    changing = direction != 0
+    sound = bool((changing.sum(axis=-1) == 1).all())
+    moving = changing.copy()
+    dependent = [parameters.index(name) for name in correlated_inputs(ds)]
+    # Those that have changed are drawn again when another one does.
+    among = changing[..., dependent]
+    moving[..., dependent] = among.any(axis=-1, keepdims=True) & (among.cumsum(axis=2) > 0)
+    for own, (name, times) in enumerate(scales.items()):
+        values = ds[name].values[order]
+        still = ~(moving[..., own] | moving[..., parameters.index(times or name)])
+        sound &= bool((values[..., 1:] == values[..., :-1])[still].all())
+    if not sound:
+        raise InputError(
+            f"the rows differ from those of a '{ds.attrs['design']}' design as it is drawn now, so"
+            " the effect of an input cannot be determined: run the study again"
+        )
+    return np.asarray(direction)
+
+
+def _unit(ds: xr.Dataset, order: NDArray[np.intp], d: int) -> Floats:
+    """Draw the points of the unit cube that the rows come from, shape (*order.shape, d)."""
+    first = order[..., 0]
+    group, replicate = ds["group"].values[first], ds["replicate"].values[first]
+    start, stop = int(group.min()), int(group.max()) + 1
+    sizes: dict[str, Any] = {
+        name: int(ds.attrs[name]) for name in ("seed", "replicates", "samples")
+    }
+    second_order = bool(ds.attrs["second_order"])
+    points = DESIGNS[ds.attrs["design"]].unit_rows(
+        d=d, second_order=second_order, start=start, stop=stop, **sizes
+    )
+    return points[group - start, replicate]

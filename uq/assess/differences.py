@@ -1,0 +1,125 @@
+"""Differences between the statistics of two results."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from math import isnan
+
+from uq.assess import estimators
+from uq.assess.estimators import Sample
+from uq.assess.pairing import Pair
+from uq.assess.statistic import Reader, Statistic
+from uq.assess.summary import REGIME, Shares, Summary
+from uq.contract import Output
+from uq.result.elements import Element
+from uq.stats import two_samples
+from uq.stats.estimate import NOTHING, Estimate
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A statistic of two results.
+
+    Attributes
+    ----------
+    first, second : Statistic
+    difference : Estimate
+        The second less the first.
+    identical : bool
+        Whether the rows are paired and both rows of each pair agree: then there is no interval.
+    no_row_changes_sides : bool
+        Whether the rows are paired and differ, but none is a hit in one result alone.
+    ratio : Estimate, optional
+        The second over the first, for a scale.
+    """
+
+    first: Statistic
+    second: Statistic
+    difference: Estimate
+    identical: bool = False
+    no_row_changes_sides: bool = False
+    ratio: Estimate | None = None
+
+
+@dataclass(frozen=True)
+class ComparedOutput:
+    """An element of an output: name in the table of statistics -> what is compared of it."""
+
+    declared: Output
+    parts: Mapping[str, tuple[Compared, ...]]
+
+    @property
+    def units(self) -> str:
+        """CF unit string."""
+        return self.declared.unit
+
+    @property
+    def statistics(self) -> tuple[Compared, ...]:
+        """All of them in order."""
+        return tuple(chain.from_iterable(self.parts.values()))
+
+
+def compared_shares(pair: Pair, found: list[Summary]) -> dict[str, dict[str, Compared]]:
+    """Return category -> label -> what is compared: all regimes, else what occurs."""
+    names = [name for name in found[0].shares if name in found[1].shares]
+    return {name: dict(_shares(pair, [one.shares[name] for one in found], name)) for name in names}
+
+
+def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, Compared]]:
+    members = [estimators.in_categories(rows, name) for rows in pair.rows]
+    for label in shares[0]:
+        both = [one[label] for one in shares if label in one]
+        occurs = name == REGIME or any(one.facts["count"] for one in both)
+        if len(both) > 1 and occurs:
+            samples = [one[label] for one in members]
+            yield label, _compared(pair, both, samples, pair.have_equal_outputs)
+
+
+def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:
+    """Compare all statistics of the same element of two results."""
+    described = [one.outputs[elements[0].name] for one in found]
+    parts = {
+        name: tuple(
+            _of_elements(pair, elements, [one, other])
+            for one in statistics
+            if one.is_read_by(Reader.COMPARED)
+            and (other := described[1].find(*one.key)) is not None
+        )
+        for name, statistics in described[0].parts.items()
+    }
+    return ComparedOutput(elements[0].declared, parts)
+
+
+def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> Compared:
+    """Compare a statistic of the same element of two results."""
+    estimator = both[0].estimator
+    samples = [] if estimator is None else [estimator.sample(element) for element in elements]
+    known = [one for one in samples if one is not None]
+    are_equal = pair.are_equal([estimators.whole(element) for element in elements])
+    return _compared(pair, [one.best for one in both], known, are_equal)
+
+
+def _compared(
+    pair: Pair, both: list[Statistic], samples: list[Sample], are_equal: bool
+) -> Compared:
+    """Compare two statistics of paired rows that are equal in both results, or of others."""
+    estimator = both[0].estimator
+    is_scale = estimator is not None and estimator.is_scale
+    known = [one.estimate.finite for one in both]
+    if any(isnan(one.value) for one in known):
+        return Compared(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
+    if are_equal:
+        ratio = Estimate(1.0) if is_scale else None
+        return Compared(both[0], both[1], Estimate(0.0), identical=True, ratio=ratio)
+    if estimator is not None and estimator.counts_hits and pair.are_equal(samples):
+        most = pair.most_that_change_sides(samples[0])
+        apart = Estimate(0.0, -most, most)
+        return Compared(both[0], both[1], apart, no_row_changes_sides=True)
+    if estimator is None or any(one.estimate.assumes for one in both):
+        apart = two_samples.difference(known[0], known[1], pair.unpaired)
+    else:
+        apart = pair.difference(estimator, samples, known)
+    times = pair.ratio(samples, known) if is_scale else None
+    if any(one.reason for one in known):  # without an interval its difference has none
+        apart, times = Estimate(apart.value), times and Estimate(times.value)
+    return Compared(both[0], both[1], apart.finite, ratio=times and times.finite)

@@ -1,0 +1,192 @@
+"""What distinguishes the rows that end first: where their inputs lie within all rows."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.assess.independent_inputs import independent_inputs
+from uq.contract import Floats
+from uq.result.elements import Element, flags
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import (
+    CONFIDENCE,
+    Replicates,
+    mean_interval,
+    replicates_of_some,
+    share_interval,
+)
+from uq.stats.jumps import EvenReplicates
+
+SHARE = 0.05
+"""The part of the rows that counts as the earliest."""
+
+FEWEST = 10
+"""Of fewer rows nothing is said."""
+
+Places = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Apart:
+    """An input whose values differ between the earliest rows and all.
+
+    Attributes
+    ----------
+    name : str
+    direction : int
+        1 if the earliest rows have higher values, -1 if lower; 0 where only their distance from
+        the middle differs.
+    outwards : int
+        With direction 0: 1 if they lie farther from the median of all rows, -1 if nearer.
+    rank : Estimate
+        Mean rank of the earliest rows within all, from 0 to 1; that of all is 0.5. With direction
+        0, of the distances of the ranks from the middle.
+    median, others : float
+        Of the values, in the earliest rows and in the others.
+    """
+
+    name: str
+    direction: int
+    outwards: int
+    rank: Estimate
+    median: float
+    others: float
+
+
+@dataclass(frozen=True)
+class RegimeOfFirst:
+    """A regime of the earliest rows.
+
+    Attributes
+    ----------
+    label : str
+    share : Estimate
+        Its share of the earliest rows.
+    overall : float
+        Its share of all rows.
+    is_more_frequent : bool
+        Whether the earliest rows are in it more often than all, with 95 % confidence for all
+        regimes together.
+    """
+
+    label: str
+    share: Estimate
+    overall: float
+    is_more_frequent: bool
+
+
+def ranks(column: Floats) -> Floats:
+    """Return the rank of each value, from 0 to 1; equal values share theirs."""
+    # Not scipy.stats.rankdata: a summary starts without loading scipy.stats.
+    _, place, counts = np.unique(column, return_inverse=True, return_counts=True)
+    below = np.cumsum(counts) - counts / 2
+    return np.asarray(below[place] / len(column))
+
+
+def earliest_rows(element: Element) -> Places:
+    """Return the places of the rows that end first: `SHARE` of those with a value, at most.
+
+    Fewer where fewer end, or where a row was censored before: it may have ended earlier.
+    """
+    known = np.flatnonzero(element.present)
+    ended = known[~element.censored[known] & np.isfinite(element.values[known])]
+    first_censored = element.values[element.censored & element.present].min(initial=np.inf)
+    ended = ended[element.values[ended] <= first_censored]
+    order = ended[np.argsort(element.values[ended], kind="stable")]
+    return order[: max(int(np.ceil(SHARE * len(known))), min(FEWEST, len(known) // 2))]
+
+
+def inputs_apart(
+    ds: xr.Dataset,
+    first: Places,
+    ranked: Mapping[str, Floats],
+    replicate: Replicates = None,
+) -> list[Apart] | None:
+    """Return the inputs whose values differ between some rows and all, the most different first.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Independent rows of a result.
+    first : ndarray of int, shape (k,)
+        Places of the rows.
+    ranked : dict of str to ndarray, shape (n,)
+        `ranks` of each input in all rows.
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    list of Apart or None
+        Those whose mean rank [1]_, or mean distance of the rank from the middle, differs with
+        95 % confidence for all inputs together (Bonferroni). None where there is no interval.
+
+    References
+    ----------
+    .. [1] H. B. Mann, D. R. Whitney, "On a test of whether one of two random variables is
+       stochastically larger than the other", Ann. Math. Stat. 18, 50-60 (1947). That rows with a
+       behaviour of interest are compared with the others, input by input: R. C. Spear, G. M.
+       Hornberger, "Eutrophication in Peel Inlet - II", Water Res. 14, 43-49 (1980).
+    """
+    mask = np.zeros(ds.sizes["sample"], dtype=bool)
+    mask[first] = True
+    part = replicates_of_some(replicate, mask)
+    if isinstance(part, EvenReplicates):  # a rank follows its input without a jump
+        part = part.view(np.ndarray)
+    sure = 1 - (1 - CONFIDENCE) / (2 * max(len(ranked), 1))
+    columns = independent_inputs(ds)
+    found, has_intervals = [], False
+    for name, rank in ranked.items():
+        away = np.abs(rank - 0.5)
+        # The range of ranks is 1, that of their distances 1/2.
+        for values, middle, size in ((rank, 0.5, 1.0), (away, float(away.mean()), 0.5)):
+            low, high = mean_interval(values[mask], part, sure)
+            has_intervals |= bool(np.isfinite(low))
+            if low > middle or high < middle:
+                mean = float(values[mask].mean())
+                ends = mean_interval(values[mask], part)
+                sign = 1 if mean > middle else -1
+                own = columns[name]
+                one = Apart(
+                    name,
+                    sign if values is rank else 0,
+                    0 if values is rank else sign,
+                    Estimate(mean, float(ends[0]), float(ends[1])),
+                    float(np.median(own[mask])),
+                    float(np.median(own[~mask])),
+                )
+                found.append((abs(mean - middle) / size, one))
+                break
+    if not has_intervals:
+        return None
+    return [one for _, one in sorted(found, key=lambda pair: -pair[0])]
+
+
+def regimes_of_first(
+    ds: xr.Dataset, first: Places, replicate: Replicates = None
+) -> list[RegimeOfFirst]:
+    """Return the regimes that some rows are in more often than all, the most frequent first.
+
+    If there are none, that in which most of them are; nothing where all rows are in one regime.
+    """
+    found = sorted(_regimes(ds, first, replicate), key=lambda one: -one.share.value)
+    more = [one for one in found if one.is_more_frequent]
+    return more or [one for one in found[:1] if one.overall < 1]
+
+
+def _regimes(ds: xr.Dataset, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
+    if "regime" not in ds:
+        return
+    mask = np.zeros(ds.sizes["sample"], dtype=bool)
+    mask[first] = True
+    part = replicates_of_some(replicate, mask)
+    known = [(code, label) for code, label in flags(ds["regime"]) if code >= 0]
+    sure = 1 - (1 - CONFIDENCE) / max(len(known), 1)
+    for code, label in known:
+        inside = ds["regime"].values == code
+        overall = float(inside.mean())
+        low, _ = share_interval(inside[mask], part, sure)
+        share = Estimate(float(inside[mask].mean()), *share_interval(inside[mask], part))
+        yield RegimeOfFirst(label, share, overall, bool(low > overall))

@@ -1,0 +1,168 @@
+"""Average effects of inputs: the slopes of a multiple linear regression, with robust intervals."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.indices.slices import has_many_equal
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import (
+    CONFIDENCE,
+    Ends,
+    Replicates,
+    by_replicate,
+    interval_of_mean,
+    is_constant,
+    sized,
+)
+
+ROWS_PER_INPUT = 10
+"""With fewer rows for each input there are no effects."""
+
+PIECES = 5
+"""Parts of equal size of an input in which the effect must not turn."""
+
+_SKEWED = 1.0
+"""Skewness of a logarithm that is no better than the input itself; that of uniform ones is -2."""
+
+_SURE = 0.99
+"""Confidence with which a turn must be seen."""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """The average effect of one input.
+
+    Attributes
+    ----------
+    slope : Estimate
+        Of the output, per unit of the input or of its natural logarithm.
+    logarithmic : bool
+        Whether the slope refers to the logarithm of the input.
+    sd : float
+        Standard deviation of the input or of its logarithm, in these rows.
+    turns : bool
+        Whether the effect has one sign in one part of the input and another elsewhere.
+    of_values : bool
+        Whether many rows have equal values of the input, so that it has no small changes.
+    """
+
+    slope: Estimate
+    logarithmic: bool
+    sd: float
+    turns: bool = False
+    of_values: bool = False
+
+    @property
+    def direction(self) -> int:
+        """1 if the output rises with the input, -1 if it falls, 0 where neither is clear."""
+        if self.turns or not (self.slope.low > 0 or self.slope.high < 0):
+            return 0
+        return 1 if self.slope.value > 0 else -1
+
+
+def effects(
+    values: Floats,
+    inputs: Mapping[str, Floats],
+    replicate: Replicates = None,
+    names: Collection[str] | None = None,
+) -> dict[str, Effect]:
+    """Estimate average effects of inputs on an output.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where a row has none.
+    inputs : dict of str to ndarray, shape (n,)
+    replicate : ndarray of int, shape (n,), optional
+        Of each row; None where rows are independent.
+    names : collection of str, optional
+        The inputs whose effects are returned; by default all.
+
+    Returns
+    -------
+    dict of str to Effect
+        The slopes of the linear function of all inputs that is closest to the output: the average
+        of the derivative for normal inputs. Positive inputs enter by their logarithms, unless these
+        are very skewed. Intervals are by the influence of each row, the residual divided by one
+        less its leverage (HC3 [1]_), which allows for a scatter that varies and for a function that
+        is not linear; of replicates, or samples of several rows, by the scatter of their influence.
+        Empty with fewer than `ROWS_PER_INPUT` rows for each input.
+
+    References
+    ----------
+    .. [1] J. G. MacKinnon, H. White, "Some heteroskedasticity-consistent covariance matrix
+       estimators with improved finite sample properties", J. Econometrics 29, 305-325 (1985).
+    """
+    kept = np.isfinite(values)
+    part = None if replicate is None else replicate[kept]
+    columns, logarithmic = {}, {}
+    for name, column in inputs.items():
+        own = column[kept]
+        if len(own) and np.isfinite(own).all() and not is_constant(own):
+            logarithmic[name] = _suits_logarithm(own)
+            columns[name] = np.log(own) if logarithmic[name] else own
+    y, unit = sized(values[kept])  # squares neither overflow nor vanish
+    if not columns or len(y) < ROWS_PER_INPUT * (len(columns) + 1) or is_constant(y):
+        return {}
+    sizes = {name: float(column.std()) for name, column in columns.items()}
+    x = np.column_stack([(c - c.mean()) / sizes[name] for name, c in columns.items()])
+    with_mean = np.column_stack([np.ones(len(y)), x])
+    orthogonal, triangle = np.linalg.qr(with_mean)
+    if np.abs(np.diag(triangle)).min() < 1e-6 * len(y) ** 0.5:  # one input repeats others
+        return {}
+    inverse = np.linalg.inv(triangle)
+    slopes = inverse @ (orthogonal.T @ y)
+    residual = y - with_mean @ slopes
+    spare = 1 - np.einsum("ij,ij->i", orthogonal, orthogonal)
+    influence = len(y) * (orthogonal * (residual / np.maximum(spare, 1e-9))[:, None]) @ inverse.T
+    found = {}
+    for i, name in enumerate(columns):
+        if names is not None and name not in names:
+            continue
+        slope = float(slopes[i + 1])
+        low, high = _interval(slope, slope + influence[:, i + 1], part)
+        size = sizes[name]
+        value, low, high = (unit * float(number) / size for number in (slope, low, high))
+        of_input = Estimate(value, low, high)
+        turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
+        found[name] = Effect(
+            of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])
+        )
+    return found
+
+
+def _suits_logarithm(column: Floats) -> bool:
+    if column.min() <= 0:
+        return False
+    logarithms = np.log(column)
+    away = (logarithms - logarithms.mean()) / logarithms.std()
+    return bool(abs((away**3).mean()) < _SKEWED)
+
+
+def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
+    """Whether what an input explains steps against its slope from one fifth to the next."""
+    edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
+    piece = np.searchsorted(edges, x, side="right")
+    counts = np.bincount(piece, minlength=PIECES)
+    if counts.min() < ROWS_PER_INPUT:
+        return False
+    means = np.bincount(piece, partial, PIECES) / counts
+    around = (partial - means[piece]) * len(x) / counts[piece]
+    for first in range(PIECES - 1):
+        step = means[first + 1] - means[first]
+        side = np.where(piece == first + 1, 1.0, np.where(piece == first, -1.0, 0.0))
+        found = _interval(step, step + side * around, part, _SURE)
+        if (sign > 0 and found[1] < 0) or (sign < 0 and found[0] > 0):
+            return True
+    return False
+
+
+def _interval(value: float, rows: Floats, part: Replicates, confidence: float = CONFIDENCE) -> Ends:
+    """Return the interval of an estimate from what each row says of it."""
+    estimates = rows if part is None else by_replicate(rows, part)
+    if len(estimates) > 1 and is_constant(estimates):  # no row deviates
+        return value, value
+    return interval_of_mean(value, rows, part, confidence)

@@ -1,0 +1,154 @@
+"""The expected width of the intervals of a study, from a few of its rows.
+
+From the spread of independent rows. Intervals from replicates scatter, and good designs make them
+narrower: for these the width is about the largest to expect. So it is where samples have several
+rows: as if these agreed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.targets import lightened, number_of
+from uq.indices.method import Method
+from uq.indices.methods import METHODS, piloted_by
+from uq.indices.sample import Sample
+from uq.result.elements import (
+    Element,
+    Floats,
+    analysis_of,
+    elements_of,
+    flags,
+    has_independent_samples,
+    independent_rows,
+    shown_outputs,
+)
+from uq.sampling.designs import DESIGNS
+from uq.stats.intervals import upper_probability
+from uq.stats.order_statistics import is_within
+from uq.stats.quantile_functions import normal, student
+from uq.stats.tails import lacks_variance
+
+_ENOUGH_ROWS = 8
+
+
+@dataclass(frozen=True)
+class Widths:
+    """Widths of the 95 % intervals of an element of an output; None where the pilot is too small.
+
+    Attributes
+    ----------
+    units : str
+        Of the output.
+    mean : float or None
+    quantiles : dict of float to float or None
+        Probability -> width.
+    thresholds : dict of float to float or None
+        Threshold -> width of the probability of lying above.
+    indices : dict of str to float or None
+        The widest of each kind (``S1``, ``ST``) that the design feeds and a pilot can forecast.
+    """
+
+    units: str
+    mean: float | None
+    quantiles: Mapping[float, float | None]
+    thresholds: Mapping[float, float | None]
+    indices: Mapping[str, float | None]
+
+
+def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
+    """Return the widths of the 95 % intervals that a whole study will give.
+
+    Parameters
+    ----------
+    pilot : xarray.Dataset
+        Some rows of the study, whole groups of its design.
+
+    Returns
+    -------
+    dict of str to Widths
+        Element of an output -> widths.
+    """
+    analysis = analysis_of(pilot)
+    samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
+    labels = [label for _, label in flags(pilot["block"])]
+    rows = samples * replicates * (2 if "A" in labels else 1)
+    factor = _factor(has_independent_samples(pilot), replicates)
+    keys = [pilot[name].values for name in ("block", "group", "replicate")]
+    groups = np.lexsort(keys).reshape(-1, len(labels))
+    method = piloted_by(DESIGNS[pilot.attrs["design"]])
+    found = {}
+    outputs = shown_outputs(pilot, analysis)
+    for whole, element in zip(
+        elements_of(pilot, outputs), elements_of(independent_rows(pilot), outputs), strict=True
+    ):
+        own = factor if len(element.at_least) >= _ENOUGH_ROWS else None
+        limits = analysis.thresholds.get(element.output, ())
+        sample = Sample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
+        found[element.name] = Widths(
+            units=element.units,
+            mean=own and _mean(element, rows, own),
+            quantiles={
+                p: own and _quantile(element.at_least, p, rows, own) for p in analysis.quantiles
+            },
+            thresholds={t: own and _share(element, t, rows, own) for t in limits},
+            indices=_indices(sample, METHODS[method], samples * replicates, factor)
+            if method
+            else {},
+        )
+    return found
+
+
+def _factor(independent: bool, replicates: int) -> float | None:
+    """Return half the width of an interval in standard errors."""
+    if independent:
+        return float(normal(upper_probability()))
+    return student(upper_probability(), replicates - 1) if replicates > 1 else None
+
+
+def _mean(element: Element, rows: int, factor: float) -> float | None:
+    values = element.at_least
+    unbounded = element.never.any() or element.censored.any()
+    if unbounded or lacks_variance(values):
+        return None
+    return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
+
+
+def _quantile(values: Floats, p: float, rows: int, factor: float) -> float | None:
+    if not is_within(p, rows):
+        return None
+    m = len(values)
+    spread = np.sqrt(p * (1 - p))
+    half = factor * spread / np.sqrt(rows)
+    # Too few neighbours in the pilot for a slope; what is rarer than one row is unknown.
+    reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
+    if reach < half:
+        return None
+    with np.errstate(invalid="ignore"):  # between a life that ends and one that never does
+        low, high = np.quantile(values, [p - reach, p + reach], method="weibull")
+    return float((high - low) * half / reach) if np.isfinite(high - low) else None
+
+
+def _share(element: Element, threshold: float, rows: int, factor: float) -> float:
+    values = element.for_thresholds[element.present]
+    # Two more rows on each side: a pilot without a hit does not prove that there is none.
+    p = (np.count_nonzero(values > threshold) + 2) / (len(values) + 4)
+    return float(2 * factor * np.sqrt(p * (1 - p) / rows))
+
+
+def _indices(
+    sample: Sample, method: Method, groups: int, factor: float | None
+) -> dict[str, float | None]:
+    """Return the widest interval of each kind of index, as of independent groups."""
+    whole = sample.grouped[sample.whole]
+    enough = factor is not None and len(whole) >= _ENOUGH_ROWS and whole.std() > 0
+    spreads = method.pilot(sample) if enough and method.pilot else {}
+    return {
+        kind.key: float(2 * factor * spreads[kind] / np.sqrt(groups))
+        if factor is not None and kind in spreads
+        else None
+        for kind in method.kinds
+        if not kind.of_pairs
+    }

@@ -1,0 +1,143 @@
+"""A result and what several tables and figures show of it, each computed once."""
+
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import chain
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from uq.assess.earliest import ranks
+from uq.assess.fleet import Fleet, fleet_of
+from uq.assess.independent_inputs import independent_inputs
+from uq.assess.level_shares import ByLevel, by_level
+from uq.assess.regime_boundary import boundary
+from uq.assess.sensitivities import Sensitivities, TargetIndices, sensitivities
+from uq.assess.statistic import Statistic
+from uq.assess.summary import Summary, summarise
+from uq.contract import Floats
+from uq.errors import InputError
+from uq.result.elements import (
+    Element,
+    analysis_of,
+    elements_of,
+    independent_rows,
+    output_names,
+    shown_outputs,
+)
+from uq.result.nesting import nesting_of
+from uq.result.ranked_rows import ranked_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Findings:
+    """What is known of a result, each part computed when first needed.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result; it must not be changed while this is in use.
+    """
+
+    def __init__(self, ds: xr.Dataset):
+        self.ds = ds
+        self._sensitivities: dict[str, Sensitivities] = {}
+        self._indices: dict[tuple[str, str], TargetIndices] = {}
+
+    @cached_property
+    def rows(self) -> xr.Dataset:
+        """The independent rows."""
+        return independent_rows(self.ds)
+
+    @cached_property
+    def ranked(self) -> "Findings":
+        """Findings on the rows that rank inputs (`uq.result.ranked_rows.ranked_rows`)."""
+        ranked = ranked_rows(self.ds)
+        return self if ranked is self.ds else Findings(ranked)
+
+    @cached_property
+    def absent(self) -> frozenset[str]:
+        """The outputs that no independent row has."""
+        names = output_names(self.rows)
+        there = (one.output for one in elements_of(self.rows, names) if one.present.any())
+        return frozenset(names) - frozenset(there)
+
+    @cached_property
+    def input_ranks(self) -> dict[str, Floats]:
+        """The rank of each input within the independent rows, from 0 to 1."""
+        return {name: ranks(column) for name, column in independent_inputs(self.rows).items()}
+
+    @cached_property
+    def summary(self) -> Summary:
+        """What `uq.assess.summary.summarise` returns."""
+        return summarise(self.ds)
+
+    @cached_property
+    def boundary(self) -> Statistic | None:
+        """What `uq.assess.regime_boundary.boundary` returns."""
+        return boundary(self.ds)
+
+    @cached_property
+    def running(self) -> "pd.DataFrame":
+        """What `uq.running_estimates` returns; where it refuses, no lines, and why in ``attrs``."""
+        import pandas as pd
+
+        from uq.assess.convergence import COLUMNS, running_estimates
+
+        try:
+            return running_estimates(self.ds)
+        except InputError as refused:
+            nothing = pd.DataFrame(columns=COLUMNS)
+            nothing.attrs["refused"] = str(refused)
+            return nothing
+
+    @cached_property
+    def levels(self) -> ByLevel:
+        """What `uq.assess.level_shares.by_level` returns."""
+        return by_level(self.ds)
+
+    @cached_property
+    def fleets(self) -> list[Fleet]:
+        """The fleet of each life, of as many units as a sample has; empty where that is one."""
+        units = nesting_of(self.rows).units
+        shown = shown_outputs(self.rows, analysis_of(self.rows)) if units > 1 else ()
+        lives = [one for one in elements_of(self.rows, shown) if one.is_lifetime]
+        return list(chain.from_iterable(_fleets(self.ds, units, one) for one in lives))
+
+    def sensitivities(self, method: str) -> Sensitivities:
+        """Return what `uq.assess.sensitivities.sensitivities` finds by a method.
+
+        Raises
+        ------
+        InputError
+            When the method does not apply to this result.
+        """
+        if method not in self._sensitivities:
+            self._sensitivities[method] = sensitivities(self.ds, method)
+        return self._sensitivities[method]
+
+    def indices(self, method: str, target: str) -> TargetIndices:
+        """Return the indices of one target, also of one that must be asked for by name.
+
+        Raises
+        ------
+        InputError
+            When the method does not apply to this result, or there is no such target.
+        """
+        known = self._sensitivities[method].targets if method in self._sensitivities else {}
+        if target in known:
+            return known[target]
+        if (method, target) not in self._indices:
+            found = sensitivities(self.ds, method, target).targets
+            self._indices |= {(method, name): one for name, one in found.items()}
+        return self._indices[method, target]
+
+
+def _fleets(ds: xr.Dataset, units: int, life: Element) -> Iterator[Fleet]:
+    """Yield the fleet of a life, unless its rows are censored too early."""
+    try:
+        yield fleet_of(ds, units, output=life.name)
+    except InputError:
+        return

@@ -1,0 +1,260 @@
+"""Fleets: when the first of some units ends, and how many have ended by a time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.fleet_numbers import Banded, FleetNumbers
+from uq.assess.fleets import Units, units_of
+from uq.assess.row_inputs import inputs_of
+from uq.assess.scaling import without_effect
+from uq.assess.summary import why_no_intervals
+from uq.errors import InputError, choices
+from uq.result.elements import (
+    Element,
+    analysis_of,
+    has_independent_samples,
+    independent_rows,
+    lifetimes,
+    replicates_of,
+    shown_outputs,
+    why_no_statistics,
+)
+from uq.result.nesting import Nesting, levels_that_vary, samples_have, size_in_words
+from uq.result.variables import outputs_of
+from uq.sampling.designs import several
+from uq.sampling.levels import SHARED
+from uq.stats.clusters import Clusters
+from uq.stats.importance_weights import Smoothed, of_samples, quality, worth_in_words
+from uq.stats.intervals import Replicates
+from uq.text.units import beside
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Fleet:
+    """What a result says of fleets of some size.
+
+    Attributes
+    ----------
+    output : str
+        The life.
+    size, allow : int
+    samples : int
+        Independent worlds with enough units.
+    design : str
+        Samples, units and repeats.
+    integrated : tuple of str
+        Inputs that are integrated exactly.
+    first : dict of float to Banded
+        Probability -> quantile of the time at which the first ends.
+    by : dict of float to tuple of Banded
+        Time -> number that has ended, probability that at most `allow` have.
+    notes : list of str
+    is_success : bool
+        Whether the end of the life is wished for.
+    units : str
+        Of the life.
+    weights : Smoothed or None
+        Of samples, where inspections have weighted them.
+    """
+
+    output: str
+    size: int
+    allow: int
+    samples: int
+    design: str
+    integrated: tuple[str, ...]
+    first: dict[float, Banded]
+    by: dict[float, tuple[Banded, Banded]]
+    notes: list[str]
+    is_success: bool = False
+    units: str = "s"
+    weights: Smoothed | None = None
+
+    @property
+    def ended(self) -> str:
+        """What a unit has done at the end of its life, in words."""
+        return "succeeded" if self.is_success else "ended"
+
+    @property
+    def sentences(self) -> list[str]:
+        """What is integrated, what is missing, and what is assumed."""
+        exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
+        worth = [worth_in_words(self.weights)] if self.weights else []
+        return [*exactly, *worth, *self.notes]
+
+
+def fleet(
+    ds: xr.Dataset,
+    size: int,
+    by: float | Sequence[float] = (),
+    allow: int = 0,
+    output: str | None = None,
+    *,
+    plain: bool = False,
+) -> "pd.DataFrame":
+    """Estimate when the first unit of a fleet ends, and how many have ended by a time.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or a posterior of `uq.update`, whose fleets are of units never inspected. Units
+        of a fleet have the same shared inputs, and are those of a sample.
+    size : int
+        Number of units: at most the ``units`` of the study, any number where all that differs
+        between units only scales their lives.
+    by : float or sequence of float, optional
+        Times [s]; by default the thresholds of the study.
+    allow : int, optional
+        Number of units that may have ended.
+    output : str, optional
+        A life, or one element of it; needed where the study shows several.
+    plain : bool, optional
+        Whether to take lives as computed; by default what only scales them is integrated.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Lines: ``first``, for each quantile ``at`` of the study the time at which the first ends;
+        ``failed``, the number that has ended before the time ``at``; ``at_most_allowed``, the
+        probability that at most `allow` have. Each has its ``value``, a mean over all samples, with
+        its 95 % interval ``low``, ``high``; ``band_low`` and ``band_high``, the 5 and 95 % points
+        over what is shared of the same given that, each with its own interval; ``reason``, why
+        one of them is missing; and ``assumes``, what the points assume. Where rows failed,
+        ``failed_low`` and ``failed_high``.
+
+    Raises
+    ------
+    InputError
+        When the samples have too few units, a row was censored before a time, or there is no such
+        life.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> table = uq.fleet(ds, 1, by=1e6)
+    >>> list(table.index.unique())
+    ['first', 'failed', 'at_most_allowed']
+    """
+    times = [float(by)] if isinstance(by, int | float) else [float(one) for one in by]
+    found = fleet_of(ds, size, times, allow, output, plain=plain)
+    lines = [("first", p, one) for p, one in found.first.items()]
+    for time, (failed, at_most) in found.by.items():
+        lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
+    import pandas as pd
+
+    table = pd.DataFrame([_line(*line) for line in lines]).set_index("quantity")
+    table.attrs = {"output": found.output, "size": size, "allow": allow, "samples": found.samples}
+    table.attrs.update(quality(found.weights))
+    return table
+
+
+def _line(quantity: str, at: float, one: Banded) -> dict[str, object]:
+    found: dict[str, object] = {"quantity": quantity, "at": at}
+    found |= dict(zip(("value", "low", "high"), one.estimate.numbers, strict=True))
+    for name, end in (("band_low", one.low), ("band_high", one.high)):
+        found |= dict(zip((name, f"{name}_low", f"{name}_high"), end.numbers, strict=True))
+    if one.failed is not None:
+        found |= {"failed_low": one.failed.low, "failed_high": one.failed.high}
+    found["reason"] = "; ".join(reasons(one))
+    found["assumes"] = one.low.assumes or one.high.assumes
+    return found
+
+
+def reasons(one: Banded) -> list[str]:
+    """Return why numbers are missing, each reason once."""
+    ends = (one.estimate, one.low, one.high)
+    return list(dict.fromkeys(end.reason for end in ends if end.reason))
+
+
+def fleet_of(
+    ds: xr.Dataset,
+    size: int,
+    by: Sequence[float] = (),
+    allow: int = 0,
+    output: str | None = None,
+    *,
+    plain: bool = False,
+) -> Fleet:
+    """Return what `fleet` tabulates."""
+    if why := why_no_statistics(ds):
+        raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
+    if size < 1 or allow < 0:
+        raise InputError("uq fleet: the size must be at least 1, and what is allowed at least 0")
+    if bad := [time for time in by if not 0 < time < inf]:
+        raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
+    rows = independent_rows(ds)
+    element = the_life(rows, output)
+    units = units_of(rows, element, plain=plain)
+    _refuse(units, size)
+    analysis = analysis_of(ds)
+    times = list(by) or list(analysis.thresholds.get(element.output, ()))
+    for time in times:
+        if count := int(element.unknown_sides(time).sum()):
+            raise InputError(
+                f"uq fleet: {count} of {len(element.values)} lives were censored before"
+                f" {beside(repr(time), element.declared.unit)}; ask for an earlier time, or compute"
+                " a longer horizon"
+            )
+    part = _part_of_samples(rows, units.place)
+    idle = without_effect(inputs_of(rows), element.declared)
+    of = FleetNumbers(units, size, allow, part, SHARED in levels_that_vary(rows, idle))
+    first = {p: of.first(p) for p in analysis.quantiles}
+    ended = {time: (of.failed(time), of.at_most_allowed(time)) for time in times}
+    place = units.place
+    enough = int(of.first_of.element.present.sum())
+    notes = []
+    if enough < place.samples:
+        notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
+    if lost := int(element.failed.sum()):
+        notes.append(f"{lost} of {len(element.values)} rows failed")
+    notes += filter(None, [units.why_not_more, why_no_intervals(ds)])
+    assumed = {one.assumes for both in of.ends for one in both if one.assumes}
+    notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
+    design = size_in_words(place.samples, place.units, place.repeats)
+    names = units.integrated
+    of_life = bool(element.declared.success), element.declared.unit
+    weights = None if units.of_worlds is None else of_samples(units.of_worlds)
+    numbers = enough, design, names, first, ended
+    return Fleet(element.name, size, allow, *numbers, notes, *of_life, weights)
+
+
+def the_life(rows: xr.Dataset, output: str | None) -> Element:
+    """Return the element of a life that is meant: the only one, unless it is named."""
+    outputs = outputs_of(rows)
+    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if outputs[one].is_lifetime]
+    asked = [output] if output is not None else shown
+    found = [element for one in asked for element in lifetimes(rows, one)]
+    if not found:
+        raise InputError("uq fleet: the study shows no life")
+    if len(found) > 1:
+        names = choices([one.name for one in found])
+        raise InputError(f"uq fleet: several lives; name one with --output ({names})")
+    return found[0]
+
+
+def _refuse(units: Units, size: int) -> None:
+    if size > units.place.units and not units.are_alike:
+        names = ", ".join(units.varying)
+        verb = "is" if len(units.varying) == 1 else "are"
+        raise InputError(
+            f"uq fleet: a fleet of {size} needs samples of as many units, now {units.place.units}:"
+            f" in [design] {several('units', units.design, size)}; fewer are enough only where all"
+            f" that differs between units is integrated exactly, and {names} {verb} not"
+        )
+
+
+def _part_of_samples(rows: xr.Dataset, place: Nesting) -> Replicates:
+    """Return the independent part of each sample, shape (samples,)."""
+    part = replicates_of(rows)
+    if isinstance(part, Clusters) and part.together is not None:
+        _, first = np.unique(place.sample, return_index=True)
+        return part[first]
+    return None if has_independent_samples(rows) else place.replicate

@@ -1,0 +1,235 @@
+"""The numbers of fleets of one size: what is expected, and its 5 and 95 % points over worlds."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import exp, expm1, inf, isnan, log, log1p, nan
+
+import numpy as np
+from scipy import special
+
+from uq.assess import random_effects
+from uq.assess.failed_rows import bounds, with_failed_at
+from uq.assess.fleets import Units
+from uq.assess.population import first_step
+from uq.sampling.designs import several
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import Replicates, replicates_of_some
+from uq.stats.roots import root
+
+LOW, HIGH = 0.05, 0.95
+"""Of worlds, at the ends of a band."""
+
+ALIKE = "samples share nothing that varies"
+_FARTHEST = 8.2  # probit of a probability
+_SETTLED = 1e-4  # of the logarithm of a time, or of a probit
+
+
+@dataclass(frozen=True)
+class Banded:
+    """A number of a fleet.
+
+    Attributes
+    ----------
+    estimate : Estimate
+        The mean over what is own and chance, and over what is shared.
+    low, high : Estimate
+        Its 5 and 95 % points over what is shared.
+    failed : Estimate or None
+        The ends of the interval of `estimate` with the failed rows at best and at worst.
+    """
+
+    estimate: Estimate
+    low: Estimate
+    high: Estimate
+    failed: Estimate | None = None
+
+
+class FleetNumbers:
+    """The numbers of fleets of one size, with bands, and with failed rows at best and worst.
+
+    Parameters
+    ----------
+    units : Units
+    size, allow : int
+    part : ndarray of int, shape (samples,), or None
+        The replicate of each sample; None where samples are independent.
+    varies : bool
+        Whether what samples share varies.
+    """
+
+    def __init__(self, units: Units, size: int, allow: int, part: Replicates, varies: bool):
+        self._size, self._allow, self._part = size, allow, part
+        self._units = units
+        self._varies = varies
+        self.ends: list[tuple[Estimate, Estimate]] = []
+        self._cases = [units]
+        if units.element.failed.any():
+            lost = (with_failed_at(units.element, life) for life in (0.0, np.inf))
+            self._cases += [replace(units, element=one) for one in lost]
+        self._first = [one.fleet(size, 0, part) for one in self._cases]
+        self._beyond = [one.fleet(size, allow, part) for one in self._cases]
+        self._alone = [one.fleet(1, 0, part) for one in self._cases]
+        self.first_of = self._first[0]
+        self._spreads: dict[float, random_effects.Exceeding] = {}
+
+    def first(self, probability: float) -> Banded:
+        """Return a quantile of the time at which the first ends."""
+        found = [self._within_horizon(one.quantile(probability)) for one in self._first]
+        reached = -expm1(log1p(-probability) / self._size)
+        value = found[0].value
+
+        def band(share: float) -> Estimate:
+            return self._time_of(share, reached, value)
+
+        return self._banded(found, band, is_life=True)
+
+    def failed(self, time: float) -> Banded:
+        """Return the number that has ended before a time."""
+        found = [_times(one.below(time), self._size) for one in self._alone]
+
+        def band(share: float) -> Estimate:
+            return _times(self._unit_at(time, share), self._size)
+
+        return self._banded(found, band)
+
+    def at_most_allowed(self, time: float) -> Banded:
+        """Return the probability that no more have ended before a time than allowed."""
+        if self._allow >= self._size:
+            return Banded(*3 * (Estimate(1.0, 1.0, 1.0),))
+        found = [_complement(one.below(time)) for one in self._beyond]
+
+        def band(share: float) -> Estimate:
+            p = self._unit_at(time, 1 - share)
+            kept = [self._kept(one) for one in p.numbers]
+            return replace(p, value=kept[0], low=kept[2], high=kept[1])
+
+        return self._banded(found, band)
+
+    def _kept(self, p: float) -> float:
+        return float(special.bdtr(self._allow, self._size, p)) if p == p else p
+
+    def _banded(
+        self,
+        found: Sequence[Estimate],
+        band: Callable[[float], Estimate],
+        is_life: bool = False,
+    ) -> Banded:
+        one, *lost = found
+        if self._varies and not isnan(one.value):
+            low, high = _in_order(band(LOW), band(HIGH))
+        else:
+            low = high = Estimate() if self._varies else replace(one, reason=one.reason or ALIKE)
+        self.ends.append((low, high))
+        if not lost:
+            return Banded(one, low, high)
+        least, most = sorted(lost, key=lambda end: end.value)
+        return Banded(one, low, high, bounds(one, least, most, is_life))
+
+    def _within_horizon(self, found: Estimate) -> Estimate:
+        """Return a time, or why it is not known where rows were censored before it."""
+        element = self._units.element
+        if not element.censored.any():
+            return found
+        horizon = element.values[element.censored].min()
+        if found.value >= horizon:
+            return Estimate(reason="rows were censored before that time")
+        beyond = found.high >= horizon
+        return replace(found, high=np.inf, beyond=("high",)) if beyond else found
+
+    def _exceeding(self, time: float) -> random_effects.Exceeding:
+        """Return the spread over worlds of P(a unit has ended before a time)."""
+        if time not in self._spreads:
+            self._spreads[time] = self._spread(time)
+        return self._spreads[time]
+
+    def _spread(self, time: float) -> random_effects.Exceeding:
+        units, world = self._units, self._alone[0].element
+        if not units.are_alike and units.worlds_repeat:
+            return lambda probability: Estimate(reason=random_effects.REPEATED)
+        if not units.are_alike and units.place.units == 1:
+            why = f"{random_effects.ONE_UNIT}; {several('units', units.design)}"
+            return lambda probability: Estimate(reason=why)
+        if not units.are_alike:
+            return random_effects.Noisy(
+                units.ended(time), units.weights, self._part, units.of_worlds
+            )
+        kept = world.present
+        part = replicates_of_some(self._part, kept)
+        weights = None if units.of_worlds is None else units.of_worlds[kept]
+        if units.end_together:
+            return random_effects.certain(world.below(time)[kept], part, weights)
+        return random_effects.known(units.ended(time)[kept, 0], units.nodes, part, weights)
+
+    def _unit_at(self, time: float, share: float) -> Estimate:
+        """Return the point of P(a unit has ended) below which it is in a share of worlds."""
+        exceeding = self._exceeding(time)
+        middle = exceeding(0.5)
+        if isnan(middle.value):
+            return middle
+
+        def at(name: str) -> float:
+            def excess(z: float) -> float:
+                return float(getattr(exceeding(float(special.ndtr(z))), name)) - (1 - share)
+
+            if isnan(least := excess(-_FARTHEST)):
+                return nan
+            if least <= 0:
+                return 0.0
+            if excess(_FARTHEST) >= 0:
+                return 1.0
+            return float(special.ndtr(root(excess, (-_FARTHEST, _FARTHEST), _SETTLED)))
+
+        return _around(replace(middle, value=at("value"), low=at("low"), high=at("high")))
+
+    def _time_of(self, share: float, probability: float, near: float) -> Estimate:
+        """Return the time by which a share of worlds has a larger probability of a unit's end."""
+        seen = [Estimate()]
+        start = log(near) if 0 < near < inf else 0.0
+        never = inf if self._units.element.never.any() else nan
+
+        def at(name: str) -> float:
+            def excess(x: float) -> float:
+                seen.append(self._exceeding(exp(x))(probability))
+                if isnan(found := float(getattr(seen[-1], name))):
+                    raise _UnknownError
+                return found - share
+
+            try:
+                side = 1.0 if excess(start) < 0 else -1.0
+                there = first_step(start, 0.1 * side, lambda x: (excess(x) >= 0) == (side > 0))
+                if there is None:
+                    return never if side > 0 else 0.0 if name == "value" else nan
+                return exp(root(excess, there, _SETTLED))
+            except _UnknownError:
+                return nan
+
+        found = at("value"), at("high"), at("low")
+        reason, assumes = (
+            next(filter(None, (getattr(one, name) for one in seen)), "")
+            for name in ("reason", "assumes")
+        )
+        return _around(Estimate(*found, reason, assumes))
+
+
+class _UnknownError(ArithmeticError):
+    """The spread over worlds is not known there."""
+
+
+def _around(one: Estimate) -> Estimate:
+    """Return an estimate inside its interval: on a plateau the roots found need not be in order."""
+    low, high = np.minimum(one.low, one.value), np.maximum(one.high, one.value)
+    return one if isnan(one.value) else replace(one, low=float(low), high=float(high))
+
+
+def _in_order(low: Estimate, high: Estimate) -> tuple[Estimate, Estimate]:
+    """Return the ends of a band, which on a plateau may be found to cross."""
+    return (high, low) if low.value > high.value else (low, high)
+
+
+def _times(one: Estimate, factor: float) -> Estimate:
+    value, low, high = (factor * number for number in one.numbers)
+    return replace(one, value=value, low=low, high=high)
+
+
+def _complement(one: Estimate) -> Estimate:
+    return replace(one, value=1 - one.value, low=1 - one.high, high=1 - one.low)

@@ -1,0 +1,245 @@
+"""Fleets: units of one world, and how many of them have ended.
+
+A world is a sample of a study: its units have the same shared inputs, and are independent given
+these. What scales the lives of units alone is integrated inside each unit; what scales those of all
+units of a world is integrated once per world, outside the product over its units.
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil, nan
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.population import Population
+from uq.assess.row_inputs import Inputs, inputs_of
+from uq.assess.scale_laws import Scale
+from uq.assess.scaling import integrated, not_integrated, why_not_integrated, without_effect
+from uq.contract import Floats, Mask
+from uq.result.element import Element
+from uq.result.nesting import Nesting, levels_of, nesting_of
+from uq.result.weights import sample_weights
+from uq.sampling.levels import CHANCE, OWN, SHARED
+from uq.stats.counting import more_than, turns
+from uq.stats.intervals import Replicates
+
+_NODES = 120
+"""Steps between standard normal quantiles of -6 and 6, of what is integrated once per world and
+causes up to `_WIDE` times the spread of what is integrated inside each unit; else as many times."""
+
+_WIDE = 3.0
+_WIDEST = 60.0
+"""With a larger ratio, what is integrated once per world would need too many: it is not."""
+
+_TOO_WIDE = f"it scatters lives more than {_WIDEST:g} times as much as {{}}"
+
+
+@dataclass(frozen=True)
+class Units:
+    """The lives of the units of each world.
+
+    Attributes
+    ----------
+    element : Element
+        Its rows.
+    place : Nesting
+        Of these rows.
+    shared : Scale or None
+        What scales all lives of a world alike.
+    varying : tuple of str
+        What differs between the units of a world and is not integrated. With nothing of this kind,
+        the probability of a unit's life is known in each world.
+    why_not_more : str
+        A sentence on the inputs that scale lives but are not integrated, or "".
+    worlds_repeat : bool
+        Whether what worlds share, but for what is integrated, is the same in some of them.
+    design : str
+        By which they were drawn.
+    of_worlds : ndarray, shape (samples,), or None
+        Their weights, where inspections have weighted them.
+    """
+
+    element: Element
+    place: Nesting
+    shared: Scale | None
+    varying: tuple[str, ...]
+    why_not_more: str = ""
+    worlds_repeat: bool = False
+    design: str = "monte-carlo"
+    of_worlds: Floats | None = None
+
+    @property
+    def integrated(self) -> tuple[str, ...]:
+        """All that is integrated."""
+        return tuple(name for law in (self.element.law, self.shared) if law for name in law.inputs)
+
+    @property
+    def are_alike(self) -> bool:
+        """Whether all units of a world have the same known probability."""
+        return not self.varying
+
+    @property
+    def end_together(self) -> bool:
+        """Whether all units of a world end together, at a time known but for what scales it."""
+        return self.are_alike and self.shared is not None and self.element.law is None
+
+    @property
+    def nodes(self) -> Floats:
+        """Standard normal quantiles of what is integrated once per world, shape (nodes,)."""
+        if self.shared is None:
+            return np.zeros(1)
+        law = self.element.law
+        finer = 1 if law is None else ceil(max(1.0, self.shared.spread / (_WIDE * law.spread)))
+        return np.linspace(-6.0, 6.0, finer * _NODES + 1)
+
+    @property
+    def weights(self) -> Floats:
+        """The weight of each node, shape (nodes,)."""
+        density = np.exp(-(self.nodes**2) / 2)
+        return np.asarray(density / density.sum())
+
+    def ended(self, time: float) -> Floats:
+        """Return P(a unit has ended before a time), shape (samples, units, nodes).
+
+        The mean over its repeats; NaN without a life.
+        """
+        if self.shared is None:
+            return self._of_units(self.element.below(time))[..., None]
+        each, lives = [], self.element.values
+        with np.errstate(over="ignore", under="ignore"):
+            for longer in self.shared.longer(self.nodes):
+                other = replace(self.element, values=lives * np.exp(longer))
+                each.append(self._of_units(other.below(time)))
+        return np.stack(each, axis=-1)
+
+    def _of_units(self, numbers: Floats) -> Floats:
+        """Return the mean over repeats, shape (samples, units); of units that are alike, one."""
+        table = self.place.table(np.where(self.element.present, numbers, np.nan))
+        axes = (1, 2) if self.are_alike else 2
+        known = np.isfinite(table)
+        count = known.sum(axis=axes)
+        sums = np.where(known, table, 0.0).sum(axis=axes)
+        found = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
+        return found[:, None] if self.are_alike else found
+
+    def fleet(self, size: int, allow: int, part: Replicates) -> Population:
+        """Return the population of the times by which more than `allow` of `size` have ended.
+
+        Its rows are worlds, each the law of this time. Worlds with too few units have none.
+        """
+        lives = np.where(self.element.present, self.element.values, np.inf)
+        first = self.place.table(lives).min(axis=(1, 2), initial=np.inf, where=self._there)
+        enough = self._there.any(axis=2).sum(axis=1) >= (1 if self.are_alike else size)
+        first = np.where(enough, first, np.nan)
+        element = self.element
+        worlds = Element(
+            element.name,
+            element.output,
+            element.declared,
+            element.place,
+            first,
+            np.zeros(len(first), dtype=bool),
+            np.isnan(first),
+            _MoreThan(self, size, allow),
+            self.of_worlds,
+        )
+        return Population(worlds, part)
+
+    @property
+    def _there(self) -> Mask:
+        return np.isfinite(self.place.table(np.where(self.element.present, 0.0, np.nan)))
+
+
+@dataclass(frozen=True)
+class _MoreThan:
+    """The law of the time by which more than `allow` of `size` units of a world have ended."""
+
+    units: Units
+    size: int
+    allow: int
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return self.units.integrated
+
+    @cached_property
+    def _turns(self) -> Floats:
+        units, element = self.units, self.units.element
+        table = units.place.table(np.where(element.present, element.values, np.nan))
+        found = turns(table, self.size, self.allow, units.are_alike)
+        place = units.place
+        return found[place.sample, place.unit, place.repeat]
+
+    @property
+    def spread(self) -> float:
+        return nan
+
+    def below(self, lives: Floats, time: float) -> Floats:
+        units = self.units
+        if units.shared is not None and units.element.law is None:
+            each = self._turns * units.shared.below(units.element.values, time)
+            found = np.bincount(units.place.sample, each, units.place.samples).astype(float)
+        else:
+            ended = units.ended(time)
+            found = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights
+        return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
+
+
+def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Units:
+    """Return the units of the worlds of a result.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Samples of a result.
+    element : Element
+        A life of these rows.
+    plain : bool
+        Whether lives are taken as computed.
+    """
+    place, levels = nesting_of(rows), levels_of(rows)
+    own = shared = None
+    inputs, why = inputs_of(rows), ""
+    scales = element.declared.scales and not plain
+    if scales and element.censored.any():
+        why = why_not_integrated(rows, element)
+    elif scales:
+        inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
+        outside = integrated(rows, element.declared, inputs, {SHARED})
+        own, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
+        if own and shared and shared.spread >= _WIDEST * own.spread:
+            kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(own.inputs)))
+            shared = None
+        why = not_integrated(kept)
+    idle = without_effect(inputs, element.declared)
+    known = idle if own is None else (*own.inputs, *idle)
+    varying = _unknown(levels, inputs.tied, known)
+    if rows.attrs.get("random"):
+        varying = (*varying, "the model's own chance")
+    known = idle if shared is None else (*shared.inputs, *idle)
+    repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
+    design = rows.attrs["design"]
+    weights = sample_weights(rows, place, "fleets")
+    return Units(replace(element, law=own), place, shared, varying, why, repeats, design, weights)
+
+
+def _repeats(
+    inputs: Inputs, shared: Collection[str], known: Collection[str], place: Nesting
+) -> bool:
+    """Return whether what worlds share, but for what is integrated, is the same in some of them."""
+    names = {inputs.tied.get(name, name) for name in shared} - {*known}
+    values = [inputs.values[name] for name in sorted(names)]
+    return bool(values) and len(np.unique(values, axis=1).T) < place.samples
+
+
+def _unknown(
+    levels: Mapping[str, str], tied: Mapping[str, str], known: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the inputs of units that are not integrated."""
+    return tuple(
+        name
+        for name, level in levels.items()
+        if level != SHARED and tied.get(name, name) not in known
+    )

@@ -1,0 +1,127 @@
+"""Differences between two studies of one model: inputs, settings, design."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from uq.result.elements import Floats, independent_rows, study_file_of
+from uq.study.file import StudyFile, Tied
+from uq.text.literals import shown
+from uq.text.numbers import law
+
+
+class Change(NamedTuple):
+    """One entry that differs between two studies.
+
+    Attributes
+    ----------
+    kind : str
+        ``model``, ``design``, ``setting``, ``dependence`` or ``input``.
+    name : str
+    first, second : str
+        In words.
+    """
+
+    kind: str
+    name: str
+    first: str
+    second: str
+
+
+class Spread(NamedTuple):
+    """Mean and standard deviation of an input, in its unit; 0 where it is one number."""
+
+    mean: float
+    sd: float
+
+
+class OnlyChange(NamedTuple):
+    """The only input that differs between two studies, with its spread in each."""
+
+    name: str
+    units: str
+    first: Spread
+    second: Spread
+
+
+def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
+    """Return all differences between two studies, apart from [analysis].
+
+    Parameters
+    ----------
+    first, second : xarray.Dataset
+        Results of one model.
+
+    Returns
+    -------
+    list of Change
+    """
+    sides = [(ds, study_file_of(ds)) for ds in (first, second)]
+    return [*_frame(sides), *_inputs(sides)]
+
+
+Side = tuple[xr.Dataset, StudyFile]
+
+
+def _frame(sides: list[Side]) -> Iterator[Change]:
+    frames = [dict(_entries(*side)) for side in sides]
+    for place in dict.fromkeys((*frames[0], *frames[1])):
+        one, other = (shown(f[place]) if place in f else "default" for f in frames)
+        if one != other:
+            yield Change(*place, one, other)
+    ranks = [
+        study.dependence.model_dump(exclude={"source"}) if study.dependence else None
+        for _, study in sides
+    ]
+    if ranks[0] != ranks[1]:
+        parameters = (", ".join(one["parameters"]) if one else "none" for one in ranks)
+        yield Change("dependence", "rank correlations", *parameters)
+
+
+def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str], Any]]:
+    yield ("model", "version"), ds.attrs["model_version"]
+    for name in ("design", "samples", "replicates", "seed"):
+        value = ds.attrs[name]
+        yield ("design", name), value if isinstance(value, str) else int(value)
+    for name, value in study.settings.items():
+        yield ("setting", name), value
+
+
+def _inputs(sides: list[Side]) -> Iterator[Change]:
+    first, second = (ds for ds, _ in sides)
+    for name, variable in first.data_vars.items():
+        if variable.attrs.get("role") in ("input", "fixed") and name in second:
+            one, other = (_stated(*side, str(name)) for side in sides)
+            if one != other:
+                yield Change("input", str(name), one[0], other[0])
+
+
+def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
+    """Return an input in words, and all that determines its rows."""
+    unit = ds[name].attrs["units"]
+    behind = "" if unit == "1" else f" {unit}"
+    entry = study.uncertain.get(name)
+    if entry is None:
+        value = ds[name].values.tolist()
+        if isinstance(value, list):  # imported rows
+            return "as imported", value
+        return f"{value!r}{behind}", value
+    if isinstance(entry, Tied):
+        return f"equals {entry.equals}", entry.equals
+    stated = law(entry) + behind if entry.times is None else f"{entry.times} times {law(entry)}"
+    return stated, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
+
+
+def only_change(first: xr.Dataset, second: xr.Dataset, found: list[Change]) -> OnlyChange | None:
+    """Return the only input that differs, if nothing else but the design does."""
+    decisive = [change for change in found if change.kind != "design"]
+    if [change.kind for change in decisive] != ["input"]:
+        return None
+    name = decisive[0].name
+    spreads = (_spread(independent_rows(ds)[name].values) for ds in (first, second))
+    return OnlyChange(name, str(first[name].attrs["units"]), *spreads)
+
+
+def _spread(values: Floats) -> Spread:
+    return Spread(float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else 0.0)

@@ -1,0 +1,205 @@
+"""Shares of the variance: shared by the units of a sample, own to a unit, due to chance."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.chosen_targets import targets_of
+from uq.assess.few_events import FEWEST_HITS, few_hits
+from uq.assess.regime_switching import switching
+from uq.assess.scaling_by_level import Scales, scales_by_level
+from uq.assess.statistics.counts import stated_error
+from uq.assess.targets import Target, lightened, split_name
+from uq.assess.variance_by_level import SOLVER, SOURCES, LevelShares, shares_of
+from uq.contract import Floats
+from uq.errors import InputError
+from uq.indices.index import RefusedError
+from uq.result.elements import (
+    analysis_of,
+    has_independent_samples,
+    independent_rows,
+    output_names,
+    shown_outputs,
+    why_no_statistics,
+)
+from uq.result.nesting import Nesting, levels_of, levels_that_vary, nesting_of, size_in_words
+from uq.result.variables import is_error
+from uq.result.weights import sample_weights
+from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import Smoothed, largest_share, of_samples, too_large
+from uq.stats.tails import lacks_variance
+
+SHARES_OF = "these are shares of the variance of its {form}"
+NO_ERROR = "the model states no numerical error of it"
+NO_ERROR_OF = "the numerical error is that of the output, not of its {form}"
+
+
+@dataclass(frozen=True)
+class ByLevel:
+    """What a result says of its levels.
+
+    Attributes
+    ----------
+    samples, units, repeats : int
+    inputs : dict of str to str
+        Level of each input.
+    outputs : dict of str to LevelShares
+        By name of the target: the output, ``log(life)``, ``P(life<t)``.
+    another_regime : Estimate or None
+        Probability that a repeat ends in another regime; None without regimes.
+    switching : ndarray, shape (n,)
+        The same of each row; NaN where it is not known.
+    weights : Smoothed or None
+        Of samples, where inspections have weighted them.
+    """
+
+    samples: int
+    units: int
+    repeats: int
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, LevelShares]
+    another_regime: Estimate | None
+    switching: Floats
+    weights: Smoothed | None = None
+
+    @property
+    def size(self) -> str:
+        """Samples, units and repeats in words."""
+        return size_in_words(self.samples, self.units, self.repeats)
+
+    def inputs_on(self, level: str) -> list[str]:
+        """Return the inputs on a level."""
+        return [name for name, own in self.inputs.items() if own == level]
+
+
+def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> ByLevel:
+    """Estimate the shares of the variance by level.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or a posterior of `uq.update`.
+    output : str, optional
+        Only this output, or this element of one; by default those that the study shows. Of a
+        category, such as the regime, the targets are ``P(regime=label)``.
+    plain : bool
+        Whether lives are taken as computed, and nothing that only scales them is integrated.
+
+    Returns
+    -------
+    ByLevel
+
+    Raises
+    ------
+    InputError
+        When the rows do not follow the laws of the inputs, or there is no such output.
+    """
+    if why := why_no_statistics(ds):
+        raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
+    rows = independent_rows(ds)
+    place, varying = nesting_of(rows), levels_that_vary(rows)
+    worth = sample_weights(rows, place, "shares of levels")
+    weights = None if worth is None else of_samples(worth)
+    replicate = None if has_independent_samples(rows) else place.replicate
+    known = output_names(rows)
+    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not is_error(one, known)]
+    found = {}
+    for name in shown if output is None else [output]:
+        for target in targets_of(rows, name):
+            light = target if target.event else lightened(target, SHARES_OF)
+            scales = Scales({}) if plain else _scales(rows, light)
+            found[light.name] = _shares(rows, light, place, scales, replicate, weights)
+    switches = "regime" in known and output is None
+    mean, each = switching(rows, place, varying, worth) if switches else (None, np.empty(0))
+    size = place.samples, place.units, place.repeats
+    return ByLevel(*size, levels_of(rows), found, mean, each, weights)
+
+
+def _scales(rows: xr.Dataset, target: Target) -> Scales:
+    """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
+    element = target.element
+    if element is None or target.event or target.refused or not element.declared.scales:
+        return Scales({})
+    found = scales_by_level(rows, element)
+    if split_name(target.name)[0] == "log" or not found.inputs:
+        return found
+    names = " and ".join(found.inputs)
+    why = f"{names} not integrated: the lives are replaced by their ranks"
+    return Scales({}, why, found.idle)
+
+
+def _shares(
+    rows: xr.Dataset,
+    target: Target,
+    place: Nesting,
+    scales: Scales,
+    replicate: Any,
+    weights: Smoothed | None,
+) -> LevelShares:
+    reason = target.refused or _why_not_weighted(weights)
+    values = scales.mean_logarithms(target.values)
+    if not reason and not target.event and lacks_variance(values):
+        reason = "the tail is too heavy for a variance to apportion"
+    reason, few = _few(rows, target) if target.event and not reason else (reason, ())
+    if target.event and not reason:
+        reason = _too_few_effective(target.values, place, weights)
+    if reason:
+        return LevelShares({name: Estimate(reason=reason) for name in SOURCES}, notes=target.notes)
+    errors, why_none = _errors(rows, target)
+    table = place.table(np.where(np.isfinite(values), values, np.nan))
+    own = None if errors is None else place.table(errors)
+    varying = levels_that_vary(rows, (*scales.inputs, *scales.idle))
+    known = {level: place.table(variance) for level, variance in scales.variances.items()}
+    worth = None if weights is None else weights.weights
+    found = shares_of(table, varying, own, replicate, known, rows.attrs["design"], worth)
+    if errors is None:
+        found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
+    notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))
+    return replace(found, notes=notes, integrated=scales.inputs)
+
+
+def _why_not_weighted(weights: Smoothed | None) -> str:
+    """Return why weights allow no shares, as they allow no standard deviation, or ""."""
+    if weights is None or weights.k == -inf:
+        return ""
+    return weights.refusal or too_large(largest_share(weights.weights), weights.rows)
+
+
+def _few(rows: xr.Dataset, event: Target) -> tuple[str, tuple[str, ...]]:
+    """Return why an event has too few hits for shares, or the warning that it has few."""
+    try:
+        return "", few_hits(rows, event)
+    except RefusedError as refusal:
+        return str(refusal), ()
+
+
+def _too_few_effective(hits: Floats, place: Nesting, weights: Smoothed | None) -> str:
+    """Return why an event has too few hits in rows of equal weight, or ""."""
+    if weights is None:
+        return ""
+    known = np.isfinite(hits)
+    share = float(np.average(hits[known], weights=weights.weights[place.sample[known]]))
+    rows = known.sum() * weights.effective / weights.rows
+    rarer = min(share, 1 - share) * rows
+    if not 0 < rarer < FEWEST_HITS:
+        return ""  # without any, no two rows differ
+    side = "hits" if share < 0.5 else "misses"
+    return f"the rows are worth {rarer:.2g} {side} of equal weight, and {FEWEST_HITS} are needed"
+
+
+def _errors(rows: xr.Dataset, target: Target) -> tuple[Floats | None, str]:
+    """Return the numerical error of each row, of a logarithm the relative one; or why none."""
+    stated = None if target.element is None else stated_error(rows, target.element)
+    if stated is None or target.element is None:
+        return None, NO_ERROR
+    form = split_name(target.name)[0]
+    if form == "log":
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.abs(stated.values / target.element.values), ""
+    if form:
+        return None, NO_ERROR_OF.format(form={"P": "event"}.get(form, form))
+    return np.abs(stated.values), ""

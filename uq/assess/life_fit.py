@@ -1,0 +1,205 @@
+"""Weibull and lognormal laws fitted to lifetimes, and refused where they do not fit."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from math import nan
+from typing import NamedTuple
+
+import numpy as np
+
+from uq.assess.life_quantiles import B_LIVES
+from uq.result.elements import Element, Floats, Mask
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import CONFIDENCE, upper_probability
+from uq.stats.location_scale import FAMILIES, Family, anderson_darling, fit
+from uq.stats.order_statistics import is_within
+from uq.text.numbers import counted
+
+MIN_ENDED = 20
+"""With fewer ended lives than this every law fits."""
+
+MAX_ROWS = 2000
+"""More rows would reject every law for negligible differences."""
+
+REFITS = 4999
+"""Samples drawn from the fitted law and refitted; for large samples fewer, down to a fifth.
+
+The coverage of an interval of 95 % is then known to 0.3 %; with a fifth of them, to 0.7 %.
+"""
+
+MOST_DRAWN = 400 * REFITS
+"""Lives drawn for all of them together, at most."""
+
+LEVEL = 0.05
+
+INDEPENDENT_ONLY = (
+    "the test of fit holds for independent rows; use method = 'monte-carlo' with one row a sample,"
+    " or, of imported rows that are independent, independent = true"
+)
+
+ASSUMES = (
+    "that lives follow this law: a test of {rows} rows that does not reject it is no proof, least"
+    " of all beyond the range of the rows"
+)
+"""What every number of an accepted law rests on."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A law fitted to a lifetime, or the reason why it does not apply.
+
+    Attributes
+    ----------
+    rows : int
+        How many were used.
+    p_value : float
+        Of the Anderson-Darling test, its law from refits; NaN where there is no fit.
+    refused : str
+        Why the law does not apply, or ""; then there is nothing below.
+    parameters : dict of str to Estimate
+        Shape and scale [s], or median [s] and sigma, named as in study files.
+    b_lives : dict of str to Estimate
+        ``B1``, ``B10``, ``B50`` [s].
+    extrapolated : frozenset of str
+        Those earlier than the rows reach, 1/(n + 1).
+    assumes : str
+        What all of these rest on.
+    """
+
+    rows: int
+    p_value: float = nan
+    refused: str = ""
+    parameters: Mapping[str, Estimate] = field(default_factory=dict)
+    b_lives: Mapping[str, Estimate] = field(default_factory=dict)
+    extrapolated: frozenset[str] = frozenset()
+    assumes: str = ""
+
+
+def fits_of(element: Element, independent: bool) -> dict[str, Fit]:
+    """Fit every law to one element of a lifetime; name of the law -> `Fit`.
+
+    References
+    ----------
+    J. F. Lawless, "Statistical models and methods for lifetime data", 2nd ed., Wiley (2003), 5.
+    """
+    return {law: _fit(law, element, independent) for law in FAMILIES}
+
+
+class _Sample(NamedTuple):
+    """Logarithms of lives, ascending, and which of them ended; shapes (k, n)."""
+
+    x: Floats
+    ended: Mask
+
+
+def _fit(law: str, element: Element, independent: bool) -> Fit:
+    life = element.at_least[:MAX_ROWS]
+    ended, n = ~element.censored[element.present][:MAX_ROWS], len(life)
+    if problem := _problem(life, ended, independent):
+        return Fit(n, refused=problem)
+    family = FAMILIES[law]
+    seen = _sorted(np.log(life)[None], ended[None])
+    location, scale = (value[0] for value in fit(family, *seen))
+    locations, scales, distances = _refits(law, location, scale, seen)
+    kept = np.isfinite(locations)
+    if not np.isfinite(scale) or kept.mean() < CONFIDENCE:
+        return Fit(n, refused="the likelihood has no maximum that can be found")
+    distances = distances[kept]
+    distance = _distance(family, location[None], scale[None], seen)
+    p_value = float((1 + (distances >= distance).sum()) / (1 + len(distances)))
+    if p_value < LEVEL:
+        return Fit(n, p_value, f"rejected, p = {p_value:.2g}")
+    locations, scales = locations[kept], scales[kept]
+
+    def at(w: float) -> Estimate:
+        pivot = (locations + w * scales - location - w * scale) / scales
+        value = location + w * scale
+        return _exponential(value, value - scale * pivot)
+
+    spread = _exponential(np.log(scale), np.log(scale) - np.log(scales / scale))
+    if law == "weibull":
+        shape = Estimate(1 / spread.value, 1 / spread.high, 1 / spread.low)
+        parameters = {"shape": shape, "scale": at(0.0)}
+    else:
+        parameters = {"median": at(0.0), "sigma": spread}
+    return Fit(
+        n,
+        p_value,
+        parameters=parameters,
+        b_lives={name: at(family.standard.ppf(p)) for name, p in B_LIVES.items()},
+        extrapolated=frozenset(name for name, p in B_LIVES.items() if not is_within(p, n)),
+        assumes=ASSUMES.format(rows=n),
+    )
+
+
+def _problem(life: Floats, ended: Mask, independent: bool) -> str:
+    """Return why no law can be fitted, or ""."""
+    if not independent:
+        return INDEPENDENT_ONLY
+    never = int((np.isposinf(life) & ended).sum())
+    if never:
+        known = counted(never, "never ends", "never end")
+        return f"of {len(life)} rows {known}, and under this law all do"
+    if none := int((life <= 0).sum()):
+        return f"{counted(none, 'row has', 'rows have')} no positive life; under this law all have"
+    if ended.sum() < MIN_ENDED:
+        return f"only {counted(int(ended.sum()), 'row')} ended; {MIN_ENDED} are needed"
+    if len(np.unique(life[ended])) < MIN_ENDED:
+        return f"the rows that ended share fewer than {MIN_ENDED} values"
+    return ""
+
+
+def _sorted(x: Floats, ended: Mask) -> _Sample:
+    order = np.lexsort((~ended, x), axis=1)  # of rows at one time those that end come first
+    return _Sample(np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1))
+
+
+def _refits(
+    law: str, location: float, scale: float, seen: _Sample
+) -> tuple[Floats, Floats, Floats]:
+    """Return location, scale and distance of samples drawn from the fitted law."""
+    n = seen.x.shape[1]
+    if seen.ended.all():
+        locations, scales, distances = _complete_refits(law, n)
+        return location + scale * locations, scale * scales, distances
+    rng = np.random.default_rng(0)
+    family = FAMILIES[law]
+    x = location + scale * family.standard.ppf(rng.random((_refits_of(n), n)))
+    # The estimate of Kaplan and Meier with censoring for the end, and the end for censoring.
+    share = 1 - np.cumprod(1 - ~seen.ended[0] / np.arange(n, 0, -1))
+    place = np.searchsorted(share, rng.random(x.shape))
+    limit = np.append(seen.x[0], np.inf)[place]
+    drawn = _sorted(np.minimum(x, limit), x <= limit)
+    found = fit(family, *drawn)
+    return *found, _distance(family, *found, drawn)
+
+
+@lru_cache(maxsize=4)
+def _complete_refits(law: str, n: int) -> tuple[Floats, Floats, Floats]:
+    """Return location, scale and distance of complete samples of n rows from the standard law.
+
+    For any other location and scale these are shifted and scaled; the distances are the same.
+    """
+    family = FAMILIES[law]
+    u = np.random.default_rng(0).random((_refits_of(n), n))
+    x = np.sort(family.standard.ppf(u), axis=1)
+    drawn = _Sample(x, np.ones_like(x, dtype=bool))
+    found = fit(family, *drawn)
+    return *found, _distance(family, *found, drawn)
+
+
+def _refits_of(rows: int) -> int:
+    return min(REFITS, MOST_DRAWN // rows)
+
+
+def _distance(family: Family, location: Floats, scale: Floats, sample: _Sample) -> Floats:
+    w = (sample.x - location[:, None]) / scale[:, None]
+    return anderson_darling(family.standard.cdf(w), sample.ended)
+
+
+def _exponential(value: float, draws: Floats) -> Estimate:
+    """Return the exponentials of a value and of the ends of its interval."""
+    low, high = np.quantile(draws, [1 - upper_probability(), upper_probability()])
+    value, low, high = (float(np.exp(logarithm)) for logarithm in (value, low, high))
+    return Estimate(value, low, high)

@@ -1,0 +1,328 @@
+"""How the rows of two results are paired, and the correlation of their estimates.
+
+Two studies with the same seed draw the same numbers. Where this pairs their rows or replicates,
+and the pairs are independent of each other, the difference is known better than from independent
+samples. Where the numbers are shared but not paired, the correlation is unknown, and intervals
+are conservative.
+"""
+
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.assess.estimators import MEAN, SD, Estimator, Sample
+from uq.result.elements import (
+    Floats,
+    are_independent,
+    has_independent_samples,
+    independent_rows,
+    replicates_of,
+    study_file_of,
+)
+from uq.result.nesting import is_nested
+from uq.result.variables import outputs_of
+from uq.result.weights import has_weights
+from uq.sampling.designs import DESIGNS
+from uq.stats import intervals, two_samples
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import exact_interval
+from uq.stats.jumps import beyond_jumps
+from uq.stats.weighted_means import share_to_compare
+from uq.study.file import Tied
+
+_ROUNDING = 1e-6  # an interval so much narrower than the plain ones is zero but for rounding
+
+WORST = -1.0
+"""The correlation at which a difference is least certain."""
+
+
+class Kinship(Enum):
+    """How the rows of two results are related; the value is the sentence that reports it."""
+
+    STRANGERS = "The seeds differ: the two samples are independent."
+    ROWS = "The studies share a seed: rows with the same number are paired."
+    ROWS_SAME = "Both results have the same rows."
+    REPLICATES = "The studies share a seed: replicates with the same number are paired."
+    ROWS_IMPORTED = "The imported rows are the same: rows with the same number are paired."
+    WEIGHTED = "Inspections have weighted the rows, so these intervals are conservative."
+    UNKNOWN_IMPORTED = (
+        "How the imported rows were drawn is unknown, so these intervals are conservative."
+    )
+    UNKNOWN = (
+        "The studies share a seed but are not paired, so these intervals are conservative. Use"
+        " different seeds."
+    )
+
+
+def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
+    """Return how the rows of two results are related.
+
+    Parameters
+    ----------
+    first, second : xarray.Dataset
+        Results of one model.
+
+    Returns
+    -------
+    Kinship
+    """
+    both = (first, second)
+    if any(has_weights(ds) for ds in both):
+        return Kinship.WEIGHTED
+    if any(DESIGNS[ds.attrs["design"]].imported for ds in both):
+        return _kinship_of_imported(first, second)
+    if first.attrs["seed"] != second.attrs["seed"]:
+        return Kinship.STRANGERS
+    independent = [has_independent_samples(ds) for ds in both]
+    if any(independent) and any(is_nested(ds) for ds in both):
+        return Kinship.ROWS_SAME if _same_rows(first, second) else Kinship.UNKNOWN
+    if all(independent):
+        same = _columns(first) == _columns(second)
+        return Kinship.ROWS if same else Kinship.UNKNOWN
+    if not any(independent) and first.attrs["replicates"] == second.attrs["replicates"]:
+        return Kinship.REPLICATES
+    return Kinship.UNKNOWN
+
+
+def _same_rows(first: xr.Dataset, second: xr.Dataset) -> bool:
+    """Whether two results are of one study, with the same number in every place."""
+    if first.attrs["study_identity"] != second.attrs["study_identity"]:
+        return False
+    return first.drop_attrs().equals(second.drop_attrs())
+
+
+def _kinship_of_imported(first: xr.Dataset, second: xr.Dataset) -> Kinship:
+    """Return how two results are related if one is imported, so that seeds do not matter."""
+    files = [study_file_of(ds) for ds in (first, second)]
+    same = files[0].data == files[1].data and files[0].design.method == files[1].design.method
+    if same and all(are_independent(ds) for ds in (first, second)):
+        return Kinship.ROWS_IMPORTED
+    return Kinship.UNKNOWN_IMPORTED
+
+
+def _columns(ds: xr.Dataset) -> int:
+    return sum(not isinstance(entry, Tied) for entry in study_file_of(ds).uncertain.values())
+
+
+Places = tuple[NDArray[np.intp], NDArray[np.intp]]
+
+
+def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
+    """Return the positions in each result of the rows that both have."""
+    most = max(ds.attrs["replicates"] for ds in (first, second))
+    mine, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
+    _, here, there = np.intersect1d(mine, other, assume_unique=True, return_indices=True)
+    return here, there
+
+
+def correlation(first: Floats, second: Floats, shared: Places, *, is_share: bool) -> float:
+    """Return the correlation of two estimates from the influence of each pair of rows.
+
+    Parameters
+    ----------
+    first, second : ndarray, shape (n,) and (m,)
+        Influence of each row on its estimate; they sum to zero.
+    shared : tuple of ndarray of int
+        As from `shared_rows`.
+    is_share : bool
+        Whether the estimates are shares: then a continuity correction of half a row is applied,
+        since few rows overstate the agreement [1]_.
+
+    Returns
+    -------
+    float
+
+    References
+    ----------
+    .. [1] R. G. Newcombe, "Improved confidence intervals for the difference between binomial
+       proportions based on paired data", Stat. Med. 17, 2635-2650 (1998).
+    """
+    together = float(first[shared[0]] @ second[shared[1]])
+    if is_share and together > 0:
+        together = max(together - 0.5, 0.0)
+    size = np.sqrt(float(first @ first) * float(second @ second))
+    return together / size if size > 0 else 0.0
+
+
+class Pair:
+    """The independent rows of two results of one model, and how their estimates are correlated.
+
+    Parameters
+    ----------
+    first, second : xarray.Dataset
+    """
+
+    def __init__(self, first: xr.Dataset, second: xr.Dataset) -> None:
+        self.rows = (independent_rows(first), independent_rows(second))
+        self.kinship = kinship(first, second)
+        self._replicate = [replicates_of(rows) for rows in self.rows]
+        rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
+        self._shared = shared_rows(*self.rows) if rows else None
+        self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
+
+    def difference(
+        self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
+    ) -> Estimate:
+        """Return an estimate from the second result less that from the first."""
+        if self.kinship is Kinship.REPLICATES and not estimator.is_share:
+            value = known[1].value - known[0].value
+            own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
+            if not np.isfinite(own).all():
+                return Estimate(value)
+            apart = own[1] - own[0]
+            if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
+                return Estimate(value)
+            ends = intervals.scatter_interval(value, apart)
+            return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
+        if self.kinship is Kinship.WEIGHTED:
+            return two_samples.difference(known[0], known[1], self.unpaired)
+        if estimator.counts_hits and all(one is None for one in self._replicate):
+            known = [_newcombe(sample) for sample in samples]
+        elif estimator.averages:
+            known = [self._averaged(i, sample) for i, sample in enumerate(samples)]
+        elif self._shared is not None and not estimator.is_share:
+            known = [_students(estimator, *pair) for pair in zip(samples, known, strict=True)]
+        found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
+        wide = sum(one.high - one.low for one in known)
+        if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
+            return Estimate(found.value)  # equal in each pair, but for rounding
+        return found
+
+    def are_equal(self, samples: list[Sample]) -> bool:
+        """Whether the rows are paired and both rows of each pair have the same numbers."""
+        if not self._paired or len(samples) < 2:
+            return False
+        first, second = samples
+        return np.array_equal(first.kept, second.kept) and np.array_equal(
+            first.numbers, second.numbers, equal_nan=True
+        )
+
+    @cached_property
+    def have_equal_outputs(self) -> bool:
+        """Whether the rows are paired and both rows of each pair agree in all outputs."""
+        first, second = self.rows
+        names = [name for name in outputs_of(first) if name in second]
+        return self._paired and first[names].drop_attrs().equals(second[names].drop_attrs())
+
+    def most_that_change_sides(self, sample: Sample) -> float:
+        """Return the largest share of rows that change sides where no row of a sample does.
+
+        A share that has no hit among all rows in 2.5 % of samples: the upper end of the exact 95 %
+        interval [1]_. Rows of a design that spreads evenly hit such a share more often.
+
+        References
+        ----------
+        .. [1] C. J. Clopper, E. S. Pearson, "The use of confidence or fiducial limits illustrated
+           in the case of the binomial", Biometrika 26, 404-413 (1934).
+        """
+        rows = int(np.count_nonzero(sample.kept))
+        return float(exact_interval(0.0, rows, intervals.CONFIDENCE)[1])
+
+    def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
+        """Return the second standard deviation over the first."""
+        if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
+            found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
+            return _factor(known[1].value / known[0].value, found[1], found[0])
+        if self._shared is not None:
+            known = [_students(SD, *pair) for pair in zip(samples, known, strict=True)]
+        return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
+
+    @property
+    def unpaired(self) -> float:
+        """The correlation to assume where rows are not paired."""
+        return 0.0 if self.kinship is Kinship.STRANGERS else WORST
+
+    def _correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
+        """Return that of the influences of paired rows, or of their means in paired replicates.
+
+        The second is NaN where a replicate has no rows. Together with Woodruff's intervals it gives
+        Student's t interval of the linearised differences between replicates, whose own quantiles
+        are poor estimates.
+        """
+        if self._shared is None and self.kinship is not Kinship.REPLICATES:
+            return self.unpaired
+        pulls = [_pull(estimator, sample) for sample in samples]
+        if self._shared is not None:
+            first, second = (pull.numbers for pull in pulls)
+            return correlation(first, second, self._shared, is_share=estimator.is_share)
+        means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
+        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
+            return np.nan
+        return float(np.asarray(np.corrcoef(means))[0, 1])
+
+    def _beyond_jumps(
+        self, value: float, ends: intervals.Ends, estimator: Estimator, samples: list[Sample]
+    ) -> intervals.Ends:
+        """Return the interval of a difference, with the error of jumps that replicates hide.
+
+        Of the difference row by row where both results have the same ones: most jumps cancel.
+        """
+        rows, kept = self.rows, [sample.kept for sample in samples]
+        influence = [estimator.influence(sample.numbers[sample.kept]) for sample in samples]
+        parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
+        if np.array_equal(kept[0], kept[1]) and all(
+            np.array_equal(rows[0][name].values, rows[1][name].values)
+            for name in ("replicate", "group", "block")
+        ):
+            influence, parts = [influence[1] - influence[0]], parts[:1]
+        for of_rows, part in zip(influence, parts, strict=True):
+            ends = beyond_jumps(value, ends, of_rows, part, intervals.CONFIDENCE)
+        return ends
+
+    def _averaged(self, i: int, sample: Sample) -> Estimate:
+        """Return a mean of probabilities with the interval from which a difference is built."""
+        part = intervals.replicates_of_some(self._replicate[i], sample.kept)
+        return share_to_compare(sample.numbers[sample.kept], part=part)
+
+    def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
+        of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
+        assert of is not None, "independent rows have no replicates"
+        found = np.full(count, np.nan)
+        for r in range(count):
+            values = sample.numbers[sample.kept & (of == r)]
+            if len(values):
+                found[r] = estimator.of(values)
+        return found
+
+
+def _pull(estimator: Estimator, sample: Sample) -> Sample:
+    """Return the influence of each row, 0 of those that take no part."""
+    pull = np.zeros(len(sample.numbers))
+    if sample.kept.any():
+        pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
+    return Sample(sample.kept, pull)
+
+
+def _students(estimator: Estimator, sample: Sample, known: Estimate) -> Estimate:
+    """Return a moment with Student's interval, from which the difference of paired rows is built.
+
+    The interval of a single moment allows for outliers that its rows do not show; most of them
+    cancel in the difference.
+    """
+    if not known.has_interval:
+        return known
+    low, high = intervals.scatter_interval(0.0, estimator.influence(sample.numbers[sample.kept]))
+    if estimator.is_scale and known.value > 0:  # by the logarithm, so that both ends are positive
+        low, high = known.value * np.expm1(np.array([low, high]) / known.value)
+    return Estimate(known.value, known.value + float(low), known.value + float(high))
+
+
+def _newcombe(sample: Sample) -> Estimate:
+    """Return a share with Wilson's interval, from which that of a difference is built.
+
+    For few hits the interval of a single share is exact; the difference of two such intervals would
+    be too wide.
+    """
+    hits = sample.numbers[sample.kept]
+    return Estimate(float(hits.mean()), *intervals.wilson_interval(hits.mean(), len(hits)))
+
+
+def _factor(value: float, above: Floats, below: Floats) -> Estimate:
+    """Return a ratio with the interval from the logarithms of the replicates' ratios."""
+    if not (value > 0 and (above > 0).all() and (below > 0).all()):  # nor where one is unknown
+        return Estimate(value)
+    ends = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
+    return Estimate(value, *np.exp(ends).tolist())

@@ -1,0 +1,299 @@
+"""Probabilities and quantiles of a population: rows with weights, each the law of a life."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from math import ceil, exp, isfinite, isnan, log, nan
+
+import numpy as np
+
+from uq.assess.conditional_survival import learnt_terms
+from uq.contract import Floats, Mask
+from uq.result.element import Element
+from uq.stats.clusters import Clusters
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import (
+    CONFIDENCE,
+    ROUNDING,
+    Replicates,
+    is_constant,
+    replicates_of_some,
+    upper_probability,
+)
+from uq.stats.roots import root
+from uq.stats.weighted_means import EXACT, fewest_rows, hits_behind, pulls, trusted, weighted_share
+
+_TOLERANCE = 1e-12
+_FARTHEST = 60  # steps of growing length from a quantile to the end of its interval
+_SHOW_VARIANCE = 30  # independent parts, at least
+_LATEST = 1e300
+_CENSORED = "rows were censored before that time"
+
+
+@dataclass(frozen=True)
+class Population:
+    """The rows of an element that take part in its statistics.
+
+    Attributes
+    ----------
+    element : Element
+    part : ndarray of int, shape (n,), or None
+        The independent part of each row.
+    confidence : float
+        Of intervals.
+
+    References
+    ----------
+    J. M. Hammersley, "Conditional Monte Carlo", J. ACM 3, 73-76 (1956): a row is the law of a life
+    given all that is not integrated exactly.
+    """
+
+    element: Element
+    part: Replicates
+    confidence: float = CONFIDENCE
+
+    def below(self, threshold: float) -> Estimate:
+        """Estimate P(Y < threshold), undefined rows on neither side."""
+        kept = ~self.element.failed
+        return self._share(self.element.below(threshold), kept, self._part(kept, threshold))
+
+    def above(self, threshold: float) -> Estimate:
+        """Estimate P(Y > threshold), undefined rows on neither side."""
+        kept = ~self.element.failed
+        return self._share(self.element.above(threshold), kept, self._part(kept, threshold, -1))
+
+    def outliving(self, time: float) -> Estimate:
+        """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
+        if self.element.unknown_sides(time).any():
+            return Estimate(reason=_CENSORED)
+        kept = self.element.present
+        return self._share(self.element.above(time), kept, self._part(kept, time, -1))
+
+    def quantile(self, probability: float) -> Estimate:
+        """Estimate a quantile.
+
+        Its interval holds all values at which the interval of P(Y < y) holds the probability.
+        """
+        if not self.element.present.any():
+            return Estimate()
+        search = self._along_time if self.element.law is not None else self._along_values
+        found = search(probability)
+        if not isfinite(found.value):
+            return found
+        return self._trusted(found, self.element.present)
+
+    def times_the_rows(self, threshold: float) -> float:
+        """Return the variance of P(Y < threshold) from lives as computed over that of this one.
+
+        NaN where it is exact, or where too few independent parts show it.
+        """
+        kept = ~self.element.failed
+        if not kept.any():
+            return nan
+        part = replicates_of_some(self.part, kept)
+        worth = np.ones(int(kept.sum()))
+        own, plain = (
+            pulls(one.below(threshold)[kept], worth, part)
+            for one in (self.element, self.element.plain)
+        )
+        if len(own) < _SHOW_VARIANCE or is_constant(own):
+            return nan
+        return float(plain.var() / own.var())
+
+    def _share(self, numbers: Floats, kept: Mask, part: Replicates) -> Estimate:
+        """Estimate a probability, or say why the weights do not allow it."""
+        found = weighted_share(numbers[kept], self._weights(kept), part, None, self.confidence)
+        return self._trusted(found, kept)
+
+    def _weights(self, kept: Mask) -> Floats | None:
+        """Return the weights of some rows."""
+        weights = self.element.weights
+        return None if weights is None else weights[kept]
+
+    def _part(self, kept: Mask, time: float, side: int = 1) -> Replicates:
+        """Return the part of some rows, of which P(T < time) is read, or its complement.
+
+        Where rows are means over what they have learnt together, the law that they have learnt
+        depends on how the terms go together with T < time inside each.
+        """
+        part, weights = replicates_of_some(self.part, kept), self._weights(kept)
+        if not isinstance(part, Clusters) or part.together is None or weights is None:
+            return part
+        known = learnt_terms(self.element.law, self.element.values, time)
+        if known is None:
+            return part
+        follows, by = (one[kept] for one in known)
+        worth = weights / weights.sum()
+        joint = worth @ by - (worth @ self._below(time)[kept]) * (worth @ follows)
+        return part.with_together(part.together.going_with(side * joint))
+
+    def _trusted(self, found: Estimate, kept: Mask) -> Estimate:
+        """Return an estimate, or why the weights of the rows behind it do not allow one.
+
+        Numbers up to 1 have no tail of their own: where few rows carry them, their interval says
+        so.
+        """
+        weights = self.element.weights
+        if weights is None or not kept.any():
+            return found
+        part = replicates_of_some(self.part, kept)
+        return trusted(found, weights[kept], part, self.element.most)
+
+    def _near(self, value: float) -> tuple[Callable[[float], Estimate], float]:
+        """Return a function that estimates P(Y < y) among the rows that have a value.
+
+        It is for all y as cautious as it must be at a quantile: else ends would only be given
+        where rows happen to agree. With it the fewest rows of which it has the interval of hits.
+        """
+        kept = self.element.present
+        weights, part = self._weights(kept), self._part(kept, value)
+        hits = hits_behind(self._below(value)[kept], weights, part)
+
+        @cache  # both ends of an interval are sought from the same places
+        def share(y: float) -> Estimate:
+            return weighted_share(self._below(y)[kept], weights, part, hits, self.confidence)
+
+        return share, fewest_rows(hits)
+
+    def _why_open(self, probability: float, low: float, high: float, rows: float) -> str:
+        """Return why a quantile lacks an end of its interval, or ""."""
+        missing = [name for name, end in (("lower", low), ("upper", high)) if isnan(end)]
+        if not missing:
+            return ""
+        without_hits = min(1 - probability if name == "lower" else probability for name in missing)
+        needed = ceil(log(1 - upper_probability(self.confidence)) / log(without_hits))
+        ends = f"no {' or '.join(missing)} end"
+        if not rows < needed:
+            return f"{ends}: too few rows carry it"
+        return f"{ends}: {rows:.3g} effective rows, and it needs {needed}"
+
+    def _below(self, value: float) -> Floats:
+        """Return the probability that each row lies below a value: of an angle, not its size."""
+        element = self.element
+        if element.law is not None:
+            return element.below(value)
+        with np.errstate(invalid="ignore"):
+            return ((element.values < value) & ~element.censored).astype(float)
+
+    def _average(self, value: float) -> float:
+        kept = self.element.present
+        return float(np.average(self._below(value)[kept], weights=self._weights(kept)))
+
+    def middle(self, probability: float) -> float:
+        """Return the estimate of a quantile without its interval."""
+        if not self.element.present.any():
+            return nan
+        if self.element.law is not None:
+            return self._middle(probability)
+        return self._along_values(probability).value
+
+    def _middle(self, probability: float) -> float:
+        @cache
+        def reached(at: float) -> float:
+            return self._average(exp(at)) - probability
+
+        if (place := self._typical) is None:
+            return np.inf
+        start, unit = place
+        side = 1.0 if reached(start) < 0 else -1.0
+        there = first_step(start, side * unit, lambda at: (reached(at) >= 0) == (side > 0))
+        if there is None:
+            return np.inf if side > 0 else 0.0
+        return exp(root(reached, there, _TOLERANCE))
+
+    @property
+    def _never(self) -> float:
+        """The time that is not reached: infinite where some lives never end, else unknown."""
+        return np.inf if self.element.never.any() else nan
+
+    @property
+    def _typical(self) -> tuple[float, float] | None:
+        """Return the logarithm of a typical life, and the scatter of logarithms."""
+        lives = self.element.values[self.element.present]
+        lives = lives[(lives > 0) & (lives < np.inf)]
+        if not len(lives):
+            return None
+        return log(np.median(lives)), max(float(np.log(lives).std()), 0.01)
+
+    def _along_time(self, probability: float) -> Estimate:
+        """Return a quantile of lives with laws, by root finding in the logarithm of time."""
+        value = self._middle(probability)
+        if isnan(value) or (place := self._typical) is None:
+            return Estimate(value)
+        inside = min(max(value, 1 / _LATEST), _LATEST)
+        share, rows = self._near(inside)
+        middle = share(inside)
+        if isnan(middle.low):
+            return Estimate(value, reason=middle.reason)
+
+        def end(start: float, unit: float, name: str) -> float:
+            def excess(x: float) -> float:
+                found = share(exp(x))
+                exact = found.reason == EXACT  # its interval is a point
+                return float(found.value if exact else getattr(found, name)) - probability
+
+            below = excess(start) < 0
+            step = unit if below else -unit
+            there = first_step(start, step, lambda x: (excess(x) >= 0) == below)
+            if there is None:
+                return self._never if below else nan
+            return exp(root(excess, there, _TOLERANCE))
+
+        start, unit = place
+        if 0 < value < np.inf:
+            start, unit = log(value), unit / 30
+        low = 0.0 if value == 0 else min(end(start, unit, "high"), value)
+        high = value if value == np.inf else max(end(start, unit, "low"), value)
+        return Estimate(value, low, high, self._why_open(probability, low, high, rows))
+
+    def _along_values(self, probability: float) -> Estimate:
+        """Return a quantile of known values, which is one of them."""
+        weights, values = self._weights(self.element.present), self.element.at_most
+        values = np.unique(values if weights is None else values[weights > 0])
+        values = values[np.isfinite(values)]
+        if not len(values):
+            return Estimate(self._never)
+        after = np.append(values[1:], np.inf)  # P(Y <= value) is P(Y < y) up to the next value
+
+        def least(share: Callable[[float], Estimate], name: str) -> float:
+            def reached(place: int) -> bool:
+                return getattr(share(float(after[place])), name) >= probability - ROUNDING
+
+            place = _least(len(values), reached)
+            return self._never if place is None else float(values[place])
+
+        value = least(lambda y: Estimate(self._average(y)), "value")
+        cut = self.element.values[self.element.censored]
+        if len(cut) and value >= cut.min():
+            return Estimate(reason=_CENSORED)
+        beside = float(after[np.searchsorted(values, value)]) if isfinite(value) else np.inf
+        share, rows = self._near(beside)
+        low, high = least(share, "high"), least(share, "low")
+        return Estimate(value, low, high, self._why_open(probability, low, high, rows))
+
+
+def first_step(
+    start: float, step: float, reached: Callable[[float], bool]
+) -> tuple[float, float] | None:
+    """Return the ends of the first growing step in which something is reached."""
+    before = start
+    for _ in range(_FARTHEST):
+        at = before + step
+        if not -700 < at < 700:
+            return None
+        if reached(at):
+            return before, at
+        before, step = at, 1.3 * step
+    return None
+
+
+def _least(count: int, reached: Callable[[int], bool]) -> int | None:
+    """Return the least place at which something is reached, from then on."""
+    low, high = 0, count
+    while low < high:
+        middle = (low + high) // 2
+        if reached(middle):
+            high = middle
+        else:
+            low = middle + 1
+    return low if low < count else None

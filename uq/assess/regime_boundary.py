@@ -1,0 +1,96 @@
+"""How intermingled the regimes of a result are: the boundary between them."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import EVERYWHERE
+from uq.assess.statistic import Statistic, entry
+from uq.assess.summary import REGIME
+from uq.result.elements import has_independent_samples, independent_rows
+from uq.result.nesting import one_of_each_sample
+from uq.result.result_file import failed
+from uq.result.weights import has_weights
+from uq.sampling.truncation import cdf_within
+from uq.stats.estimate import Estimate
+from uq.stats.uncertainty_exponent import uncertainty_exponent
+from uq.study.input_checks import laws_of
+from uq.text.numbers import percent, percent_interval
+
+MOST_ROWS = 50_000
+"""Of more rows the first ones are compared: all would take too long."""
+
+BOUNDARY = "boundary"
+"""Its part of the JSON of a summary."""
+
+EXPONENT = "uncertainty_exponent"
+
+DEPENDENT = "the rows of a '{design}' design are not independent; use design 'monte-carlo'"
+
+
+def boundary(ds: xr.Dataset) -> Statistic | None:
+    """Estimate how intermingled the regimes are over the inputs.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    Statistic or None
+        The uncertainty exponent of the boundary between the regimes, or the reason why there is
+        none; of one row of each sample. None where the rows do not end in several regimes, or have
+        weights.
+    """
+    if REGIME not in ds or has_weights(ds):
+        return None
+    rows = compared_rows(ds)
+    if len(np.unique(rows[REGIME])) < 2:
+        return None
+    if has_independent_samples(ds):
+        found = _exponent(rows)
+    else:
+        found = Estimate(reason=DEPENDENT.format(design=ds.attrs["design"]))
+    label = EXPONENT.replace("_", " ")
+    return Statistic((BOUNDARY, EXPONENT), label, found, by=(uncertainty_exponent,))
+
+
+def compared_rows(ds: xr.Dataset) -> xr.Dataset:
+    """Return the first `MOST_ROWS` of the independent rows, one of each sample, with a regime."""
+    rows = one_of_each_sample(independent_rows(ds)).isel(sample=slice(MOST_ROWS))
+    return rows.isel(sample=(rows[REGIME].values >= 0) & ~failed(rows))
+
+
+def _exponent(rows: xr.Dataset) -> Estimate:
+    laws, values = laws_of(rows.attrs["study"]), independent_inputs(rows)
+    shares = [cdf_within(law, values[name], EVERYWHERE) for name, law in laws.items()]
+    listed = [law.discrete for law in laws.values()]
+    if all(listed):
+        return Estimate(reason="no input varies continuously")
+    table = np.column_stack(shares)
+    kinds = np.unique(table[:, listed], axis=0, return_inverse=True)[1] if any(listed) else None
+    return uncertainty_exponent(table[:, ~np.array(listed)], rows[REGIME].values, kinds)
+
+
+def boundary_json(one: Statistic | None) -> dict[str, Any]:
+    """Return what is known of the boundary in plain data: nothing without several regimes."""
+    return {} if one is None else {BOUNDARY: {EXPONENT: entry(one)}}
+
+
+def still_uncertain(exponent: Estimate) -> Estimate:
+    """Return the share of uncertain outcomes that stay so if all inputs are known twice as well."""
+    value, high, low = (2.0 ** -np.clip(exponent.numbers, 0.0, 1.0)).tolist()
+    return Estimate(value, low, high)
+
+
+def in_words(one: Statistic) -> str:
+    """Return what an exponent means for a user, in a clause."""
+    value, high, low = (1 - end for end in still_uncertain(one.estimate).numbers)
+    return (
+        f"if all inputs are known twice as well, {percent(value)} ({percent_interval(low, high)})"
+        " fewer outcomes are uncertain (50 % where the boundary between regimes is smooth, 0 %"
+        " where they are intermingled everywhere)"
+    )

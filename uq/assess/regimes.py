@@ -1,0 +1,135 @@
+"""The regimes of a result compared: inputs, outputs, and the variance between them."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.regime_boundary import EXPONENT, boundary
+from uq.assess.statistics.between_regimes import between_share
+from uq.assess.summary import REGIME, category_shares
+from uq.assess.targets import Target, category_targets, number_of
+from uq.errors import InputError
+from uq.indices.index import RefusedError
+from uq.indices.methods import KS, METHODS
+from uq.indices.sample import Sample
+from uq.result.elements import (
+    Floats,
+    analysis_of,
+    elements_of,
+    flags,
+    independent_rows,
+    replicates_of,
+    shown_outputs,
+)
+from uq.result.nesting import one_of_each_sample
+from uq.result.weights import refuse_weights
+from uq.stats.moments import moments
+from uq.stats.order_statistics import is_within
+
+PROBABILITIES = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+def regimes(ds: xr.Dataset) -> xr.Dataset:
+    """Compare the regimes of a result.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a model with regimes.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of the independent rows, over ``regime``: ``count``, and ``share`` with ``share_low`` and
+        ``share_high``. Over ``regime`` and ``parameter``: ``input_quantile``, at each
+        ``probability``, of the inputs of the rows in it (NaN where they do not reach it);
+        ``distance``, of Kolmogorov and Smirnov, between these and the inputs of all other rows, and
+        ``distance_dummy``, the largest for inputs without effect; NaN where one side has too few
+        rows. Over ``output`` and ``regime``: ``rows``, ``mean``, ``sd`` (NaN where the tail is too
+        heavy). Over ``output``: ``between``, the share of its variance that lies between
+        regimes, with ``between_low`` and ``between_high``. Lifetimes are replaced by their
+        logarithms, or by their ranks where rows never end or are censored. Without a dimension:
+        ``uncertainty_exponent`` of the boundary between the regimes, with ``_low`` and ``_high``;
+        its attribute ``reason`` says why it is NaN.
+
+    Raises
+    ------
+    InputError
+        When the result has no regimes.
+    """
+    if "regime" not in ds:
+        raise InputError("this result has no regimes to compare")
+    refuse_weights(ds, "a comparison of regimes")
+    rows = independent_rows(ds)
+    shares = {
+        name: one for name, one in category_shares(rows, REGIME).items() if one.facts["count"]
+    }
+    codes = {name: code for code, name in flags(rows["regime"]) if name in shares}
+    members = [rows["regime"].values == code for code in codes.values()]
+    inputs = {
+        str(name): variable.values
+        for name, variable in rows.data_vars.items()
+        if variable.attrs.get("role") == "input"
+    }
+    plain = one_of_each_sample(rows)
+    own = {name: plain[name].values for name in inputs}
+    quantiles = [[_quantiles(x[hits]) for x in inputs.values()] for hits in members]
+    far = {target.name: _distances(own, target) for target in category_targets(plain, "regime")}
+    unknown = [np.nan] * (len(inputs) + 1)
+    distances = [far.get(f"P(regime={name})", unknown) for name in codes]
+    found = [
+        target
+        for element in elements_of(rows, shown_outputs(rows, analysis_of(rows)))
+        if not (target := number_of(element)).refused
+    ]
+    moments = [[_moments(target.values[hits]) for hits in members] for target in found]
+    split = [between_share(t.values, rows["regime"].values, replicates_of(rows)) for t in found]
+
+    sizes = (len(found), len(members), len(inputs))
+    distance = np.reshape(distances, (sizes[1], sizes[2] + 1))
+    data: dict[str, Any] = {
+        "input_quantile": (
+            ("regime", "parameter", "probability"),
+            np.reshape(quantiles, (*sizes[1:], len(PROBABILITIES))),
+        ),
+        "distance": (("regime", "parameter"), distance[:, :-1]),
+        "distance_dummy": ("regime", distance[:, -1]),
+        "between": ("output", [one.value for one in split]),
+        "between_low": ("output", [one.low for one in split]),
+        "between_high": ("output", [one.high for one in split]),
+    }
+    for i, name in enumerate(("rows", "mean", "sd")):
+        data[name] = (("output", "regime"), np.reshape(moments, (*sizes[:2], 3))[..., i])
+    estimates = [one.estimate for one in shares.values()]
+    data["count"] = ("regime", np.array([one.facts["count"] for one in shares.values()], float))
+    for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
+        data[name] = ("regime", np.array([getattr(one, end) for one in estimates]))
+    between = boundary(ds)
+    if between is not None:
+        for end, value in zip(("", "_low", "_high"), between.estimate.numbers, strict=True):
+            data[f"{EXPONENT}{end}"] = ((), value, {"reason": between.estimate.reason})
+    coords = {"regime": list(codes), "parameter": list(inputs), "probability": list(PROBABILITIES)}
+    return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
+
+
+def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
+    """Return the distance of each input, and the largest of inputs without effect."""
+    try:
+        found = METHODS["regional"].indices(Sample.plain(target.values, inputs))
+    except RefusedError:
+        return [np.nan] * (len(inputs) + 1)
+    return [*(index.value for index in found.values[KS].values()), found.nulls[KS].one]
+
+
+def _quantiles(values: Floats) -> Floats:
+    reached = [is_within(probability, len(values)) for probability in PROBABILITIES]
+    return np.where(reached, np.quantile(values, PROBABILITIES), np.nan)
+
+
+def _moments(values: Floats) -> tuple[float, float, float]:
+    kept = values[np.isfinite(values)]
+    if not len(kept):
+        return 0, np.nan, np.nan
+    found = moments(kept)
+    return len(kept), found.mean.value, found.sd.value

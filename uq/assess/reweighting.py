@@ -1,0 +1,77 @@
+"""The rows of a result as those of another study: weighted, and laws of lives replaced."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.densities import changed_laws, log_ratio, share_without_rows
+from uq.assess.row_inputs import Inputs
+from uq.assess.scaling import integrated
+from uq.result.element import Element
+from uq.result.elements import elements_of
+from uq.stats.importance_weights import Smoothed, no_weights, smoothed
+from uq.stats.intervals import Replicates
+
+
+class Weighting:
+    """Weights of the rows of a result that make them those of another study.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    old, new : Inputs
+        The inputs of these rows, with the laws of either study.
+    part : ndarray of int, shape (n,), or None
+        The independent part of each row.
+
+    Attributes
+    ----------
+    used : dict of str to Smoothed
+        Element -> its weights.
+    refused : dict of str to Smoothed
+        Element -> its weights, which cannot be trusted, or are impossible: the other study has
+        values where no row can be.
+    """
+
+    def __init__(self, rows: xr.Dataset, old: Inputs, new: Inputs, part: Replicates):
+        self._rows, self._old, self._new, self._part = rows, old, new, part
+        self.used: dict[str, Smoothed] = {}
+        self.refused: dict[str, Smoothed] = {}
+        self.of = cache(self._of)
+
+    @property
+    def all_inputs(self) -> Smoothed:
+        """The weights with nothing integrated."""
+        return self.of(())
+
+    def elements(self, outputs: Sequence[str]) -> Iterator[Element]:
+        """Yield the elements of some outputs whose weights can be trusted."""
+        for element in elements_of(self._rows, outputs):
+            law = None
+            if element.declared.scales and not element.censored.any():
+                law = integrated(self._rows, element.declared, self._new).law
+            found = self.of(law.inputs if law else ())
+            if found.refusal:
+                self.refused[element.name] = found
+                continue
+            self.used[element.name] = found
+            yield replace(element, law=law, weights=found.weights)
+
+    def _of(self, inputs: tuple[str, ...]) -> Smoothed:
+        """Return the weights of rows in which these inputs are integrated."""
+        for name in changed_laws(self._old, self._new):
+            if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
+                return no_weights(
+                    len(next(iter(self._old.values.values()))),
+                    f"uncertain.{name}: has {share:.2g} of its probability where the study's law"
+                    " has none, so that no row is there; run it as a study of its own",
+                )
+        weights = log_ratio(self._old, self._new, inputs)
+        if not np.isfinite(weights.max()):
+            why = "no row of this result is possible under the other laws"
+            return no_weights(len(weights), why)
+        return smoothed(weights, self._part)

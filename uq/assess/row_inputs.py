@@ -1,0 +1,101 @@
+"""The uncertain inputs of some rows: their values, and the laws that these follow."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from uq.contract import Floats
+from uq.result.elements import study_file_of
+from uq.sampling.law import Law
+from uq.sampling.truncation import cdf_within, factor_of
+from uq.study.file import DependenceTable, StudyFile, Tied
+from uq.study.input_checks import laws_of
+
+EVERYWHERE = (-inf, inf)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The uncertain inputs of some rows, and their laws.
+
+    Attributes
+    ----------
+    laws : dict of str to Law
+        Of a parameter that is a multiple of another, that of the factor.
+    tied : dict of str to str
+        Parameter -> the one that it equals.
+    dependence : DependenceTable or None
+    bounds : dict of str to tuple of float
+        Which a parameter shares with those tied to it.
+    values : dict of str to ndarray, shape (n,)
+        Of the rows.
+    """
+
+    laws: Mapping[str, Law]
+    tied: Mapping[str, str]
+    dependence: DependenceTable | None
+    bounds: Mapping[str, tuple[float, float]]
+    values: Mapping[str, Floats]
+
+    @property
+    def correlated(self) -> Sequence[str]:
+        """Parameters with rank correlations."""
+        return () if self.dependence is None else self.dependence.parameters
+
+    def own(self, name: str) -> Floats:
+        """Return what the law of a parameter gives: its values, or those of its factor."""
+        law, values = self.laws[name], self.values[name]
+        return values if law.times is None else factor_of(law, values, self.values[law.times])
+
+    def normal(self, name: str) -> Floats:
+        """Return the standard normal variables behind the values of a parameter."""
+        share = cdf_within(self.laws[name], self.values[name], self.bounds[name])
+        return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
+
+
+def inputs_of(rows: xr.Dataset, study: StudyFile | None = None, text: str = "") -> Inputs:
+    """Return the inputs of some rows of a result.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+    study : StudyFile, optional
+        Another study of the same inputs, with its `text`.
+    """
+    study, text = (study_file_of(rows), rows.attrs["study"]) if study is None else (study, text)
+    laws = laws_of(text)
+    tied = {name: one.equals for name, one in study.uncertain.items() if isinstance(one, Tied)}
+    admissible = {
+        name: tuple(map(float, rows[name].attrs.get("admissible", EVERYWHERE)))
+        for name in study.uncertain
+    }
+    bounds = {}
+    for name in laws:
+        ends = [admissible[one] for one in (name, *(a for a, b in tied.items() if b == name))]
+        bounds[name] = (max(low for low, _ in ends), min(high for _, high in ends))
+    return Inputs(laws, tied, study.dependence, bounds, _Columns(rows, study.uncertain))
+
+
+class _Columns(Mapping[str, Floats]):
+    """Columns of a result, each read when it is first needed."""
+
+    def __init__(self, rows: xr.Dataset, names: Iterable[str]):
+        self._rows, self._names = rows, tuple(names)
+        self._read: dict[str, Floats] = {}
+
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._read:
+            self._read[name] = self._rows[name].values
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)

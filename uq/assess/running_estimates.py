@@ -1,0 +1,52 @@
+"""Running estimates, each with the numbers of samples that it comes from."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import pandas as pd
+import xarray as xr
+
+from uq.assess.convergence import enough, running_estimates
+from uq.stats.estimate import Estimate
+
+Sizes = list[tuple[int, Estimate]]
+"""Number of samples, and the estimate from them."""
+
+
+class Converging(NamedTuple):
+    """The convergence of one output, or of what stands for it.
+
+    Attributes
+    ----------
+    estimates : dict of str to list
+        Label -> its `Sizes`.
+    errors : dict or None
+        Its line of `uq.enough`, if it has one.
+    """
+
+    estimates: Mapping[str, Sizes]
+    errors: Mapping[Any, Any] | None
+
+
+def converging(ds: xr.Dataset, output: str | None = None) -> dict[str, Converging]:
+    """Return the running estimates of a result by output and label.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    output : str, optional
+        As for `uq.running_estimates`.
+    """
+    running, errors = running_estimates(ds, output), enough(ds, output).to_dict("index")
+    return {
+        str(name): Converging(
+            {str(label): _sizes(own) for label, own in lines.groupby("estimate", sort=False)},
+            errors.get(name),
+        )
+        for name, lines in running.groupby("output", sort=False)
+    }
+
+
+def _sizes(lines: pd.DataFrame) -> Sizes:
+    columns = (lines[name].tolist() for name in ("samples", "value", "low", "high"))
+    return [(samples, Estimate(*numbers)) for samples, *numbers in zip(*columns, strict=True)]

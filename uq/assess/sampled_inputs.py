@@ -1,0 +1,149 @@
+"""The laws and rank correlations of the inputs, as stated and as the rows have them."""
+
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+import scipy  # which imports scipy.stats when it is first used
+import xarray as xr
+
+from uq.assess.independent_inputs import independent_inputs
+from uq.result.elements import Floats, independent_rows
+from uq.result.nesting import one_of_each_sample
+from uq.result.weights import row_weights
+from uq.sampling.designs import DESIGNS
+from uq.sampling.law import Law
+from uq.sampling.truncation import cdf_within, factor_of, ppf_within
+from uq.study.definition import Study
+from uq.study.input_checks import laws_of
+from uq.study.row_sampling import row_block, rows
+
+PROBABILITIES = (0.05, 0.5, 0.95)
+
+MAX_ROWS = 100_000
+"""Rows of a study that are drawn for comparison with its laws."""
+
+EVERYWHERE = (-inf, inf)
+"""Bounds of a parameter cut off at most a millionth, which is negligible."""
+
+
+class SampledInput(NamedTuple):
+    """One input as stated and as the rows have it.
+
+    Attributes
+    ----------
+    stated, sampled : ndarray, shape (3,)
+        Quantiles of `PROBABILITIES`.
+    distance : float
+        Largest difference of the two cumulative distributions (Kolmogorov-Smirnov).
+    """
+
+    stated: Floats
+    sampled: Floats
+    distance: float
+
+
+def sampled_inputs(study: Study) -> dict[str, SampledInput]:
+    """Compare the laws of a study with its rows, the first 100,000 of them.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    dict of str to SampledInput
+        Empty for designs whose rows do not follow the laws.
+    """
+    if not DESIGNS[study.design.method].follows_laws:
+        return {}
+    values = drawn_inputs(study)
+    return {name: compare(law, values[name]) for name, law in study.uncertain.items()}
+
+
+def drawn_inputs(study: Study) -> dict[str, Floats]:
+    """Return the first rows of a study, one of each sample, each input as its own law gives it."""
+    x = row_block(study, 0, min(rows(study), MAX_ROWS)).x[:: study.design.rows_of_a_sample]
+    column = {name: x[:, i] for i, name in enumerate(study.model.parameter_names)}
+    return {
+        name: column[name] if law.times is None else factor_of(law, column[name], column[law.times])
+        for name, law in study.uncertain.items()
+    }
+
+
+def sampled_ranks(study: Study) -> Floats:
+    """Return the rank correlations that the rows of a study have, shape (k, k).
+
+    Parameters
+    ----------
+    study : Study
+        With dependence; the order is that of its matrix.
+    """
+    values = drawn_inputs(study)
+    assert study.dependence is not None
+    return np.corrcoef([scipy.stats.rankdata(values[name]) for name in study.dependence.parameters])
+
+
+def compare(law: Law, values: Floats, weights: Floats | None = None) -> SampledInput:
+    """Compare a law with values that should follow it: quantiles of both [1]_, their distance.
+
+    Parameters
+    ----------
+    law : Law
+    values : ndarray, shape (n,)
+    weights : ndarray, shape (n,), optional
+
+    Returns
+    -------
+    SampledInput
+
+    References
+    ----------
+    .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", The American
+       Statistician 50 (1996) 361, definition 1.
+    """
+    probabilities = np.array(PROBABILITIES)
+    worth = np.ones(len(values)) if weights is None else weights
+    order = np.argsort(values, kind="stable")
+    ascending, share = values[order], np.append(0.0, np.cumsum(worth[order]) / worth.sum())
+    distinct = np.unique(ascending)
+    stated = cdf_within(law, distinct, EVERYWHERE)
+    up_to = share[np.searchsorted(ascending, distinct, side="right")]
+    distance = np.abs(up_to - stated).max()
+    if not law.discrete:  # just before each step of the rows
+        before = share[np.searchsorted(ascending, distinct, side="left")]
+        distance = max(distance, np.abs(before - stated).max())
+    return SampledInput(
+        ppf_within(law, probabilities, EVERYWHERE),
+        np.quantile(values, probabilities, method="inverted_cdf", weights=weights),
+        float(distance),
+    )
+
+
+def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
+    """Return the law of each input of a result and the values of its rows, where they follow it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    dict of str to tuple of Law and ndarray
+        For a parameter that is another times a factor, those of the factor.
+    """
+    plain = _one_row_of_each(ds)
+    if plain.sizes["sample"] == 0:
+        return {}
+    values = independent_inputs(plain)
+    return {name: (law, values[name]) for name, law in laws_of(ds.attrs["study"]).items()}
+
+
+def weights_of_samples(ds: xr.Dataset) -> Floats | None:
+    """Return the weights of the rows of `laws_and_values`, None where they have none."""
+    return row_weights(_one_row_of_each(ds))
+
+
+def _one_row_of_each(ds: xr.Dataset) -> xr.Dataset:
+    return one_of_each_sample(independent_rows(ds))

@@ -1,0 +1,266 @@
+"""Which inputs of a result only scale a life, and the laws of its lives given all others."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.posterior_scale import learnt_input, learnt_scale
+from uq.assess.row_inputs import Inputs, inputs_of
+from uq.assess.scale_laws import ConditionalScale, IndependentScale, Scale
+from uq.contract import Output
+from uq.result.element import Element
+from uq.result.elements import elements_of
+from uq.result.weights import has_weights, stand_for_any_unit
+from uq.sampling.dependence import normal_correlations
+from uq.sampling.designs import DESIGNS
+from uq.sampling.law import Law
+from uq.sampling.levels import SHARED
+from uq.sampling.log_sums import LogTerm, law_of_sum
+from uq.sampling.truncation import support
+from uq.text.numbers import counted
+
+NOT_POSITIVE = "it is not always positive"
+
+
+@dataclass(frozen=True)
+class Integrated:
+    """What is integrated of the lives of an output, and why not more.
+
+    Attributes
+    ----------
+    law : Scale or None
+    kept : dict of str to str
+        Input that scales the lives -> why it is not integrated.
+    """
+
+    law: Scale | None
+    kept: Mapping[str, str]
+
+
+def integrated(
+    rows: xr.Dataset, output: Output, inputs: Inputs, levels: Collection[str] | None = None
+) -> Integrated:
+    """Return the law of what scales the lives of an output, given all that does not.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    output : Output
+    inputs : Inputs
+        Of these rows.
+    levels : collection of str, optional
+        Only inputs of these levels.
+
+    Returns
+    -------
+    Integrated
+        All inputs that are independent of the others, or the one that depends on others if it
+        alone scatters the lives more.
+    """
+    exponents, kept, _ = _exponents(inputs, output.scales)
+    if levels is not None:
+        level = {name: law.level for name, law in inputs.laws.items()}
+        exponents = {name: e for name, e in exponents.items() if level[name] in levels}
+        kept = {name: why for name, why in kept.items() if level[name] in levels}
+    if DESIGNS[rows.attrs["design"]].imported:
+        return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+    if has_weights(rows):
+        own = stand_for_any_unit(rows)
+        learnt = {name for name in exponents if not own or inputs.laws[name].level == SHARED}
+        kept |= dict.fromkeys(learnt, "inspections have changed its law")
+    for name in exponents:
+        if problem := _problem(name, inputs) or _sign_problem(name, inputs):
+            kept[name] = problem
+    terms = {
+        name: _term(inputs.laws[name], inputs.bounds[name], exponent)
+        for name, exponent in exponents.items()
+        if name not in kept and inputs.laws[name].times is None
+    }
+    free = {name: one for name, one in terms.items() if name not in inputs.correlated}
+    bound = {
+        name: _conditional(name, exponent, inputs)
+        for name, exponent in exponents.items()
+        if name not in kept and name not in free
+    }
+    reach = {name: law.deviation * law.spread for name, law in bound.items()}
+    widest = max(bound, key=lambda name: reach[name], default="")
+    if free and np.hypot.reduce([one.spread for one in free.values()]) >= reach.get(widest, 0.0):
+        kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
+        return Integrated(_independent(free, exponents, inputs, kept), kept)
+    kept |= dict.fromkeys({*free, *bound} - {widest}, f"{widest} scatters lives more")
+    return Integrated(bound.get(widest), kept)
+
+
+def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
+    """Return the exponents of the inputs that are integrated while their laws stay positive."""
+    exponents, kept, _ = _exponents(inputs, output.scales)
+    return {
+        name: exponent
+        for name, exponent in exponents.items()
+        if name not in kept and not _problem(name, inputs)
+    }
+
+
+class _Exponents(NamedTuple):
+    """What inputs do to a life that scales.
+
+    Attributes
+    ----------
+    scaling : dict of str to float
+        Input -> exponent, with those of the parameters that equal it.
+    kept : dict of str to str
+        Those that do more, or on which others depend -> why they are not integrated.
+    idle : tuple of str
+        Those whose exponents cancel.
+    """
+
+    scaling: dict[str, float]
+    kept: dict[str, str]
+    idle: tuple[str, ...]
+
+
+def _exponents(inputs: Inputs, scales: Mapping[str, float]) -> _Exponents:
+    found: dict[str, float] = {}
+    for name, exponent in scales.items():
+        if name in inputs.laws or name in inputs.tied:
+            leader = inputs.tied.get(name, name)
+            found[leader] = found.get(leader, 0.0) + exponent
+    kept = {}
+    for leader in found:
+        members = [leader, *(name for name, other in inputs.tied.items() if other == leader)]
+        if other := next((name for name in members if name not in scales), ""):
+            same = "it" if other == leader else f"{other} has the same value and"
+            kept[leader] = f"{same} does more than scale lives"
+        elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
+            kept[leader] = f"{other} is a multiple of it"
+    idle = tuple(name for name, one in found.items() if not one and name not in kept)
+    return _Exponents({name: one for name, one in found.items() if one}, kept, idle)
+
+
+def without_effect(inputs: Inputs, output: Output) -> tuple[str, ...]:
+    """Return the inputs that scale the lives of an output to powers that cancel."""
+    return _exponents(inputs, output.scales).idle
+
+
+def _problem(name: str, inputs: Inputs) -> str:
+    """Return why an input cannot be integrated, whatever its law may be, or ""."""
+    law = inputs.laws[name]
+    if law.discrete:
+        return "its law is one of listed values"
+    if not (inputs.values[name] > 0).all():
+        return NOT_POSITIVE
+    if law.times is not None:
+        positive = (inputs.values[law.times] > 0).all()
+        return "" if positive else "it is a multiple of an input that is not positive"
+    if name in inputs.correlated:
+        listed = [one for one in inputs.correlated if inputs.laws[one].discrete]
+        return f"it depends on listed values of {listed[0]}" if listed else ""
+    return ""
+
+
+def _sign_problem(name: str, inputs: Inputs) -> str:
+    law = inputs.laws[name]
+    return "" if law.times or support(law, inputs.bounds[name])[0] > 0 else NOT_POSITIVE
+
+
+@lru_cache(maxsize=64)
+def _term(law: Law, bounds: tuple[float, float], exponent: float) -> LogTerm:
+    return LogTerm(law, bounds, exponent)
+
+
+@lru_cache(maxsize=64)
+def _term_of_sum(terms: tuple[LogTerm, ...]) -> object:
+    try:
+        return law_of_sum(list(terms))
+    except ArithmeticError:
+        return None
+
+
+def _independent(
+    free: Mapping[str, LogTerm],
+    exponents: Mapping[str, float],
+    inputs: Inputs,
+    kept: dict[str, str],
+) -> IndependentScale:
+    law = _term_of_sum(tuple(free.values()))
+    if law is None:
+        widest = max(free, key=lambda name: free[name].spread)
+        kept |= dict.fromkeys({*free} - {widest}, "the law of their product is not smooth enough")
+        free, law = {widest: free[widest]}, free[widest]
+    drawn = sum(exponents[name] * np.log(inputs.values[name]) for name in free)
+    return IndependentScale(tuple(free), law, drawn)  # type: ignore[arg-type]
+
+
+def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale:
+    """Return the law of an input given those that it depends on."""
+    law, bounds, values = inputs.laws[name], inputs.bounds[name], inputs.values[name]
+    if law.times is not None:
+        nothing = np.zeros(len(values))
+        other = inputs.values[law.times]
+        return ConditionalScale((name,), law, bounds, exponent, values, nothing, 1.0, other)
+    slopes, deviation = given_others(name, inputs)
+    mean = np.stack([inputs.normal(other) for other in slopes], axis=1) @ list(slopes.values())
+    return ConditionalScale((name,), law, bounds, exponent, values, mean, deviation)
+
+
+def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
+    """Return slopes and deviation of the normal variable of an input, given the others."""
+    assert inputs.dependence is not None
+    names = list(inputs.correlated)
+    matrix = normal_correlations(inputs.dependence.rank_correlation)
+    own, rest = names.index(name), [i for i, one in enumerate(names) if one != name]
+    slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, own])
+    deviation = float(np.sqrt(1 - matrix[own, rest] @ slope))
+    return dict(zip([names[i] for i in rest], slope.tolist(), strict=True)), deviation
+
+
+def population(
+    rows: xr.Dataset, outputs: Sequence[str], *, plain: bool = False
+) -> Iterator[Element]:
+    """Yield the elements of some outputs, with the laws of their lives where these are known.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    outputs : sequence of str
+    plain : bool
+        Whether lives are taken as computed.
+
+    Yields
+    ------
+    Element
+    """
+    inputs = None
+    for element in elements_of(rows, outputs):
+        if not plain and element.declared.scales and not element.censored.any():
+            inputs = inputs or inputs_of(rows)
+            learnt = learnt_scale(rows, inputs, scalers(inputs, element.declared))
+            law = learnt or integrated(rows, element.declared, inputs).law
+            element = replace(element, law=law)
+        yield element
+
+
+def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
+    """Return a sentence on what scales the lives of an element but is not integrated, or ""."""
+    inputs = inputs_of(rows)
+    exponents, _, _ = _exponents(inputs, element.declared.scales)
+    if not exponents:
+        return ""
+    if element.censored.any():
+        names = ", ".join(exponents)
+        count = int(element.censored.sum())
+        lives = counted(count, "life is", "lives are")
+        return f"{names} not integrated: {lives} censored, which gives bounds only"
+    kept = integrated(rows, element.declared, inputs).kept
+    return not_integrated({name: why for name, why in kept.items() if name != learnt_input(rows)})
+
+
+def not_integrated(kept: Mapping[str, str]) -> str:
+    """Return a sentence on inputs that are not integrated, or ""."""
+    return "; ".join(f"{name} not integrated: {why}" for name, why in kept.items())

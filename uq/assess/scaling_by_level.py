@@ -1,0 +1,69 @@
+"""What only scales a life, level by level: its part in the scatter of lives is known exactly.
+
+The logarithm of a life is that of everything else, plus a sum of independent terms of each level.
+With the terms at their means, the variances of the terms are added to those of the levels.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import xarray as xr
+
+from uq.assess.row_inputs import inputs_of
+from uq.assess.scale_laws import Scale
+from uq.assess.scaling import integrated, not_integrated, without_effect
+from uq.contract import Floats
+from uq.result.element import Element
+from uq.sampling.levels import LEVELS
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What is integrated of the logarithms of lives on each level.
+
+    Attributes
+    ----------
+    laws : dict of str to Scale
+        By level.
+    why_not_more : str
+        A sentence on the inputs that scale lives but are not integrated, or "".
+    idle : tuple of str
+        Inputs that scale lives to powers that cancel.
+    """
+
+    laws: Mapping[str, Scale]
+    why_not_more: str = ""
+    idle: tuple[str, ...] = ()
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What is integrated."""
+        return tuple(name for law in self.laws.values() for name in law.inputs)
+
+    def mean_logarithms(self, logarithms: Floats) -> Floats:
+        """Return the means of the logarithms of lives over what is integrated, shape (n,)."""
+        return sum((law.moments[0] for law in self.laws.values()), start=logarithms)
+
+    @property
+    def variances(self) -> dict[str, Floats]:
+        """Level -> the variance of the logarithm that is integrated there, of each row."""
+        return {level: law.moments[1] for level, law in self.laws.items()}
+
+
+def scales_by_level(rows: xr.Dataset, element: Element) -> Scales:
+    """Return what only scales the lives of an element, on each level.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    element : Element
+        A life of these rows, none censored.
+    """
+    if not element.declared.scales:
+        return Scales({})
+    inputs = inputs_of(rows)
+    found = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
+    kept = {name: why for one in found.values() for name, why in one.kept.items()}
+    laws = {level: one.law for level, one in found.items() if one.law is not None}
+    return Scales(laws, not_integrated(kept), without_effect(inputs, element.declared))

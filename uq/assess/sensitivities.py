@@ -1,0 +1,265 @@
+"""Which inputs explain the scatter of an output: every method, for a whole result."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import nan
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.chosen_targets import chosen
+from uq.assess.design_sample import sample_of
+from uq.assess.few_events import few_hits
+from uq.assess.independent_inputs import notes_on_inputs, why_dependent
+from uq.assess.targets import Target, where_it_happens
+from uq.contract import Mask
+from uq.errors import InputError, nearest
+from uq.indices.index import IndexKind, Indices, RefusedError
+from uq.indices.method import Method
+from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_inputs
+from uq.indices.sample import Sample
+from uq.result.elements import analysis_of
+from uq.result.nesting import is_nested, one_of_each_sample
+from uq.result.ranked_rows import ranked_in_words, ranked_rows
+from uq.result.regimes import within_regime
+from uq.result.result_file import refuse_empty
+from uq.result.weights import refuse_weights
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import PLAIN
+from uq.stats.estimate import Estimate
+from uq.stats.tails import lacks_variance
+
+ONE_ROW = (
+    "from one row of each sample, since rows of one sample are not independent; see 'uq levels'"
+)
+"""The note on indices where samples have several rows."""
+
+
+@dataclass(frozen=True)
+class TargetIndices:
+    """The indices of a target, or the reason why it has none.
+
+    Attributes
+    ----------
+    name : str
+        That of the target.
+    rows_used, groups_dropped : int
+        Rows, and groups of rows, with and without a value in each row.
+    indices : Indices
+        Empty where there are none.
+    refused : str
+        Why there are none, or "".
+    rows_factor : float
+        How many times the rows would give some; NaN where that is not known.
+    """
+
+    name: str
+    rows_used: int
+    groups_dropped: int
+    indices: Indices = Indices({})
+    refused: str = ""
+    rows_factor: float = nan
+
+    def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
+        """Return the indices of single inputs, or those of pairs."""
+        values = self.indices.values.items()
+        return {kind: found for kind, found in values if kind.of_pairs == of_pairs}
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """The indices of some targets by one method.
+
+    Attributes
+    ----------
+    method : str
+    rows_used, groups_dropped : int
+        Of the rows with a value of every target that has indices.
+    targets : dict of str to TargetIndices
+        By name.
+    """
+
+    method: str
+    rows_used: int
+    groups_dropped: int
+    targets: Mapping[str, TargetIndices]
+
+
+def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
+    """Return the methods that the study asks for, or else the default of its design.
+
+    For dependent inputs, one that does not assume independence.
+    """
+    dependent = bool(why_dependent(ds)) if dependent is None else dependent
+    feeds = fed_by(DESIGNS[ds.attrs["design"]], dependent)
+    asked = analysis_of(ds).sensitivity
+    return tuple(name for name in asked if name in feeds) or feeds[:1] or asked
+
+
+def sensitivities(
+    ds: xr.Dataset,
+    method: str | None = None,
+    output: str | Sequence[str] | None = None,
+    regime: str | None = None,
+) -> Sensitivities:
+    """Estimate sensitivity indices.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    method : str, optional
+        By default the first of `methods`.
+    output : str or sequence of str, optional
+        An output, one element of it, or one of the names that this function returns; by default
+        the outputs that the study wants to see. All elements of an output together are a target of
+        their own, ``output[:]``, where the method adds them up. Of a category, such as the regime,
+        the targets are ``P(regime=label)``: whether a row is in each that occurs. For a lifetime
+        they are its logarithm, or its rank where rows never end or are censored, and ``P(life<t)``;
+        its rate 1/T is ``rate(life)``. A value with a heavy tail is by default replaced by its
+        logarithm or rank; its own name gives the value itself. Of several names, unknown ones are
+        skipped.
+    regime : str, optional
+        Use the rows in this regime only. Among them the inputs depend on each other.
+
+    Returns
+    -------
+    Sensitivities
+        A group (a row, in designs without groups) counts as dropped if any target with indices
+        lacks it.
+
+    Raises
+    ------
+    InputError
+        When the design cannot feed the method, or there is no such output.
+    """
+    refuse_empty(ds)
+    refuse_weights(ds, "sensitivity indices")
+    if regime is not None:
+        ds = within_regime(ds, regime)
+        why = "within a regime the inputs depend on each other"
+    else:
+        why = why_dependent(ds)
+    ranked = ranked_rows(ds)
+    by = ranked_in_words(ranked, ds)
+    nested, ds = is_nested(ds), one_of_each_sample(ranked)
+    method = method or [*methods(ds, bool(why)), *fed_by(DESIGNS[ds.attrs["design"]])][0]
+    _check_method(ds.attrs["design"], method, why, regime is not None)
+    sample, notes = sample_of(ds), tuple(filter(None, (by, *notes_on_inputs(ds))))
+    if nested:
+        notes = (*notes, ONE_ROW)
+    if sample.random and METHODS[method].noise:
+        notes = (*notes, METHODS[method].noise)
+    found: dict[str, TargetIndices] = {}
+    whole: list[Mask] = []
+    used: list[Mask] = []
+    for target in chosen(ds, method, output):
+        quantiles = _quantiles(target, analysis_of(ds).quantiles)
+        own = replace(sample, values=target.values, quantiles=quantiles)
+        found[target.name] = one = indices_of_target(ds, METHODS[method], target, own, notes)
+        (whole if one.refused else used).append(own.whole)
+    if nested:
+        found = {name: _with_reason(one) for name, one in found.items()}
+    return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), found)
+
+
+def _with_reason(one: TargetIndices) -> TargetIndices:
+    """Return indices of one row a sample, with that reason where there are none."""
+    return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
+
+
+def indices_of_target(
+    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...] = ()
+) -> TargetIndices:
+    """Estimate the indices of a target, or say why there are none.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        The result that the target is of.
+    method : Method
+    target : Target
+    sample : Sample
+        With its values.
+    notes : tuple of str, optional
+        Sentences to add to those of the indices.
+
+    Returns
+    -------
+    TargetIndices
+    """
+    caution = DESIGNS[ds.attrs["design"]].caution
+    counts = _counts(sample.whole, rows=len(sample.values))
+    try:
+        if target.refused:
+            raise RefusedError(target.refused)
+        if method.of_variance and not target.event and lacks_variance(target.sizes):
+            raise RefusedError(_no_variance(target))
+        asked = _conditioned(target, sample) if method.conditional else sample
+        method.refuse_few_groups(asked)  # in them even a continuous output may have two values
+        # Of those in which it happens there is no other side.
+        few = () if method.conditional else few_hits(ds, target, bool(method.intervals))
+        found = method.indices(asked)
+    except RefusedError as refusal:
+        factor = refusal.rows_factor
+        return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)
+    combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
+    return TargetIndices(target.name, *counts, replace(found, notes=combined))
+
+
+def _conditioned(target: Target, sample: Sample) -> Sample:
+    """Return the output of the rows in which an event happens."""
+    if not target.event or target.element is None:
+        raise RefusedError(
+            "not an event of an output: ask for P(y > t) or P(T < t) by a threshold in [analysis];"
+            " for what matters within a regime, use --regime"
+        )
+    return replace(sample, values=where_it_happens(target))
+
+
+def _counts(*whole: Mask, rows: int) -> tuple[int, int]:
+    """Return the rows in groups that are whole for all of some targets, and the other groups."""
+    every = np.logical_and.reduce(whole)
+    return int(every.sum()) * (rows // every.size), int((~every).sum())
+
+
+def _no_variance(target: Target) -> str:
+    name = target.element.name if target.element else target.name
+    logarithm = f"log({name})"
+    others = f"{logarithm}, where all rows are positive, or " * (target.name != logarithm)
+    return (
+        f"the tail of {target.name} is too heavy for a variance to apportion; ask for"
+        f" {others}rank({name})"
+    )
+
+
+def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
+    """Return the names of quantiles of a target; B10 of a life is where its rate is high."""
+    if target.element is not None and target.element.is_lifetime:
+        return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}
+    return {f"Q{probability!r}": probability for probability in asked}
+
+
+def _check_method(design: str, method: str, dependent: str, in_regime: bool) -> None:
+    usable = fed_by(DESIGNS[design], bool(dependent))
+    if in_regime and DESIGNS[design].layout is not PLAIN:
+        usable = ()  # what inputs of a regime have in common is not what the design assumes
+    if method in usable:
+        return
+    if method in fed_by(DESIGNS[design]):
+        only = METHODS[method].assumes_independence
+        assumed = "independent inputs" if only else "inputs that depend as their design states"
+        others = [name for name in for_dependent_inputs() if METHODS[name].layout is PLAIN]
+        raise InputError(
+            f"method '{method}' assumes {assumed}, but {dependent}"
+            f" (methods that do not: {', '.join(others)})"
+        )
+    if method not in METHODS:
+        known = sorted(METHODS)
+        raise InputError(
+            f"no such method '{method}'{nearest(method, known)} (allowed: {', '.join(known)})"
+        )
+    raise InputError(
+        f"method '{method}' needs a design of {' or '.join(designs_for(method))}; this result is of"
+        f" design '{design}', which feeds {', '.join(usable)}"
+    )

@@ -1,0 +1,75 @@
+"""Sensitivity indices as arrays."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.sensitivities import sensitivities
+from uq.indices.index import Null
+from uq.stats.estimate import NOTHING
+
+
+def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
+    """Estimate sensitivity indices as arrays.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    method : str, optional
+        By default the first of `methods`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Each index over ``output`` and ``parameter`` (``S2`` over ``pair``), with ``_low`` and
+        ``_high``; NaN where there is none. ``dummy_<index>``, ``groups_dropped`` and ``refused``
+        (why there are no indices, or "") over ``output``; so is ``noise``, with ``_low`` and
+        ``_high``, where a model is random. ``by_correlation`` over ``output`` and ``parameter``
+        where an index is due to correlation alone.
+
+    Raises
+    ------
+    InputError
+        When the design cannot feed the method.
+
+    Examples
+    --------
+    >>> found = uq.sensitivity(uq.run("studies/ishigami.toml"))
+    >>> found["ST"].sel(output="y").to_series().round(2).to_dict()  # 0.558, 0.442, 0.244
+    {'x1': 0.56, 'x2': 0.45, 'x3': 0.25}
+    """
+    found = sensitivities(ds, method)
+    targets = list(found.targets.values())
+    data: dict[str, Any] = {
+        name: ("output", [getattr(one, name) for one in targets])
+        for name in ("groups_dropped", "refused")
+    }
+    coords: dict[str, Any] = {"output": list(found.targets)}
+    # The indices of quantiles have other names for a lifetime.
+    kinds = {kind: list(own) for one in targets for kind, own in one.indices.values.items()}
+    for kind, labels in kinds.items():
+        dim = "pair" if kind.of_pairs else "parameter"
+        coords[dim] = labels
+        own = [one.indices.values.get(kind, {}) for one in targets]
+        table = [[one.get(label, NOTHING).numbers for label in labels] for one in own]
+        for end, numbers in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
+            data[f"{kind.key}{end}"] = (("output", dim), numbers)
+    if any(one.indices.noise for one in targets):
+        shares = np.array([(one.indices.noise or NOTHING).numbers for one in targets])
+        for end, numbers in zip(_ENDS, shares.T, strict=True):
+            data[f"noise{end}"] = ("output", numbers)
+    if any(one.indices.by_correlation for one in targets):
+        names = coords["parameter"]
+        due = [[name in one.indices.by_correlation for name in names] for one in targets]
+        data["by_correlation"] = (("output", "parameter"), due)
+    for kind in {kind: None for one in targets for kind in one.indices.nulls}:
+        nulls = [one.indices.nulls.get(kind, Null(np.nan)) for one in targets]
+        data[f"dummy_{kind.key}"] = ("output", [null.one for null in nulls])
+        if np.isfinite([null.largest for null in nulls]).any():
+            data[f"dummy_{kind.key}_any"] = ("output", [null.largest for null in nulls])
+    return xr.Dataset(data, coords, {"method": found.method})
+
+
+_ENDS = ("", "_low", "_high")

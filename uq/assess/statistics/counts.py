@@ -1,0 +1,108 @@
+"""How many rows have no value, or one less accurate than requested."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.population import Population
+from uq.assess.statistic import COUNT, FACT, Context, Kind, Reader, Statistic
+from uq.assess.statistics.thresholds import share_of
+from uq.result.elements import Element, elements_of, output_names
+from uq.result.variables import error_name
+from uq.stats import estimate_json
+from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import effective_rows, per_sample
+from uq.stats.intervals import Replicates, replicates_of_some
+from uq.text.numbers import counted, percent
+
+
+def _write(group: Sequence[Statistic]) -> dict[str, Any]:
+    return {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
+
+
+_EFFECTIVE = Kind(
+    write=_write, shown=lambda rows: f"{rows:.0f}", has_interval=False, readers=COUNT.readers
+)
+
+
+def counts(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield how many rows never end, are censored, are undefined, or failed."""
+    for name in ("never", "censored", "undefined", "failed"):
+        number = float(getattr(element, name).sum())
+        yield Statistic((name,), name, Estimate(number), "rows", COUNT)
+
+
+def never_ending(element: Element, replicate: Replicates) -> Estimate:
+    """Estimate the probability that a life never ends; unknown where censored rows may not end."""
+    if element.censored.any() and not element.declared.never_known_at_once:
+        return Estimate(reason="censored rows may never end")
+    if element.weights is None:
+        kept = ~element.failed
+        return share_of(element.never[kept], replicates_of_some(replicate, kept))
+    certain = np.where(element.present, element.never, np.nan)
+    flags = np.zeros(len(certain), dtype=bool)
+    return Population(replace(element, values=certain, censored=flags, law=None), replicate).above(
+        0.5
+    )
+
+
+def effective(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield Kish's number of rows of equal weight, or samples, that are worth as much."""
+    if element.weights is not None:
+        kept = element.present
+        part = replicates_of_some(context.replicate, kept)
+        number = effective_rows(per_sample(element.weights[kept], part))
+        yield Statistic(
+            ("effective_rows",),
+            "effective rows",
+            Estimate(number),
+            kind=_EFFECTIVE,
+            column="effective_rows",
+            by=(effective_rows,),
+        )
+
+
+def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield how many rows state an error beyond the accuracy requested.
+
+    Rows count if their value is finite and not censored; one that states no error falls short.
+    """
+    asked = context.rows[element.output].attrs.get("accuracy")
+    error = stated_error(context.rows, element)
+    if asked is None or error is None:
+        return
+    known = np.isfinite(element.values) & ~element.censored
+    kept = np.abs(error.values[known]) <= asked * np.abs(element.values[known])
+    rows, missed = len(kept), int((~kept).sum())
+    share = missed / rows if rows else None
+    lost = percent(share) if missed and share else ""
+    words = f"accuracy {asked:g} not reached in {counted(missed, 'row')} ({lost})"
+    readers = FACT.readers | Reader.REPORT if missed else FACT.readers
+    yield Statistic(
+        ("accuracy",),
+        "rows short of the accuracy",
+        Estimate(float(missed)),
+        "rows",
+        replace(COUNT, write=FACT.write, readers=readers),
+        column="accuracy_missed",
+        more=lost,
+        notes=(words,) if missed else (),
+        facts={"accuracy": {"asked": float(asked), "rows": rows, "missed": missed, "share": share}},
+    )
+
+
+def stated_error(ds: xr.Dataset, element: Element) -> Element | None:
+    """Return the error that the model states for an element of these rows, None if it states none.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    element : Element
+    """
+    name = error_name(element.output)
+    if name not in output_names(ds):
+        return None
+    return next((one for one in elements_of(ds, [name]) if one.place == element.place), None)

@@ -1,0 +1,51 @@
+"""What is integrated exactly of the lives of an output, and what that is worth."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isfinite, nan
+
+from uq.assess.life_quantiles import B_LIVES
+from uq.assess.population import Population
+from uq.assess.scaling import why_not_integrated
+from uq.assess.statistic import FACT, Context, Reader, Statistic
+from uq.assess.statistics.quantiles import LIFE
+from uq.result.elements import Element
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_json import number
+
+_AT = "B10"
+_KIND = replace(
+    FACT,
+    shown=lambda worth: f"{worth:.2g} times",
+    listing=LIFE.listing,
+    readers=FACT.readers | Reader.REPORT,
+)
+
+
+def integrated(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield how many times the rows the exact integration is worth: a ratio of variances."""
+    if not element.declared.scales:
+        return
+    why = why_not_integrated(context.rows, element)
+    law = element.law
+    if law is None:
+        if why:
+            yield Statistic(("integrated",), "", Estimate(), kind=_KIND, column="", notes=(why,))
+        return
+    names = " and ".join(name.replace("_", " ") for name in law.inputs)
+    words, worth = f"{names} integrated exactly", nan
+    if element.weights is None:
+        of = Population(element, context.replicate)
+        worth = of.times_the_rows(of.middle(B_LIVES[_AT]))
+    if isfinite(worth):
+        words += f", worth {worth:.2g} times the rows at {_AT}"
+    yield Statistic(
+        ("integrated",),
+        "worth of the rows",
+        Estimate(worth),
+        kind=_KIND,
+        heading=f"worth of the rows at {_AT}",
+        more=f"{names} integrated exactly",
+        notes=tuple(filter(None, (words, why))),
+        facts={"integrated": {"inputs": list(law.inputs), "worth": number(worth)}},
+    )

@@ -1,0 +1,60 @@
+"""Tolerance bounds that hold for several outputs at once."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isnan
+from typing import Any
+
+from uq.assess.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
+from uq.result.elements import Element
+from uq.stats import estimate_json
+from uq.stats.estimate import Estimate
+from uq.stats.order_statistics import joint_bounds, rows_for_bound
+from uq.study.file import USUAL
+
+
+def _write(group: Sequence[Statistic]) -> dict[str, Any]:
+    found: dict[str, Any] = {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
+    for one in group:
+        found |= estimate_json.flag(f"{one.key[-1]}_", one.estimate, "value")
+    return found
+
+
+def joint(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield the bounds of an element, of all that hold at once, and the rows that these need."""
+    asked = context.analysis
+    if context.replicate is not None or context.weights is not None:
+        return
+    own = [one for one in context.joint_bounds if one.element == element.name]
+    if not own:
+        return
+    coverage, confidence = (f"{100 * share:g}" for share in asked.tolerance or USUAL)
+    words = (
+        f"Joint bounds: with {confidence} % confidence, {coverage} % of all lie within those of"
+        f" {', '.join(asked.joint_bounds)} at once"
+    )
+    is_first = context.joint_bounds[0].element == element.name
+    listing = Listing(words, keeps_empty=True)
+    bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
+    for one in own:
+        yield Statistic(
+            ("joint_bounds", one.side),
+            f"joint bound, {one.side}",
+            Estimate(one.value, beyond=("value",) * one.beyond),
+            element.units,
+            bound,
+            rows_needed=one.rows_needed if isnan(one.value) else None,
+            column=f"joint_{one.side}",
+            heading=one.side,
+            notes=(f"{words}.",) * (is_first and one is own[0]),
+            by=(joint_bounds,),
+        )
+    yield Statistic(
+        ("joint_bounds", "rows_needed"),
+        "rows needed",
+        Estimate(own[0].rows_needed).finite,
+        "rows",
+        replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
+        column="joint_rows_needed",
+        by=(rows_for_bound,),
+    )

@@ -1,0 +1,278 @@
+"""When a run may stop: interim estimates at fixed sizes, with valid intervals.
+
+An interval that is recomputed often enough is narrow by chance at some point. A run therefore
+estimates at a few sizes fixed beforehand, each half of the next, at a confidence that makes up for
+it (`uq.stats.group_sequential`).
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import inf, isfinite, isnan
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.design_sample import sample_of
+from uq.assess.joint_targets import wholes
+from uq.assess.life_quantiles import life_quantiles, quantile_estimate
+from uq.assess.population import Population
+from uq.assess.scaling import population
+from uq.assess.sensitivities import indices_of_target
+from uq.assess.targets import Target, lightened, number_of
+from uq.contract import Floats
+from uq.indices.methods import METHODS, kinds_with_intervals
+from uq.result.elements import Element, independent_rows, named_elements, replicates_of
+from uq.result.nesting import first_samples
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import PATHS
+from uq.stats import group_sequential, intervals
+from uq.stats.estimate import NOTHING, Estimate
+from uq.stats.hall_intervals import corrected_mean_interval
+from uq.stats.moments import moments
+from uq.stats.weighted_means import EXACT
+from uq.text.element_names import is_whole
+from uq.text.numbers import counted
+
+if TYPE_CHECKING:
+    from uq.study.file import DesignTable, Until
+
+_FIRST = 200  # samples at least of the first interim estimate
+_FIRST_OF_REPLICATES = 32
+
+
+class InterimEstimate(NamedTuple):
+    """An estimate during a run, which may end it.
+
+    Attributes
+    ----------
+    what : str
+        The element, or the index, with the widest interval.
+    estimate : Estimate
+        At the confidence of one interim estimate.
+    required : float
+        Half-width.
+    lost : str
+        How many rows, or groups of rows, lack a value; "" if none.
+    units : str
+        CF unit of the estimate.
+    """
+
+    what: str
+    estimate: Estimate
+    required: float
+    lost: str
+    units: str = "1"
+
+    @property
+    def half_width(self) -> float:
+        """Half the width of the interval; infinite without one, 0 where the estimate is exact."""
+        if self.estimate.reason == EXACT:
+            return 0.0
+        half = (self.estimate.high - self.estimate.low) / 2
+        return inf if isnan(half) else half
+
+    @property
+    def rows_factor(self) -> float:
+        """How many times the rows would be enough if intervals narrow as one over root n."""
+        return (self.half_width / self.required) ** 2
+
+    @property
+    def reached(self) -> bool:
+        """Whether the interval, the widest, is narrow enough for the run to end."""
+        return self.half_width <= self.required
+
+
+def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
+    """Return the numbers of samples at which a run estimates; the last is all of them."""
+    size = design.samples
+    sizes = [size]
+    # Where samples are independent, those of all replicates count.
+    all_first = -(-_FIRST // design.replicates)
+    first = _FIRST_OF_REPLICATES if _rests_on_replicates(design) else all_first
+    while (size := -(-size // 2)) >= first:
+        sizes.append(size)
+    return tuple(reversed(sizes))
+
+
+def confidence(design: "DesignTable") -> float:
+    """Return the confidence of one interim interval."""
+    checks = len(interim_sizes(design))
+    if _rests_on_replicates(design):
+        return group_sequential.of_replicates(design.replicates, checks)
+    return group_sequential.of_independent_rows(checks)
+
+
+def _rests_on_replicates(design: "DesignTable") -> bool:
+    """Whether the interval comes from the scatter of replicates."""
+    paths = DESIGNS[design.method].layout is PATHS and design.until and design.until.index
+    return not (design.has_independent_samples or paths)
+
+
+def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
+    """Estimate from the rows of a run so far.
+
+    Parameters
+    ----------
+    design : DesignTable
+        With `until`.
+    ds : xarray.Dataset
+        Its rows.
+
+    Returns
+    -------
+    InterimEstimate
+        That with the widest interval, of the elements and inputs that the study means.
+    """
+    assert design.until is not None
+    estimates = _indices if design.until.index else _statistics
+    widest = max(estimates(design, ds), key=lambda one: one.half_width)
+    return widest._replace(estimate=_explained(widest.estimate, design))
+
+
+def _explained(found: Estimate, design: "DesignTable") -> Estimate:
+    """Return an estimate with the reason if it has no interval because nothing scatters."""
+    if found.reason or not (isfinite(found.value) and isnan(found.low) and isnan(found.high)):
+        return found
+    if _rests_on_replicates(design):
+        part = "replicate"
+    else:
+        part = "path" if DESIGNS[design.method].layout is PATHS else "row"
+    return replace(found, reason=f"the same in each {part}")
+
+
+def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
+    """Whether a run ends at this result although its budget is not spent."""
+    size = _latest(design, ds)
+    return size > 0 and interim_estimate(design, first_samples(ds, size)).reached
+
+
+def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
+    """Return the size of the last interim estimate, 0 before the first or without `until`.
+
+    The result may be larger, if it was extended.
+    """
+    if design.until is None:
+        return 0
+    return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
+
+
+def _statistics(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+    """Yield the estimate of each element, as a summary has it."""
+    until, level = design.until, confidence(design)
+    assert until is not None
+    rows = independent_rows(ds)
+    replicate = replicates_of(rows)
+    names = {element.name for element in named_elements(rows, until.output)}
+    for element in population(rows, [until.output.partition("[")[0]]):
+        if element.name in names:
+            found = statistic(element, until, replicate, level)
+            units = "1" if until.threshold is not None else element.units
+            lost = _lost(element)
+            what = f"{until.estimate} of {element.name}"
+            yield InterimEstimate(what, found, until.half_width, lost, units)
+
+
+def _lost(element: Element) -> str:
+    """Return how many rows of an element failed or are undefined, in words."""
+    failed, undefined = int(element.failed.sum()), int(element.undefined.sum())
+    return " and ".join(
+        [counted(failed, "failed row")] * (failed > 0)
+        + [counted(undefined, "undefined row")] * (undefined > 0)
+    )
+
+
+def statistic(
+    element: Element, until: "Until", replicate: intervals.Replicates, level: float
+) -> Estimate:
+    """Estimate what a study means of an element of independent rows.
+
+    Parameters
+    ----------
+    element : Element
+    until : Until
+        Not of an index.
+    replicate : ndarray of int, shape (n,), or None
+    level : float
+        Confidence of the interval.
+
+    Returns
+    -------
+    Estimate
+    """
+    if until.threshold is not None:
+        return _probability(element, until, replicate, level)
+    if until.quantile is not None and element.is_plain:
+        within = intervals.replicates_of_some(replicate, element.present)
+        return quantile_estimate(element, until.quantile, within, level)
+    if (p := until.probability) is not None:
+        return life_quantiles(element, {"": p}, replicate, level)[""]
+    values = element.at_most
+    if not len(values):
+        return NOTHING
+    if not np.isfinite(values).all():
+        return Estimate(reason="some rows never end, or are censored")
+    within = intervals.replicates_of_some(replicate, element.present)
+    return _mean(values, within, level)
+
+
+def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
+    """Estimate a mean: a few replicates show little of the skewness of their means."""
+    found = moments(values, replicate, level).mean
+    if replicate is None or intervals.parts_are_independent(replicate) or not found.has_interval:
+        return found
+    low, high = corrected_mean_interval(values, replicate, level)
+    return replace(found, low=low, high=high)
+
+
+def _probability(
+    element: Element, until: "Until", replicate: intervals.Replicates, level: float
+) -> Estimate:
+    threshold = until.threshold
+    assert threshold is not None
+    if not element.is_plain:
+        of = Population(element, replicate, level)
+        return of.below(threshold) if until.above is None else of.above(threshold)
+    if element.unknown_sides(threshold).any():
+        return Estimate(reason="some rows are censored before that")
+    kept, values = ~element.failed, element.for_thresholds
+    hits = (values > threshold if until.above is not None else values < threshold)[kept]
+    within = intervals.replicates_of_some(replicate, kept)
+    value = float(hits.mean()) if kept.any() else np.nan
+    return Estimate(value, *intervals.share_interval(hits, within, level))
+
+
+def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+    """Yield the index of each input, or the difference between two, as `uq sensitivity` has it.
+
+    An input that has no effect in any row has no interval, and does not count beside others.
+    """
+    until = design.until
+    assert until is not None and until.index is not None
+    kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
+    sample = replace(sample_of(ds), confidence=confidence(design), difference=until.difference)
+    for target in _targets(ds, until.output):
+        own = replace(sample, values=target.values)
+        found = indices_of_target(ds, METHODS[method], target, own)
+        dropped = found.groups_dropped
+        lost = f"{counted(dropped, 'group')} with missing values" if dropped else ""
+        values = found.kinds().get(kind, {})
+        label = until.label
+        asked = {label: values.get(label, NOTHING)} if label else dict(values)
+        alive = {name: one for name, one in asked.items() if one.value != 0 or one.has_interval}
+        if not alive:
+            why = found.refused or "no row shows an effect"
+            value = next((one.value for one in asked.values()), np.nan)
+            alive = {label: Estimate(value, reason=why)}
+        for name, one in alive.items():
+            what = " ".join(filter(None, (until.index, name, "of", target.name)))
+            yield InterimEstimate(what, one, until.half_width, lost)
+
+
+def _targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+    """Yield what has an index: each element that is meant, or all of them together."""
+    elements = named_elements(ds, output)
+    if is_whole(output):
+        yield next(wholes(elements))
+    else:
+        yield from (lightened(number_of(element)) for element in elements)

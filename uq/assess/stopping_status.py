@@ -1,0 +1,130 @@
+"""What is said of a run that may stop: why it did, or how far it is from that."""
+
+from math import inf, isfinite, isnan
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from uq.assess.stopping import InterimEstimate, confidence, interim_estimate, interim_sizes
+from uq.result.nesting import first_samples
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import rounded_text
+from uq.stats.weighted_means import EXACT
+from uq.text.numbers import in_unit, rows_in_words, threshold
+from uq.text.quantities import Written
+from uq.text.units import Unit, beside, unit_of
+
+if TYPE_CHECKING:
+    from uq.study.file import DesignTable
+
+HOPELESS = 4.0
+"""So many times the budget is out of reach; a width is known to a factor of two."""
+
+
+def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
+    """State why a run ended, and the estimate at that point.
+
+    Parameters
+    ----------
+    design : DesignTable
+        With `until`.
+    ds : xarray.Dataset
+        Its result.
+    """
+    until, samples = design.until, int(ds.attrs["samples"])
+    assert until is not None
+    size, seen = _stop(design, ds)
+    found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
+    if _has_none(seen):
+        return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
+    known = f"{seen.what} {_in_words(found, unit)}"
+    if seen.lost:
+        known += f" (without {seen.lost})"
+    wanted = _wanted(until.half_width, unit)
+    if not seen.reached:
+        needed = _needed(seen, samples)
+        more = f": by the scatter of all rows it needs about {needed} samples" * bool(needed)
+        spent = f"the budget of {samples} samples is spent: {known}"
+        return f"{spent}; the {wanted} was not reached{more}"
+    sizes = interim_sizes(design)
+    first = "" if size == samples else f" with the first {size} of {samples} samples"
+    return (
+        f"{known}: the {wanted} was reached at interim estimate {1 + sizes.index(size)} of at most"
+        f" {len(sizes)}{first}. The confidence of {confidence(design):.2%} at each makes this a"
+        " 95 % interval for a run that stops so; all other intervals assume a number of rows fixed"
+        " beforehand"
+    )
+
+
+def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> str:
+    """State that a run will probably spend its budget in vain; "" where it may stop before.
+
+    Parameters
+    ----------
+    design : DesignTable
+        With `until`.
+    seen : InterimEstimate
+        That of a run that goes on.
+    samples : int
+        Of each replicate, so far.
+    """
+    assert design.until is not None
+    began = f"after {samples} samples"
+    if _has_none(seen) or seen.estimate.value == inf:
+        rest = f"while that is so the run goes on, to its budget of {design.samples} samples"
+        return f"{began} {_without_interval(seen)}; {rest}"
+    if not isfinite(seen.half_width) or seen.rows_factor * samples <= HOPELESS * design.samples:
+        return ""
+    unit = unit_of(seen.units, seen.estimate.value)
+    return (
+        f"{began} {seen.what} {_in_words(seen.estimate, unit)}: by the scatter so far, the"
+        f" {_wanted(design.until.half_width, unit)} needs about {_needed(seen, samples)} samples,"
+        f" more than the budget of {design.samples}, which this run will spend"
+    )
+
+
+def _has_none(seen: InterimEstimate) -> bool:
+    """Whether an estimate has no end of an interval, and is not exact either."""
+    found = seen.estimate
+    return isnan(found.low) and isnan(found.high) and found.reason != EXACT
+
+
+def _without_interval(seen: InterimEstimate) -> str:
+    """State that an estimate has no interval that can become narrow, and why."""
+    found = seen.estimate
+    if found.value == inf:
+        return f"{seen.what} is {rounded_text(found)[0]}, which no interval narrows"
+    value = f"is {in_unit(found.value, unit_of(seen.units, found.value))} and "
+    why = f" ({found.reason})" * bool(found.reason)
+    return f"{seen.what} {value * isfinite(found.value)}has no interval{why}"
+
+
+def _needed(seen: InterimEstimate, samples: int) -> str:
+    """Return the samples that reach the goal if intervals narrow as one over root n."""
+    return rows_in_words(seen.rows_factor * samples) if isfinite(seen.rows_factor) else ""
+
+
+def _wanted(half_width: float, unit: Unit) -> str:
+    """Return the goal, as written or in the unit of the estimate."""
+    written = isinstance(half_width, Written)
+    text = threshold(half_width, unit.name) if written else in_unit(half_width, unit)
+    return f"required half-width of {text}"
+
+
+def _stop(design: "DesignTable", ds: xr.Dataset) -> tuple[int, InterimEstimate]:
+    """Return the size at which the run may end, the last where it may not, and the estimate."""
+    sizes = [size for size in interim_sizes(design) if size <= ds.attrs["samples"]]
+    for size in sizes or [0]:
+        seen = interim_estimate(design, first_samples(ds, size))
+        if seen.reached:
+            break
+    return size, seen
+
+
+def _in_words(found: Estimate, unit: Unit) -> str:
+    if isnan(found.value):
+        sides = {"at least": found.low, "at most": found.high}
+        ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]
+        return "".join(["is not known", *ends])
+    value, both = rounded_text(found, unit.size)
+    return f"is {value}, {beside(both, unit.name)}" if both else f"is {value}"

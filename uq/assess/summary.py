@@ -1,0 +1,330 @@
+"""The summary of a result: how rows ended, the regimes, and the statistics of each output."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import chain
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess import stopping_status
+from uq.assess.estimators import in_categories, share
+from uq.assess.failed_rows import failed_share_bounds
+from uq.assess.life_fit import Fit, fits_of
+from uq.assess.reweighting import Weighting
+from uq.assess.scaling import population
+from uq.assess.statistic import Context, Kind, Statistic
+from uq.assess.statistics.table import STATISTICS
+from uq.assess.statistics.thresholds import share_of
+from uq.result.elements import (
+    Element,
+    Mask,
+    analysis_of,
+    category_codes,
+    flags,
+    has_independent_samples,
+    independent_rows,
+    notes_on_places,
+    replicates_of,
+    shown_outputs,
+    study_file_of,
+    weights_of,
+    why_no_statistics,
+)
+from uq.result.nesting import is_nested, nesting_of, size_in_words
+from uq.result.regimes import within_regime
+from uq.result.variables import outputs_of
+from uq.result.weights import ONLY_INSPECTED, has_weights, refuse_weights
+from uq.sampling.designs import DESIGNS
+from uq.stats import estimate_json
+from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import Smoothed
+from uq.stats.intervals import replicates_of_some, share_interval
+from uq.stats.weighted_means import weighted_share
+from uq.study.file import AnalysisTable
+
+NO_INTERVALS = (
+    "no intervals: the rows of a '{design}' design are not independent, and a single replicate"
+    " does not show how far its estimates scatter; set replicates = 8"
+)
+
+NOT_STATED = (
+    "no intervals: how the imported rows were drawn is unknown; if they are independent draws from"
+    " the laws, set independent = true in [design]"
+)
+
+SEVERAL_ROWS = "the rows of one sample are not independent ({size}): intervals rest on samples"
+NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
+
+SOME_FAILED = (
+    "{most} of {rows} independent rows failed. Estimates use the others; each probability,"
+    " quantile and B-life also has bounds with the failed rows at best and at worst"
+)
+
+
+def share_json(one: Statistic) -> dict[str, Any]:
+    """Return count and share of a category as JSON has them."""
+    share = {"count": one.facts["count"], "share": estimate_json.number(one.estimate.value)}
+    return share | estimate_json.ends(one.estimate) | estimate_json.failed(one.failed)
+
+
+def _compared_json(one: Statistic) -> dict[str, Any]:
+    return share_json(one) | {"value": estimate_json.number(one.estimate.value)}
+
+
+SHARE = Kind(entry=_compared_json)
+
+_OF_VALUES = {"moments", "quantiles", "b_lives", "tolerance", "joint_bounds"}
+_DIGITS = 5  # of numbers in tables
+_FEWEST_STEPS = 10  # of the last digit, within the range of the values
+
+REGIME = "regime"
+"""The category by which rows are told apart in tables and figures."""
+
+Shares = Mapping[str, Statistic]
+"""Label -> its share."""
+
+
+@dataclass(frozen=True)
+class Described:
+    """An element of an output.
+
+    Attributes
+    ----------
+    units : str
+    parts : dict of str to tuple of Statistic
+        Name in `uq.assess.statistics.table.STATISTICS` -> its statistics, in that order.
+    fits : dict of str to Fit, optional
+        Law -> what became of it.
+    """
+
+    units: str
+    parts: Mapping[str, tuple[Statistic, ...]]
+    fits: Mapping[str, Fit] = field(default_factory=dict)
+
+    @property
+    def statistics(self) -> tuple[Statistic, ...]:
+        """All of them in order."""
+        return tuple(chain.from_iterable(self.parts.values()))
+
+    def find(self, *key: str) -> Statistic | None:
+        """Return the statistic with this key."""
+        return next((one for one in self.statistics if one.key == key), None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Summary:
+    """The summary of a result.
+
+    Attributes
+    ----------
+    samples : int
+        All rows.
+    rows_used : int
+        The independent rows, on which everything but `status` is based.
+    status : dict of str to int
+        Number of rows with each status, of all rows.
+    shares : dict of str to dict
+        Of each element of a category that is shown, such as the period, and of the regime in any
+        case: label -> `Statistic` of its share, with ``count`` among its facts.
+    outputs : dict of str to Described
+        By name of the element.
+    most_failed : int
+        The largest number of rows that lack an element because they failed.
+    notes : list of str
+        Sentences on what could not be estimated.
+    weights : Smoothed, optional
+        Of the rows, where inspections have weighted them.
+    """
+
+    samples: int
+    rows_used: int
+    status: Mapping[str, int]
+    shares: Mapping[str, Shares]
+    outputs: Mapping[str, Described]
+    most_failed: int
+    notes: list[str]
+    weights: Smoothed | None = None
+
+    @property
+    def regimes(self) -> Shares:
+        """Share of each regime, also of those that do not occur; empty without regimes."""
+        return self.shares.get(REGIME, {})
+
+    @property
+    def categories(self) -> dict[str, Shares]:
+        """The same of other categories, of those labels that occur."""
+        return {
+            name: {label: one for label, one in shares.items() if one.facts["count"]}
+            for name, shares in self.shares.items()
+            if name != REGIME
+        }
+
+
+def summarise(
+    ds: xr.Dataset,
+    analysis: AnalysisTable | None = None,
+    *,
+    regime: str | None = None,
+    fits: bool = False,
+    plain: bool = False,
+    weighting: Weighting | None = None,
+    parts: Collection[str] = STATISTICS,
+) -> Summary:
+    """Describe a result.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    analysis : AnalysisTable, optional
+        What to report; by default what the study of the result asks for.
+    regime : str, optional
+        Describe only the rows in this regime; rows that failed without one count as failed.
+    fits : bool
+        Whether each lifetime also has the laws fitted to it.
+    plain : bool
+        Whether lives are taken as computed, and nothing that only scales them is integrated.
+    weighting : Weighting, optional
+        Makes the rows those of another study; none within a regime.
+    parts : collection of str
+        Names in `STATISTICS` of those that are computed.
+
+    Returns
+    -------
+    Summary
+    """
+    analysis = analysis or analysis_of(ds)
+    if fits:
+        refuse_weights(ds, "laws fitted to lives")
+    notes = _notes(ds)
+    if regime is not None:
+        ds = within_regime(ds, regime)
+    rows = independent_rows(ds)
+    of_all = weights_of(rows) if weighting is None else weighting.all_inputs
+    context = Context(rows, analysis, replicates_of(rows), of_all)
+    outputs, most = dict[str, Described](), 0
+    plain = plain or regime is not None  # within a regime, inputs have another law
+    names = shown_outputs(ds, analysis)
+    elements = population(rows, names, plain=plain) if not weighting else weighting.elements(names)
+    for element in elements:  # one at a time in memory
+        outputs[element.name] = _described(element, context, fits, parts)
+        most = max(most, int(element.failed.sum()))
+    if most:
+        notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
+    return Summary(
+        samples=ds.sizes["sample"],
+        rows_used=rows.sizes["sample"],
+        status=status_counts(ds),
+        shares={name: category_shares(rows, name, of_all) for name in _categories(ds, names)},
+        outputs=outputs,
+        most_failed=most,
+        notes=notes,
+        weights=of_all if weighting is None else None,
+    )
+
+
+def _described(
+    element: Element, context: Context, fits: bool, wanted: Collection[str]
+) -> Described:
+    parts = {name: tuple(STATISTICS[name](element, context)) for name in wanted}
+    if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
+        for name in _OF_VALUES & parts.keys():
+            parts[name] = tuple(replace(statistic, resolution=step) for statistic in parts[name])
+    fitted = fits_of(element, context.replicate is None) if fits and element.is_lifetime else {}
+    return Described(element.units, parts, fitted)
+
+
+def resolution_of(element: Element, least: float) -> float:
+    """Return the difference that digits must show where an output is far from 0 for its scatter.
+
+    Parameters
+    ----------
+    element : Element
+    least : float
+        Range of the middle 90 % over their median from which the usual digits suffice.
+
+    Returns
+    -------
+    float
+        A hundredth of that range; 0 where the usual digits suffice.
+    """
+    values = element.ascending[np.isfinite(element.ascending)]
+    if not len(values):
+        return 0.0
+    low, middle, high = values[[int(p * (len(values) - 1)) for p in (0.05, 0.5, 0.95)]]
+    return float(high - low) / 100 if high - low < least * abs(middle) else 0.0
+
+
+def status_counts(ds: xr.Dataset) -> dict[str, int]:
+    """Return the number of rows, of all, with each status that occurs and with ``ok``."""
+    codes = ds["status"].values
+    counts = {label: int((codes == code).sum()) for code, label in flags(ds["status"])}
+    return {label: count for label, count in counts.items() if count or label == "ok"}
+
+
+def _categories(ds: xr.Dataset, shown: Collection[str]) -> list[str]:
+    """Return the elements of the categories that are shown, and the regime."""
+    return [
+        element
+        for name, output in outputs_of(ds).items()
+        if output.is_category and (name in shown or name == REGIME)
+        for element in category_codes(ds, name)
+    ]
+
+
+def category_shares(
+    rows: xr.Dataset, name: str, weights: Smoothed | None = None
+) -> dict[str, Statistic]:
+    """Return the share of each label of a category among the independent rows that did not fail.
+
+    The name is that of an output, or of one element of it.
+    """
+    replicate = replicates_of(rows)
+
+    def estimate(hits: Mask, kept: Mask) -> Estimate:
+        part = replicates_of_some(replicate, kept)
+        if weights is None:
+            return share_of(hits[kept], part)
+        if weights.refusal:
+            return Estimate(reason=weights.refusal)
+        return weighted_share(hits[kept].astype(float), weights.weights[kept], part)
+
+    return {
+        label: Statistic(
+            (name, label) if name == REGIME else ("categories", name, label),
+            label,
+            estimate(hits, kept),
+            kind=SHARE,
+            failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
+            facts={"count": int(hits[kept].sum())},
+            estimator=share(),
+            by=(share_of, share_interval) if weights is None else (weighted_share,),
+        )
+        for label, (kept, numbers) in in_categories(rows, name).items()
+        for hits in [numbers > 0]
+    }
+
+
+def _notes(ds: xr.Dataset) -> list[str]:
+    if why := why_no_statistics(ds):
+        return [NO_STATISTICS.format(design=ds.attrs["design"], why=why)]
+    design = study_file_of(ds).design
+    notes = []
+    if design.until is not None and not has_weights(ds):
+        notes.append(stopping_status.sentence(design, ds))
+    if is_nested(ds):
+        place = nesting_of(ds)
+        size = size_in_words(place.samples, place.units, place.repeats)
+        notes.append(SEVERAL_ROWS.format(size=size))
+    notes += filter(None, [ds.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(ds)])
+    return notes + notes_on_places(ds)
+
+
+def why_no_intervals(ds: xr.Dataset) -> str:
+    """Return why the rows of a result support no intervals, or ""."""
+    if has_independent_samples(ds) or ds.attrs["replicates"] > 1:
+        return ""
+    reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
+    return reason.format(design=ds.attrs["design"])

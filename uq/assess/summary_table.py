@@ -1,0 +1,77 @@
+"""The summary of a result as a table to display and to compute with."""
+
+from math import inf, isfinite, nan
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from uq.assess.statistic import Reader, Statistic
+from uq.assess.statistics.table import COLUMN_ORDER
+from uq.assess.summary import Described, Summary, summarise
+from uq.stats.estimate import Estimate
+
+
+def summary(ds: xr.Dataset, *, plain: bool = False) -> pd.DataFrame:
+    """Describe a result in a table, one line per element of each output.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    plain : bool
+        Whether lives are taken as computed; by default what only scales them is integrated exactly.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index: name of the element. Columns: ``units``, and every statistic under its own name, such
+        as ``mean``, ``q0.5``, ``B10`` or ``P(>t)``, with ``_low`` and ``_high`` for the 95 %
+        interval; ``docs/statistics.md`` explains each. Where rows failed, ``_failed_low`` and
+        ``_failed_high`` are the ends with these rows at best and at worst. Infinity means never,
+        NaN that there is no estimate.
+
+    Examples
+    --------
+    >>> table = uq.summary(uq.run("studies/ishigami.toml"))
+    >>> line = table.loc["y"]
+    >>> bool(line["mean_low"] < 3.5 < line["mean_high"])  # the mean is known
+    True
+    """
+    return table_of(summarise(ds, plain=plain))
+
+
+def table_of(found: Summary) -> pd.DataFrame:
+    """Return a summary as a table."""
+    lines = {name: _line(one) for name, one in found.outputs.items()}
+    return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
+
+
+def _line(output: Described) -> dict[str, Any]:
+    """Return one line of `summary`."""
+    line: dict[str, Any] = {"units": output.units}
+    for name in dict.fromkeys((*COLUMN_ORDER, *output.parts)):
+        for one in output.parts[name]:
+            column = one.label if one.column is None else one.column
+            if column and one.is_read_by(Reader.COLUMNS):
+                line |= _cells(column, one)
+    return line
+
+
+def _cells(column: str, one: Statistic) -> dict[str, float]:
+    """Return the numbers of a statistic under the names of their columns."""
+    if one.kind.is_count:
+        count = one.estimate.value
+        return {column: int(count) if isfinite(count) else nan}
+    cells = {column: _number(one.estimate, "value")}
+    if one.kind.has_interval:
+        cells |= {f"{column}_{end}": _number(one.estimate, end) for end in ("low", "high")}
+    if one.failed is not None:
+        cells |= {f"{column}_failed_{end}": _number(one.failed, end) for end in ("low", "high")}
+    return cells
+
+
+def _number(estimate: Estimate, end: str) -> float:
+    """Return a number, infinity for never, NaN where it is not known."""
+    value = getattr(estimate, end)
+    return value if isfinite(value) or (value == inf and end not in estimate.beyond) else nan

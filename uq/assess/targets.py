@@ -1,0 +1,383 @@
+"""Targets of sensitivity indices: one number per row, or its logarithm, rank or rate.
+
+A life may never end or be censored; and where a few rows hold most of the variance, its indices are
+about these rows.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import LARGEST_VALUE
+from uq.result.elements import Element, Floats, category_codes, flags
+from uq.result.result_file import failed
+from uq.stats.intervals import sized
+from uq.stats.order_statistics import mid_ranks
+from uq.stats.tails import heavier_tail
+from uq.text.numbers import counted, percent
+from uq.text.quantities import read_quantity
+
+LARGEST = 0.01
+"""Share of the rows that a heavy tail is judged by: those farthest from the mean."""
+
+HEAVY = 1 / 3
+"""They hold 8 % of the variance of a normal law, 22 % of an exponential one, 49 % of a lognormal
+one with sigma = 1; beyond a third the tail counts as heavy."""
+
+FEWEST = 100
+"""In fewer rows a single one is more than `LARGEST`: no tail is judged."""
+
+
+class Transformed(NamedTuple):
+    """One number per row, NaN where there is none; and why there can be none at all, or ""."""
+
+    values: Floats
+    refused: str = ""
+
+
+def tail_share(values: Floats) -> float:
+    """Return the share of the variance that lies in the 1 % of rows farthest from the mean.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+
+    Returns
+    -------
+    float
+        0 where there are fewer than `FEWEST` values, or all are the same.
+    """
+    known = values[np.isfinite(values)]
+    if len(known) < FEWEST or not np.ptp(known) > 0:
+        return 0.0
+    scaled = known / np.abs(known).max()  # squares neither overflow nor vanish
+    squares = np.sort((scaled - scaled.mean()) ** 2)
+    return float(squares[-int(np.ceil(LARGEST * len(known))) :].sum() / squares.sum())
+
+
+def heaviness(values: Floats) -> str:
+    """Return why indices of the variance of these values are about a few of them.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+
+    Returns
+    -------
+    str
+        A clause; "" where the largest 1 % hold less than `HEAVY` of the variance, and the tail's
+        shape is compatible with a finite variance (`uq.stats.tails`).
+    """
+    share = tail_share(values)
+    if share > HEAVY:
+        return f"{100 * LARGEST:g} % of the rows hold {percent(share)} of the variance"
+    tail = heavier_tail(values[np.isfinite(values)])
+    if tail is not None and tail.no_variance:
+        return f"the {tail.side} tail suggests an infinite variance (k = {tail.k:.2g})"
+    return ""
+
+
+def logarithm(element: Element) -> Transformed:
+    """Return the natural logarithm of an output; refused if a row has none."""
+    nothing = np.full(len(element.values), np.nan)
+    counts = {
+        ("never ends", "never end"): int(element.never.sum()),
+        ("is censored", "are censored"): int(element.censored.sum()),
+        ("is not positive", "are not positive"): int((element.values <= 0).sum()),
+    }
+    excluded = [counted(count, *words) for words, count in counts.items() if count]
+    if excluded:
+        rows = f"of {int(element.present.sum())} rows {' and '.join(excluded)}"
+        return Transformed(nothing, f"{rows}: no logarithm; ask for rank({element.name})")
+    return Transformed(np.log(element.values))
+
+
+def rank(element: Element) -> Transformed:
+    """Return the share of rows below each, ties counted by half.
+
+    Parameters
+    ----------
+    element : Element
+        Rows of a lifetime that never end, and those censored after all others have ended, share the
+        highest rank: their order is neither known nor needed.
+
+    Returns
+    -------
+    Transformed
+        Between 0 and 1. Refused if a row was censored before the last life ended: its rank is not
+        known.
+
+    References
+    ----------
+    A. Saltelli, I. M. Sobol', "About the use of rank transformation in sensitivity analysis of
+    model output", Reliab. Eng. Syst. Saf. 50, 225-239 (1995).
+    """
+    values, present = element.values, element.present
+    beyond = element.never | element.censored
+    last = values[present & ~beyond].max(initial=-np.inf)
+    unknown = int((element.censored & (values < last)).sum())
+    if unknown:
+        return Transformed(
+            np.full(len(values), np.nan),
+            f"{counted(unknown, 'row')} censored before the last life ended: the order of the rows"
+            " is not known; ask for P(T < t) by a threshold in [analysis], or lengthen the horizon",
+        )
+    ranks = np.full(len(values), np.nan)
+    ranks[present] = mid_ranks(np.where(beyond, np.inf, values)[present])
+    return Transformed(ranks)
+
+
+def rate(element: Element) -> Transformed:
+    """Return the inverse of a life, 0 if it never ends; refused if a row has none."""
+    with np.errstate(divide="ignore", over="ignore"):
+        inverse = 1 / element.values
+    if censored := int(element.censored.sum()):
+        refused = (
+            f"{counted(censored, 'lifetime is', 'lifetimes are')} censored, and the rate not known;"
+            " ask for P(T < t) by a threshold in [analysis], or lengthen the horizon"
+        )
+    elif too_short := int((inverse > LARGEST_VALUE).sum()):
+        rows, unit = counted(too_short, "row has", "rows have"), element.declared.unit
+        refused = f"{rows} lifetime zero or below {1 / LARGEST_VALUE:g} {unit}: no rate"
+    else:
+        refused = ""
+    return Transformed(inverse, refused)
+
+
+@dataclass(frozen=True)
+class Target:
+    """One number per row, or one for each element of an output.
+
+    Attributes
+    ----------
+    name : str
+        That of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
+        ``rate(element)`` and ``P(element<t)``; for regimes ``P(regime=label)``; ``output[:]`` for
+        all elements together.
+    element : Element or None
+        None for a category or a whole output.
+    values : ndarray, shape (n,) or (n, e)
+        NaN for rows that failed or have no value.
+    refused : str
+        Why there can be no index of it, or "".
+    event : bool
+        Whether the values say if something happened, 1, or not, 0.
+    notes : tuple of str
+        Sentences on what replaces the output.
+    """
+
+    name: str
+    element: Element | None
+    values: Floats
+    refused: str = ""
+    event: bool = False
+    notes: tuple[str, ...] = ()
+
+    @property
+    def sizes(self) -> Floats:
+        """The values or, of a whole output, the distances of rows from their mean, shape (n,)."""
+        if self.values.ndim == 1:
+            return self.values
+        whole = self.values[np.isfinite(self.values).all(axis=1)]
+        middle = whole.mean(axis=0) if len(whole) else 0.0
+        away, size = sized(whole - middle)
+        return size * np.asarray(np.linalg.norm(away, axis=1))
+
+
+def where_it_happens(event: Target) -> Floats:
+    """Return the output that an event is about in the rows in which it happens, NaN in others."""
+    assert event.element is not None
+    return np.where(event.values == 1, event.element.for_thresholds, np.nan)
+
+
+def targets(
+    elements: Iterable[Element],
+    thresholds: Mapping[str, tuple[float, ...]],
+    every: bool = False,
+) -> Iterator[Target]:
+    """Yield targets of some elements.
+
+    Parameters
+    ----------
+    elements : iterable of Element
+    thresholds : dict of str to tuple of float
+        Output -> times t of its probabilities P(T < t), for lifetimes.
+    every : bool, optional
+        Whether also those that must be asked for by name.
+
+    Yields
+    ------
+    Target
+        What `number_of` gives, and of a lifetime T the events T < t. If every target is asked for:
+        a value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
+        also the rate 1/T and the events; of others the events y > t, of an angle's magnitude.
+    """
+    for element in elements:
+        if not (every and element.is_lifetime):
+            yield number_of(element)
+        if every and not element.is_angle:
+            for form in ("log", "rank", "rate")[: 3 if element.is_lifetime else 2]:
+                yield transformed(element, form)
+        if element.is_lifetime or every:
+            for threshold in thresholds.get(element.output, ()):
+                yield _event(element, threshold)
+
+
+def number_of(element: Element) -> Target:
+    """Return one number per row that has moments.
+
+    A value or angle is such a number. A lifetime is replaced by its logarithm where every row's
+    life is finite, uncensored and positive, else by its rank.
+    """
+    if not element.is_lifetime:
+        return Target(element.name, element, element.values)
+    found = transformed(element, "log")
+    return transformed(element, "rank") if found.refused else found
+
+
+_TRANSFORMS = {"log": logarithm, "rank": rank, "rate": rate}
+"""Name -> transformation of an element."""
+
+FORMS = {"log": "logarithm", "rank": "rank", "rate": "inverse"}
+"""The same in words."""
+
+
+_EVENT = re.compile(r"P\(\s*\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)")
+
+
+def split_name(name: str) -> tuple[str, str, str]:
+    """Split the name of a target into the form, the element, and the threshold.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    tuple of str
+        ``("log", "life[depth=0.5]", "")`` of ``log(life[depth=0.5])``, ``("P", "life", "1000.0")``
+        of ``P(life<1000.0)`` and ``P(life>1000.0)``, ``("P", "regime=fast", "")`` of
+        ``P(regime=fast)``, ``("", "y", "")`` of ``y``.
+    """
+    for form in (*_TRANSFORMS, "P"):
+        if name.startswith(f"{form}(") and name.endswith(")"):
+            text = name[len(form) + 1 : -1]
+            inside, _, threshold = text.partition("<" if "<" in text else ">")
+            return form, inside, threshold
+    return "", name, ""
+
+
+def canonical(name: str) -> str:
+    """Return the name of a target, of ``P(life < 24 hours)`` that is ``P(life<86400.0)``."""
+    found = _EVENT.fullmatch(name)
+    if found is None:
+        return name
+    for read in (float, read_quantity):
+        with suppress(ValueError):
+            return f"P({found[1]}{found[2]}{float(read(found[3]))!r})"
+    return f"P({found[1]}{found[2]}{found[3]})"
+
+
+def threshold_text(name: str) -> str:
+    """Return the threshold in the name of an event as written: ``24 hours``; "" without one."""
+    found = _EVENT.fullmatch(name)
+    return found[3] if found else ""
+
+
+def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:
+    """Return the ``log``, ``rank`` or ``rate`` of an element."""
+    values, refused = _TRANSFORMS[form](element)
+    if form == "rank" and (top := int((element.never | element.censored).sum())):
+        several = "rows that never end or are censored share"
+        rows = counted(top, "row that never ends or is censored has", several)
+        notes += (f"{rows} the highest rank",)
+    return Target(f"{form}({element.name})", element, values, refused, notes=notes)
+
+
+INDICES_OF = "these are indices of its {form}; ask for {name} for those of the output itself"
+
+
+def lightened(target: Target, said: str = INDICES_OF) -> Target:
+    """Return what replaces a value with a heavy tail, for methods that apportion a variance.
+
+    Parameters
+    ----------
+    target : Target
+    said : str
+        What its note says of the ``form`` that replaces it, and of its ``name``.
+
+    Returns
+    -------
+    Target
+        The logarithm, where all rows are positive and its own tail is not heavy, else the rank,
+        with a note; `target` itself where `heaviness` finds nothing.
+    """
+    if not (why := _heaviness(target)):
+        return target
+    assert target.element is not None
+    form = _lighter_form(target.element)
+    note = said.format(form=FORMS[form], name=target.name)
+    return transformed(target.element, form, (f"{why}: {note}",))
+
+
+def with_tail_note(target: Target) -> Target:
+    """Return a target with a note if its tail is heavy, for methods that apportion a variance."""
+    if not (why := _heaviness(target)):
+        return target
+    assert target.element is not None
+    other = f"{_lighter_form(target.element)}({target.name})"
+    return replace(target, notes=(*target.notes, f"{why}: {other} is more informative"))
+
+
+def _heaviness(target: Target) -> str:
+    """Return why indices of the variance of a value are not informative, or ""."""
+    element = target.element
+    if element is None or element.is_lifetime or element.is_angle or target.name != element.name:
+        return ""
+    return heaviness(target.values)
+
+
+def _lighter_form(element: Element) -> str:
+    found = logarithm(element)
+    return "rank" if found.refused or heaviness(found.values) else "log"
+
+
+def _event(element: Element, threshold: float) -> Target:
+    if not element.is_lifetime:
+        above = np.where(element.present, element.for_thresholds > threshold, np.nan)
+        return Target(f"P({element.name}>{threshold!r})", element, above, event=True)
+    ended = element.values < threshold
+    unknown = int(element.unknown_sides(threshold).sum())
+    refused = f"{unknown} of {ended.size} rows were censored before that time" * (unknown > 0)
+    event = np.where(element.present, ended, np.nan)
+    return Target(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
+
+
+def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+    """Yield whether a category, such as the regime, has each of the labels that occur.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    output : str
+        An output of kind ``category``, or one element of it.
+
+    Yields
+    ------
+    Target
+        NaN for rows that failed before they had a category; a sound row of no category has none.
+    """
+    lost = failed(ds)
+    for name, codes in category_codes(ds, output).items():
+        for code, label in flags(ds[output.partition("[")[0]]):
+            if code >= 0 and (hits := codes == code).any():
+                values = np.where((codes < 0) & lost, np.nan, hits)
+                yield Target(f"P({name}={label})", None, values, event=True)

@@ -1,0 +1,235 @@
+"""Two fidelities: the rows of a result, and many more rows of a cheap twin of the same model.
+
+The twin is an output that the model can compute alone, or the same outputs with settings that make
+a row cheap, such as fewer modes.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.assess.failed_rows import failed_share_bounds
+from uq.assess.statistics.thresholds import SIDES, event, share_of
+from uq.contract import Floats
+from uq.errors import InputError, first_fault_alone
+from uq.result.elements import Element, elements_of, shown_outputs
+from uq.result.result_file import build_rows
+from uq.result.weights import refuse_weights
+from uq.sampling.named_values import read_settings
+from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import FEW
+from uq.stats.moments import moments
+from uq.study.definition import Study, study_from_text
+from uq.study.evaluate import evaluate
+from uq.study.row_sampling import row_block, row_seeds, rows
+from uq.text.literals import toml
+
+MOST_ROWS = 1_000_000
+"""Rows of the twin at most."""
+
+PER_ROW = 100
+"""Rows of a cheap output for each row of the result."""
+
+PER_ROW_OF_SETTINGS = 10
+"""Rows under other settings for each row of the result: they cost more."""
+
+_BLOCK = 65_536
+
+
+@dataclass(frozen=True)
+class Sharpened:
+    """An estimate that a twin sharpens.
+
+    Attributes
+    ----------
+    estimate : Estimate
+        By control variates.
+    reduction : float
+        Variance of the plain estimate over that of this one.
+    plain : Estimate
+        From the rows of the result alone.
+    failed : Estimate, optional
+        Ends of the plain interval with the failed rows at best and at worst, where rows failed.
+    note : str
+        Where few rows are hits, or misses: what that means for the estimate.
+    """
+
+    estimate: Estimate
+    reduction: float
+    plain: Estimate
+    failed: Estimate | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class TwoFidelities:
+    """What `two_fidelities` finds.
+
+    Attributes
+    ----------
+    twin : str
+    rows, cheap_rows : int
+        Of the result, and of the twin alone.
+    outputs : dict of str to dict
+        Element -> estimate (``mean``, ``P(>t)``, ``P(<t)``) -> `Sharpened`. An element whose tail
+        has no variance has no mean here.
+    """
+
+    twin: str
+    rows: int
+    cheap_rows: int
+    outputs: Mapping[str, Mapping[str, Sharpened]]
+
+
+def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
+    """Estimate means and probabilities with the help of a cheap twin of the same model.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a study with ``[analysis] twin``.
+    model : str, optional
+        Where a model that is not installed lives, as for `load_study`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index: element of an output, and estimate (``mean``, ``P(>t)``, ``P(<t)``). Columns:
+        ``value``, ``low``, ``high`` by control variates with the twin; ``plain``, ``plain_low``,
+        ``plain_high`` from the rows of the result alone; ``reduction``, the variance of the plain
+        estimate over the other's.
+
+    Raises
+    ------
+    InputError
+        When the study names no twin.
+    """
+    lines = {
+        (name, label): (*one.estimate.numbers, *one.plain.numbers, one.reduction)
+        for name, estimates in with_twin(ds, model).outputs.items()
+        for label, one in estimates.items()
+    }
+    index = pd.MultiIndex.from_tuples(list(lines), names=["output", "estimate"])
+    columns = ["value", "low", "high", "plain", "plain_low", "plain_high", "reduction"]
+    return pd.DataFrame(list(lines.values()), index=index, columns=columns)
+
+
+def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
+    """Return the estimates of `two_fidelities` as records."""
+    refuse_weights(ds, "estimates with a twin")
+    with first_fault_alone():
+        study = study_from_text(ds.attrs["study"], "study of this result", model)
+    twin = study.analysis.twin
+    if not twin:
+        cheap = ", ".join(study.model.cheap) or "none"
+        raise InputError(
+            "the study names no twin: [analysis] twin = NAME of an output that model"
+            f" '{study.model.name}' can compute alone ({cheap}), or a table of settings that make"
+            " its rows cheap"
+        )
+    study = study.with_samples(int(ds.attrs["samples"]))
+    here, many = _here(study, ds), _many(study, ds.sizes["sample"])
+    outputs = [name for name in shown_outputs(ds, study.analysis) if name != twin]
+    found = {}
+    for element in elements_of(ds, outputs):
+        for control, others in zip(here, many, strict=True):
+            same = control.name == element.name
+            if same or (control.output == twin and control.place.items() <= element.place.items()):
+                found[element.name] = dict(_estimates(element, control, others, study))
+    return TwoFidelities(
+        twin if isinstance(twin, str) else toml(twin),
+        ds.sizes["sample"],
+        len(many[0].values),
+        {name: estimates for name, estimates in found.items() if estimates},
+    )
+
+
+def _estimates(
+    element: Element, control: Element, many: Element, study: Study
+) -> Iterator[tuple[str, Sharpened]]:
+    present, kept = element.present, ~element.failed
+    if present.any() and not (element.never | element.censored).any():
+        alone = moments(element.values[present]).mean
+        if not alone.reason:
+            found = controlled_mean(
+                element.values, present, controls=_filled(control), many=_filled(many)
+            )
+            yield "mean", Sharpened(*found, alone)
+    for threshold in study.analysis.thresholds.get(element.output, ()):
+        sides = event(element, threshold)
+        if sides is None or not kept.any():
+            continue
+        for sign, hits in zip(SIDES.values(), sides, strict=True):
+            found = controlled_share(
+                hits, kept, control=control.for_thresholds, many=many.for_thresholds
+            )
+            failed = failed_share_bounds(hits, element.failed, None)
+            note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
+            plain = share_of(hits[kept], None)
+            yield f"P({sign}{threshold!r})", Sharpened(*found, plain, failed, note)
+
+
+def _note_on_few(hits: int, rows: int) -> str:
+    """Return a note where few rows are hits, or misses."""
+    rarer = min(hits, rows - hits)
+    if rarer >= FEW:
+        return ""
+    if rarer < FEWEST:
+        consequence = f"the twin is not used below {FEWEST}; these are the plain rows"
+    else:
+        consequence = f"below {FEW} the interval is exact, and conservative"
+    seen = f"{hits} of {rows} rows" if hits == rarer else f"all but {rarer} rows"
+    return f"{seen} lie there: {consequence}"
+
+
+def _filled(control: Element) -> Floats:
+    """Return the controls of a mean, (n, 2): the value, and whether there is none."""
+    finite = np.isfinite(control.values)
+    return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
+
+
+def _here(study: Study, ds: xr.Dataset) -> list[Element]:
+    """Return the twin of the rows of a result."""
+    n = ds.sizes["sample"]
+    x = [np.broadcast_to(ds[name].values, n) for name in study.model.parameter_names]
+    keys = (ds[name].values.astype(np.int64) for name in ("replicate", "group", "block"))
+    return _twin_of(study, np.stack(x, 1), row_seeds(study.design.seed, *keys))
+
+
+def _many(study: Study, start: int) -> list[Element]:
+    """Return the twin of the rows that come next in the study, independent of all others."""
+    per_row = PER_ROW if isinstance(study.analysis.twin, str) else PER_ROW_OF_SETTINGS
+    wanted = min(per_row * start, MOST_ROWS)
+    per_sample = rows(study) // study.design.samples
+    longer = study.with_samples(study.design.samples + -(-wanted // per_sample))
+    parts = [
+        _twin_of(longer, some.x, some.seed)
+        for first in range(start, rows(longer), _BLOCK)
+        for some in [row_block(longer, first, min(first + _BLOCK, rows(longer)))]
+    ]
+    return [_joined(pieces) for pieces in zip(*parts, strict=True)]
+
+
+def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
+    model, settings, twin = study.model, study.settings, study.analysis.twin
+    if isinstance(twin, str):
+        model = model.alone(twin)
+    else:  # the same outputs, from rows that cost less
+        settings = read_settings(model, asdict(settings) | twin)[0]
+    chunk = evaluate(model, settings, x, seed)
+    ds = build_rows(model, settings, {}, chunk.columns, chunk.status, {})
+    outputs = (twin,) if isinstance(twin, str) else shown_outputs(ds, study.analysis)
+    return list(elements_of(ds, outputs))
+
+
+def _joined(pieces: tuple[Element, ...]) -> Element:
+    values, censored, failed = (
+        np.concatenate([getattr(piece, name) for piece in pieces])
+        for name in ("values", "censored", "failed")
+    )
+    return replace(pieces[0], values=values, censored=censored, failed=failed)

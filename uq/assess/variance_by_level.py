@@ -1,0 +1,179 @@
+"""One table of numbers apportioned to levels: shared by units, own to each, due to chance."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.result.nesting import samples_have
+from uq.sampling.designs import several
+from uq.sampling.levels import CHANCE, LEVELS, OWN, SHARED
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import sized
+from uq.stats.variance_components import nested_shares
+
+SOLVER = "solver"
+"""The share of the error that each row states; the other shares contain it."""
+
+SOURCES = (*LEVELS, SOLVER)
+
+NONE, ALL = Estimate(0.0, 0.0, 0.0), Estimate(1.0, 1.0, 1.0)
+
+_ONE_REPEAT = "a single repeat cannot separate chance from what is own to a unit; {repeats}"
+_ONE_UNIT = "a single unit cannot show what is shared and what is own; {units}"
+_ONE_ROW = "a single row a sample cannot separate what is shared from chance; {repeats}"
+INCLUDES_CHANCE = "that chance counts as own"
+
+
+@dataclass(frozen=True)
+class LevelShares:
+    """Shares of the variance of one target.
+
+    Attributes
+    ----------
+    shares : dict of str to Estimate
+        By the names in `SOURCES`.
+    variance : float
+        NaN where there is none.
+    left_out : int
+        Samples with too few values.
+    notes : tuple of str
+        What replaces the output.
+    integrated : tuple of str
+        Inputs whose part of the variance is known exactly.
+    """
+
+    shares: Mapping[str, Estimate]
+    variance: float = np.nan
+    left_out: int = 0
+    notes: tuple[str, ...] = ()
+    integrated: tuple[str, ...] = ()
+
+    @property
+    def sentences(self) -> list[str]:
+        """Why shares or intervals are missing, and what replaces the output."""
+        reasons: dict[str, list[str]] = {}
+        for name, one in self.shares.items():
+            if one.reason:
+                reasons.setdefault(one.reason, []).append(name)
+        said = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
+        if self.left_out:
+            said.append(f"left out: {samples_have(self.left_out)} too few values")
+        exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
+        return [*exactly, *self.notes, *said]
+
+
+def shares_of(
+    table: Floats,
+    varying: Collection[str],
+    errors: Floats | None = None,
+    replicate: Any = None,
+    known: Mapping[str, Floats] = MappingProxyType({}),
+    design: str = "monte-carlo",
+    weights: Floats | None = None,
+) -> LevelShares:
+    """Estimate the shares of the variance of one number per row.
+
+    Parameters
+    ----------
+    table : ndarray, shape (samples, units, repeats)
+        NaN where there is none.
+    varying : collection of str
+        The levels on which something varies; the share of the others is what is known of them.
+    errors : ndarray, shape (samples, units, repeats), optional
+        Numerical error of each, as a standard deviation.
+    replicate : ndarray of int, shape (samples,), optional
+        Where only replicates are independent.
+    known : dict of str to ndarray of shape (samples, units, repeats), optional
+        Level -> variance that each row adds to it, of independent terms at their means in `table`.
+    design : str, optional
+        By which samples were drawn, for advice.
+    weights : ndarray, shape (samples,), optional
+        Of samples.
+
+    Returns
+    -------
+    LevelShares
+    """
+    names = tuple(level for level in LEVELS if level in varying)
+    places = _places(names, table.shape)
+    places += tuple((level,) for level in LEVELS if level in known and level not in names)
+    of_each = (
+        None if one is None else _reduced(np.broadcast_to(one[:, None, None], table.shape), names)
+        for one in (replicate, weights)
+    )
+    replicate, weights = (None if one is None else one[:, 0, 0] for one in of_each)
+    errors = None if errors is None else _reduced(errors, names)
+    empty = int(np.isnan(table).all(axis=(1, 2)).sum())
+    table, size = sized(_reduced(table, names))  # neither squares nor their sums overflow
+    errors = None if errors is None else errors / size
+    added = np.zeros((3, *table.shape))
+    for place, levels in enumerate(places):
+        for level in known.keys() & set(levels):
+            added[place] += _reduced(known[level], names) / size / size
+    found = nested_shares(table, errors, replicate, added, weights)
+    shares = {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
+    if found.variance > 0:
+        shares = dict.fromkeys(LEVELS, NONE)
+        for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
+            shares |= _of_levels(levels, share, design)
+    left_out = found.left_out if SHARED in names else empty
+    return LevelShares(shares | {SOLVER: found.error}, found.variance * size * size, left_out)
+
+
+def _reduced(table: Any, names: Collection[str]) -> Any:
+    """Return what is independent, its units and their repeats, without levels on which none vary.
+
+    Without chance, the repeats of a unit are one row; without anything own, units are repeats; with
+    nothing shared, samples do not matter. Of two levels the inner one takes the place of units.
+    """
+    if CHANCE not in names:
+        first = np.isfinite(table).argmax(axis=2)
+        table = np.take_along_axis(table, first[..., None], axis=2)
+    samples, units, repeats = table.shape
+    if names == (SHARED,):
+        return table[:, :1]
+    if len(names) < 2:
+        return table.reshape(-1, 1, 1)
+    if OWN not in names:
+        return table.reshape(samples, -1, 1)
+    if SHARED not in names:
+        return table.reshape(samples * units, repeats, 1)
+    return table if units > 1 else table.reshape(samples, repeats, 1)
+
+
+def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, ...], ...]:
+    """Return which levels are told apart: those in each place of a reduced table, outermost first.
+
+    Levels in one place cannot be separated.
+    """
+    _, units, repeats = shape
+    if names == tuple(LEVELS) and repeats == 1 < units:
+        return (SHARED,), (OWN, CHANCE)
+    if names == tuple(LEVELS) and units == 1 < repeats:
+        return (SHARED, OWN), (CHANCE,)
+    several = {
+        (SHARED, OWN): units > 1,
+        (SHARED, CHANCE): units * repeats > 1,
+        (OWN, CHANCE): repeats > 1,
+        tuple(LEVELS): units > 1,
+    }
+    return tuple((name,) for name in names) if several.get(names, True) else (names,)
+
+
+def _of_levels(levels: tuple[str, ...], share: Estimate, design: str) -> dict[str, Estimate]:
+    """Return the shares of levels from the share of their place."""
+    if len(levels) == 1:
+        return {levels[0]: share}
+    advice = {key: several(key, design) for key in ("units", "repeats")}
+    one_repeat, one_unit, one_row = (
+        Estimate(reason=why.format(**advice)) for why in (_ONE_REPEAT, _ONE_UNIT, _ONE_ROW)
+    )
+    if levels == (OWN, CHANCE):
+        return {OWN: replace(share, assumes=INCLUDES_CHANCE), CHANCE: one_repeat}
+    if OWN not in levels:
+        return dict.fromkeys(levels, one_row)
+    return dict.fromkeys(levels, one_unit) | ({CHANCE: one_repeat} if CHANCE in levels else {})

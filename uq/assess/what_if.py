@@ -1,0 +1,226 @@
+"""What a result would say if its inputs followed other laws: the same rows, weighted."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from uq.assess.densities import changed_laws, depends_otherwise
+from uq.assess.reweighting import Weighting
+from uq.assess.row_inputs import Inputs, inputs_of
+from uq.assess.statistics.table import STATISTICS
+from uq.assess.summary import Summary, summarise
+from uq.assess.summary_json import summary_json
+from uq.assess.summary_table import table_of
+from uq.contract import Parameter
+from uq.errors import InputError, RunError, nearest
+from uq.result.elements import (
+    analysis_of,
+    independent_rows,
+    replicates_of,
+    shown_outputs,
+    why_no_statistics,
+)
+from uq.result.weights import refuse_weights
+from uq.sampling.dependence import matrix_problem
+from uq.sampling.designs import DESIGNS
+from uq.sampling.input_faults import Fault
+from uq.sampling.truncation import law_problem
+from uq.stats.estimate_json import number
+from uq.study.file import AnalysisTable, StudyFile
+from uq.study.reading import read_study_text
+from uq.text.literals import key, read_toml, shown, toml
+
+SAME = "what if: which inputs are the same cannot be changed"
+
+
+@dataclass(frozen=True)
+class WhatIf:
+    """The answer to a what-if.
+
+    Attributes
+    ----------
+    summary : Summary
+        Of the rows under the other laws.
+    effective_rows : float
+        The least number of equal rows that those of an output are worth.
+    pareto_k : float
+        Of the worst weights used.
+    """
+
+    summary: Summary
+    effective_rows: float
+    pareto_k: float
+
+
+def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
+    """Describe a result as if its inputs followed other laws, without computing a row.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    changes : dict of str to object
+        Entries of the study file, such as ``{"uncertain.initial_gap.sd": 1e-5}`` or, for another
+        law, ``{"uncertain.initial_gap": {"distribution": "normal", "mean": 2e-4, "sd": 1e-5}}``;
+        or ``dependence.rank_correlation``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `uq.summary`, of the outputs whose weights can be trusted, with ``effective_rows`` and
+        ``pareto_k`` in its ``attrs``. An input that only scales lives is integrated: its law is
+        replaced exactly. Rows have the ratio of densities as weights, smoothed [1]_.
+
+    Raises
+    ------
+    InputError
+        When the changes make no study, or one with values where the result has no rows, and these
+        inputs do more than scale lives.
+    RunError
+        When the rows are too few for these laws; says how many to add.
+
+    References
+    ----------
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
+    """
+    found = answer(ds, changes)
+    table = table_of(found.summary)
+    table.attrs = {"effective_rows": found.effective_rows, "pareto_k": found.pareto_k}
+    return table
+
+
+def answer(
+    ds: xr.Dataset,
+    changes: Mapping[str, Any],
+    asked: AnalysisTable | None = None,
+    parts: Collection[str] = STATISTICS,
+) -> WhatIf:
+    """Return what `what_if` tabulates, or that part of it which is asked for."""
+    refuse_weights(ds, "what if")
+    if why := why_no_statistics(ds):
+        raise InputError(f"what if: the rows of a '{ds.attrs['design']}' design {why}")
+    rows = independent_rows(ds)
+    old, new = inputs_of(rows), _changed(rows, changes)
+    _refuse(ds, old, new)
+    weighting = Weighting(rows, old, new, replicates_of(rows))
+    summary = summarise(ds, asked, weighting=weighting, parts=parts)
+    if not weighting.used and weighting.refused:
+        first = next(iter(weighting.refused.values()))
+        raise (InputError if first.impossible else RunError)(first.refusal)
+    for name, one in weighting.refused.items():
+        summary.notes.append(f"{name}: {one.refusal}")
+    used = weighting.used.values()
+    return WhatIf(
+        summary,
+        min((one.effective for one in used), default=0.0),
+        max((one.k for one in used), default=0.0),
+    )
+
+
+def what_if_json(found: WhatIf) -> dict[str, Any]:
+    """Return the answer in plain data: as `uq summary --json`, with the quality of the weights."""
+    quality = {"effective_rows": found.effective_rows, "pareto_k": number(found.pareto_k)}
+    return quality | summary_json(found.summary)
+
+
+def read_changes(texts: Sequence[str]) -> dict[str, Any]:
+    """Read changes from the command line, such as ``uncertain.initial_gap.sd=1e-5``."""
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip()
+        if name in found:
+            raise InputError(f"--set {shown(text)}: {name} is changed twice")
+        try:
+            if not (name and equals):
+                raise ValueError
+            found[name] = read_toml(f"x = {value}")["x"]
+        except (ValueError, OverflowError, RecursionError):
+            raise InputError(
+                f"--set {shown(text)}: must be uncertain.NAME.KEY=VALUE, the value as in TOML"
+            ) from None
+    return found
+
+
+def _changed(rows: xr.Dataset, changes: Mapping[str, Any]) -> Inputs:
+    """Return the inputs of the rows with the laws of the study as changed."""
+    data = read_toml(rows.attrs["study"])
+    for place, value in changes.items():
+        _put(data, place, value)
+    text = "\n".join(f"{key(name)} = {toml(value)}" for name, value in data.items())
+    study = read_study_text(text, "what if")
+    inputs = inputs_of(rows, study, text)
+    faults = list(_faults(rows, study, inputs))
+    if faults:
+        raise InputError(*(f"what if: {fault.line}" for fault in faults))
+    return inputs
+
+
+def _put(data: dict[str, Any], place: str, value: Any) -> None:
+    table, _, rest = place.partition(".")
+    if (table, rest) == ("dependence", "rank_correlation"):
+        if table not in data:
+            raise InputError(
+                "what if: this study has no [dependence] whose correlations can change"
+            )
+        data[table][rest] = value
+        return
+    name, _, argument = rest.partition(".")
+    known = data["uncertain"]
+    if table != "uncertain" or not name:
+        raise InputError(
+            f"what if: '{place}' cannot be changed; only uncertain.NAME.KEY, uncertain.NAME and"
+            " dependence.rank_correlation can"
+        )
+    if name not in known:
+        raise InputError(f"what if: '{name}' is not uncertain in this study{nearest(name, known)}")
+    if argument == "equals":
+        raise InputError(SAME)
+    kept = {k: v for k, v in known[name].items() if k in ("times", "level", "source")}
+    if not argument:
+        known[name] = kept | value if isinstance(value, dict) else value
+    elif argument == "distribution":
+        known[name] = kept | {argument: value}
+    else:
+        known[name][argument] = value
+
+
+def _faults(rows: xr.Dataset, study: StudyFile, inputs: Inputs) -> list[Fault]:
+    faults = []
+    for name, law in inputs.laws.items():
+        about = rows[name].attrs
+        declared = Parameter("", about["units"], "", inputs.bounds[name], "")
+        if law.times is None and (problem := law_problem(law, declared)):
+            faults.append(problem.within("uncertain", name))
+    if study.dependence is not None:
+        names, ranks = study.dependence.parameters, study.dependence.rank_correlation
+        if wrong := matrix_problem(names, ranks):
+            faults.append(wrong.within("dependence", "rank_correlation"))
+    return faults
+
+
+def _refuse(ds: xr.Dataset, old: Inputs, new: Inputs) -> None:
+    """Refuse changes that weights do not show."""
+    if DESIGNS[ds.attrs["design"]].imported:
+        raise InputError("what if: the rows are imported, and their density is unknown")
+    if new.tied != old.tied or list(new.laws) != list(old.laws):
+        raise InputError(SAME)
+    for name, law in old.laws.items():
+        other = new.laws[name]
+        if (law.times, law.level) != (other.times, other.level):
+            raise InputError(f"what if: times and level of '{name}' cannot be changed")
+        if law.discrete != other.discrete:
+            raise InputError(f"what if: '{name}' cannot change between listed and other values")
+    if depends_otherwise(old, new):
+        listed = [name for name in old.correlated if old.laws[name].discrete]
+        if listed:
+            raise InputError(
+                f"what if: the listed values of '{listed[0]}' do not show how far it depends on"
+                f" {', '.join(changed_laws(old, new)) or 'the others'}"
+            )
+    if not shown_outputs(ds, analysis_of(ds)):
+        raise InputError("what if: the result has no output")

@@ -1,0 +1,65 @@
+"""What ``uq status`` and ``uq verify`` do."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+from uq.cli import progress
+from uq.cli.printing import console, duration, grid, heading, print_json
+from uq.execution import verification
+from uq.execution.recomputed_row import other_versions
+from uq.execution.status import RunStatus, run_status
+from uq.machines.compilation import compilation
+from uq.result import result_file
+from uq.text.numbers import counted
+
+
+def status(path: Path, json: bool) -> None:
+    """Print the progress of a run."""
+    found = run_status(path)
+    print_json(asdict(found)) if json else _show_status(found)
+
+
+def _show_status(found: RunStatus) -> None:
+    writer = found.process
+    by = f" (process {writer.pid} on {writer.host})" if writer else ""
+    heading(f"{found.output}: {found.state}{by}")
+    rate, left = found.rate, found.seconds_left
+    time_left = (duration(left) or f"{left:.0f} s") if left else ""
+    statuses = [f"{count} {label}" for label, count in found.status.items()]
+    grid(
+        [
+            ("done", f"{found.done} of {found.rows} rows"),
+            ("failed", str(found.failed)),
+            ("left", ", ".join(filter(None, (str(found.left), time_left)))),
+            ("rate", f"{rate:.3g} rows/s" if rate else "-"),
+            ("by status", ", ".join(statuses) or "-"),
+        ]
+    )
+    if found.state != "complete" and found.complete_rows is not None:
+        rows = counted(found.complete_rows, "row")
+        console.print(f"\nUntil then the result with {rows} is kept.")
+
+
+def verify(path: Path, model: str | None) -> int:
+    """Check a result and print what was found; return the exit code."""
+    holds = verification.checksum_holds(path)
+    words = {True: "right", False: "WRONG: the file has changed since it was written", None: "none"}
+    console.print(f"checksum  {words[holds]}")
+    ds = result_file.open_result(path)
+    others = other_versions(ds, model)
+    for name, (made, here) in others.items():
+        console.print(f"{name}  {made} made it, {here} is here")
+    if not others:
+        console.print("versions  the same as here")
+    with compilation(progress.say_compiling):
+        rows, differences = verification.recompute(path, model)
+    for line in differences:
+        console.print(f"recomputed, differs in {line}")
+    if differences and holds and not others:
+        console.print(
+            "File and code are the same: this model does not return the same for the same row. It"
+            " keeps something between rows, or draws random numbers that do not depend on its seed."
+        )
+    equal = len(rows) - len(differences)
+    console.print(f"rows      {equal} of {len(rows)} recomputed are equal to the bit")
+    return 1 if differences or holds is False else 0

@@ -1,0 +1,207 @@
+"""The summary of a result, as tables of 80 columns."""
+
+from collections.abc import Iterator, Mapping
+from itertools import chain
+from math import isfinite, isnan
+from typing import NamedTuple
+
+import xarray as xr
+
+from uq.assess.answer.answer import conclude
+from uq.assess.answer.facts import Answer
+from uq.assess.findings import Findings
+from uq.assess.life_fit import Fit
+from uq.assess.life_quantiles import B_LIVES
+from uq.assess.regime_boundary import in_words
+from uq.assess.statistic import Reader, Statistic
+from uq.assess.summary import REGIME, Described, Summary
+from uq.assess.targets import split_name
+from uq.cli.printing import console, grid, heading, note, paragraph
+from uq.result.variables import outputs_of
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import failed_bounds_text, interval_text
+from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
+from uq.text.symbols import readable
+from uq.text.units import Unit, typical, unit_of
+
+_LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
+
+_MOST_EFFECTS = 3
+
+
+def show_findings(findings: Findings) -> None:
+    """Print the answer of a study, then its summary."""
+    show_answer(conclude(findings))
+    show_summary(findings.ds, findings.summary, findings.boundary)
+
+
+def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = None) -> None:
+    """Print a summary, and how intermingled its regimes are."""
+    design = f"{ds.attrs['design']}, {counted(summary.samples, 'row')}"
+    if summary.rows_used < summary.samples:
+        some = summary.rows_used
+        design += f", statistics from the {some} independent ones" if some else ", none independent"
+    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
+    grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
+    regimes = {REGIME: summary.regimes} if summary.regimes else {}
+    for name, shares in (regimes | summary.categories).items():
+        heading(f"\n{name}", str(ds[name.partition("[")[0]].attrs["long_name"]))
+        lines = [_share(one) for one in shares.values()]
+        grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
+        if name == REGIME and boundary is not None and boundary.estimate.has_interval:
+            stated = f"{boundary.label} {boundary.words()} ({interval_text(boundary.estimate)})"
+            paragraph(f"{stated}: {in_words(boundary)}", indent=2)
+    for name, output in summary.outputs.items():
+        meaning = readable(ds[name.partition("[")[0]].attrs["long_name"])
+        block = _block(ds, name, output)
+        heading(f"\n{name}{in_brackets(block.unit)}", meaning)
+        grid(_lines(output, block), header=("", "value", "95 % interval", ""))
+        for text in _reasons(output, block):
+            paragraph(text, indent=2)
+        for one in output.statistics:
+            for text in one.notes:
+                paragraph(text, indent=2)
+        if output.fits:
+            _show_fits(output.fits, block)
+    for text in summary.notes:
+        note(text)
+
+
+def show_answer(found: Answer) -> None:
+    """Print the answer: what can be promised, what it depends on, and what to do."""
+    lead = found.lead
+    if found.failed or lead is None:
+        paragraph(found.rows_sentence, indent=0)
+    of_lead = [] if lead is None else [*lead.head, *(one.with_cause for one in lead.others)]
+    own = [*found.level_lines, found.enough.sentence]
+    if found.regimes_first:
+        causes = (one.named_cause for one in found.regime_causes)
+        lines = [found.regimes_sentence, found.mixing.sentence, *own, *causes, *of_lead]
+    else:
+        lines = [*of_lead, *own, found.regimes_sentence]
+    for line in filter(None, lines):
+        paragraph(line, indent=0)
+    if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
+        paragraph(ranking.sentence, indent=0)
+        for contribution in ranking.contributions[:_MOST_EFFECTS]:
+            if contribution.effect:
+                paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    if found.ties:
+        paragraph(found.ties, indent=0)
+    if lead is not None and lead.earliest is not None:
+        for line in lead.earliest.lines:
+            paragraph(line, indent=0)
+    for advice in found.advice:
+        paragraph(f"To do: {advice.text[:1].lower()}{advice.text[1:]}", indent=0)
+    console.print()
+
+
+Line = tuple[str, str, str, str]
+
+
+class Block(NamedTuple):
+    """How the numbers of an output are shown: their unit, that of the model, what is compared."""
+
+    unit: Unit
+    units: str
+    compared: str
+
+    def per(self, one: Statistic) -> float:
+        """Return the size of the unit of a statistic."""
+        return self.unit.size if one.unit == self.units else 1.0
+
+    def label(self, one: Statistic) -> str:
+        """Return the name of a statistic."""
+        asked = () if one.at is None else (one.at,)
+        return estimated(one.label, self.units, self.compared, asked)
+
+
+def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
+    quantiles = (one.estimate.value for one in output.parts["quantiles"])
+    unit = unit_of(output.units, typical(quantiles))
+    is_angle = outputs_of(ds)[name.partition("[")[0]].is_angle
+    return Block(unit, output.units, compared(name, is_angle))
+
+
+def _share(one: Statistic) -> tuple[str, ...]:
+    share = (one.label, one.words(), interval_text(one.estimate))
+    return *share, str(one.facts["count"]), failed_bounds_text(one.failed)
+
+
+def _lines(output: Described, block: Block) -> Iterator[Line]:
+    """Yield label, value and interval in the unit of the block, and a long time in seconds."""
+    for part in output.parts.values():
+        shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
+        for one in shown:
+            yield _line(one, block)
+            yield from _failed(one, block)
+            if one.otherwise and one.otherwise.label:
+                yield _line(one.otherwise, block)
+                yield from _failed(one.otherwise, block)
+                yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
+        for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
+            if assumed:
+                yield "", f"{shown[0].kind.name} assume", assumed.removeprefix("that "), ""
+
+
+def _line(one: Statistic, block: Block) -> Line:
+    per, more = block.per(one), ""
+    if one.unit == "s" and per >= _LONG and isfinite(one.estimate.value):
+        more = f"{number(one.estimate.value)} s"
+    if one.unit == "rows":
+        more = one.unit
+    elif form := split_name(one.of)[0]:
+        more = f"of its {form}"
+    elif undefined := one.facts.get("undefined"):
+        more = f"{percent(undefined)} undefined"
+    return block.label(one), one.words(per), one.interval(per), more
+
+
+def _failed(one: Statistic, block: Block) -> Iterator[Line]:
+    if worst := failed_bounds_text(one.failed, block.per(one)):
+        yield "  with failed rows", "", worst, ""
+
+
+def _reasons(output: Described, block: Block) -> Iterator[str]:
+    """Yield why numbers are missing, each reason once, unless a note says it."""
+    lacking: dict[str, list[str]] = {}
+    said = {text for one in output.statistics for text in one.notes}
+    for one in output.statistics:
+        if not (one.is_read_by(Reader.TERMINAL) and one.words()):
+            continue
+        both = [one, *([one.otherwise] if one.otherwise and one.otherwise.label else [])]
+        alone = isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise
+        for each in both if len(both) > 1 else both * alone:
+            if each.estimate.reason and each.estimate.reason not in said:
+                lacking.setdefault(each.estimate.reason, []).append(block.label(each))
+    for reason, labels in lacking.items():
+        yield f"{', '.join(labels)}: {reason}"
+
+
+def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
+    """Print the laws that fit side by side, with their B-lives, and why the others do not."""
+    for law, fit in fits.items():
+        if fit.refused:
+            paragraph(f"{law}: {fit.refused}", indent=2)
+    accepted = {law: fit for law, fit in fits.items() if not fit.refused}
+    if not accepted:
+        return
+    lines = [("p of the test", *chain(*((f"{fit.p_value:.2g}", "") for fit in accepted.values())))]
+    laws = [{**fit.parameters, **fit.b_lives} for fit in accepted.values()]
+    parameters = dict.fromkeys(chain(*(fit.parameters for fit in accepted.values())))
+    for name in (*parameters, *B_LIVES):
+        extrapolated = any(name in fit.extrapolated for fit in accepted.values())
+        per = 1.0 if name in ("shape", "sigma") else block.unit.size
+        cells = chain(*(_cells(law.get(name), per) for law in laws))
+        lines.append((f"{name}, extrapolated" if extrapolated else name, *cells))
+    grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
+    assumed = next(iter(accepted.values())).assumes
+    paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
+
+
+def _cells(one: Estimate | None, per: float) -> tuple[str, str]:
+    return ("", "") if one is None else (number(one.value / per), interval_text(one, per))
+
+
+def _example(ds: xr.Dataset, status: str) -> str:
+    return str(ds["status"].attrs.get(f"example_{status.replace('-', '_')}", ""))

@@ -1,1 +1,0 @@
-"""Which points of the unit cube a study visits."""

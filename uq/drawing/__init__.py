@@ -1,1 +1,0 @@
-"""Figures, one kind in a file; `uq.plots` is their public face."""

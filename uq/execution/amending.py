@@ -1,0 +1,149 @@
+"""A result with more samples, or with its failed rows computed again."""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.errors import InputError
+from uq.execution import resuming, runner
+from uq.execution.options import DEFAULTS, RunOptions
+from uq.execution.recomputed_row import changed_settings, study_here
+from uq.execution.row_folder import folder_of, history
+from uq.result import result_file
+from uq.result.weights import refuse_weights
+from uq.result.workload import workload_of
+from uq.study.changes import refusal_to_extend
+from uq.study.definition import Study
+
+
+def study_of(path: Path, model: str | None = None) -> Study:
+    """Return the study of a result, or of the rows kept for one that is not complete.
+
+    Parameters
+    ----------
+    path : Path
+        Of the result.
+    model : str, optional
+        Where its model lives, if it is not installed.
+
+    Returns
+    -------
+    Study
+        With the number of samples of the result or run.
+
+    Raises
+    ------
+    InputError
+        When there is nothing, or the model here differs from the one that computed it.
+    """
+    identity, text, version, samples = _recorded(path)
+    study, change = study_here(text, identity, version, samples, str(path), model)
+    if change:
+        raise InputError(
+            f"{path}: was computed with another model ({change}); rerun the study, into another"
+            " output or with --fresh"
+        )
+    return study
+
+
+def _recorded(path: Path) -> tuple[str, str, str, int]:
+    """Return identity, text, version of the model and samples of the study of a result."""
+    if not os.path.isfile(path) and (found := history(folder_of(path))):
+        run = found.run
+        return run.identity, run.study, run.model_version, run.samples
+    ds = result_file.open_result(path)
+    refuse_weights(ds, "rows computed again or added")
+    attrs = ds.attrs
+    samples = int(attrs["samples"])
+    return attrs["study_identity"], attrs["study"], attrs["model_version"], samples
+
+
+def extend(
+    path: Path, samples: int, model: str | None = None, options: RunOptions = DEFAULTS
+) -> xr.Dataset:
+    """Add samples to a result; nothing is computed again.
+
+    Parameters
+    ----------
+    path : Path
+        A result, complete or not.
+    samples : int
+        Total base size of each replicate.
+    model : str, optional
+        Where its model lives, if it is not installed.
+    options : RunOptions
+
+    Returns
+    -------
+    xarray.Dataset
+        The same bits as if it had had this many samples from the start.
+
+    Raises
+    ------
+    InputError
+        When the design cannot be extended, or there are more samples already.
+    RunError
+        As in `uq.execution.runner.run`.
+    """
+    study = study_of(path, model)
+    there = study.design.samples
+    if samples < there:
+        raise InputError(f"samples = {samples}: {path} has {there} already; ask for more")
+    problem = refusal_to_extend(study)
+    if samples > there and problem:
+        raise InputError(f"{path}: {problem}")
+    study = study.with_samples(samples)
+    # This many are wanted, whatever the precision: [design] until does not apply.
+    design = study.design.model_copy(update={"until": None})
+    return runner.run_study(replace(study, design=design), path, options)
+
+
+def rerun_failed(
+    path: Path,
+    settings: Mapping[str, Any],
+    model: str | None = None,
+    options: RunOptions = DEFAULTS,
+) -> xr.Dataset:
+    """Compute the failed rows of a result again.
+
+    Parameters
+    ----------
+    path : Path
+        A complete result; replaced once all these rows are done.
+    settings : dict
+        Numerical settings that differ from the study's; the variable ``rerun`` of the result says
+        which rows were computed with them.
+    model : str, optional
+        Where the model lives, if it is not installed.
+    options : RunOptions
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError
+        When a setting is not admissible, or changes the outputs.
+    RunError
+        As in `uq.execution.runner.run`.
+    """
+    ds = result_file.open_result(path)
+    study = study_of(path, model)
+    changed = changed_settings(study, settings)
+    failed = int(np.count_nonzero(result_file.failed(ds)))
+    if not failed:
+        options.say(f"{path}: no row failed; nothing to do")
+        return ds
+    new, old = asdict(changed), asdict(study.settings)
+    differing = {name: new[name] for name in settings if new[name] != old[name]}
+    plain = json.loads(json.dumps(differing))  # as read back later
+    with resuming.keep(study, path, options.fresh, plain, options.say, options.mixed) as kept:
+        workload = workload_of(study)._replace(settings=changed)
+        return runner.carry_out(workload, options, kept)

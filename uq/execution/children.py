@@ -1,0 +1,89 @@
+"""Processes that compute rows, as many as are asked at the same time."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from uq.execution.child import ModelSpec
+from uq.execution.isolation import Action, Isolated
+
+_KEPT = 64  # idle processes at most
+
+
+class Children:
+    """Processes that compute rows, each for one call at a time, kept for the next one.
+
+    Any thread may use and close them.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._idle: list[Isolated] = []
+        self._busy: list[Isolated] = []
+        self._closed = False
+
+    def begin(
+        self,
+        count: int,
+        spec: ModelSpec,
+        limit: float | None = None,
+        compiling: Action = lambda: None,
+    ) -> None:
+        """Start processes before there are rows for them, until there are so many.
+
+        Parameters
+        ----------
+        count : int
+        spec, limit, compiling
+            As those of `uq.execution.isolation.Isolated`.
+        """
+        with self._lock:
+            new = [
+                Isolated(spec, limit, compiling)
+                for _ in range(count - len(self._idle) - len(self._busy))
+            ]
+            self._idle += new
+        for one in new:
+            one.begin()
+
+    @contextmanager
+    def one(self, spec: ModelSpec, limit: float | None) -> Iterator[Isolated]:
+        """Yield a process for this call alone, an idle one if there is one."""
+        with self._lock:
+            fitting = [one for one in self._idle if (one.spec, one.limit) == (spec, limit)]
+            child = fitting[0] if fitting else Isolated(spec, limit)
+            self._idle = [one for one in self._idle if one is not child]
+            self._busy.append(child)
+            if self._closed:
+                child.close()
+        try:
+            yield child
+        except BaseException:
+            self._returned(child, whole=False)
+            raise
+        self._returned(child, whole=True)
+
+    def end_idle(self) -> None:
+        """End those that nobody uses."""
+        with self._lock:
+            idle, self._idle = self._idle, []
+        for one in idle:
+            one.close()
+
+    def close(self) -> None:
+        """End all, whatever they are doing; those who use one see a `RunError`."""
+        with self._lock:
+            self._closed = True
+            every = [*self._idle, *self._busy]
+            self._idle = []
+        for one in every:
+            one.close()
+
+    def _returned(self, child: Isolated, whole: bool) -> None:
+        with self._lock:
+            self._busy.remove(child)
+            keep = whole and not self._closed
+            self._idle += [child] * keep
+            over = [self._idle.pop(0)] if len(self._idle) > _KEPT else []
+        for one in over if keep else [child]:
+            one.close()

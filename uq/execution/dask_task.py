@@ -1,0 +1,73 @@
+"""The task of a dask worker: plain data in, plain data out.
+
+A worker passes the rows on to a process, one per thread, which they may crash or never leave. A
+separate module, so that a worker imports only what it needs.
+"""
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from uuid import uuid4
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats
+from uq.errors import InputError
+from uq.execution.child import ModelSpec
+from uq.execution.children import Children
+from uq.study.evaluate import Chunk
+from uq.study.provenance import differences
+
+_shared = Children()
+_of_runs: dict[str, Children] = {}
+
+
+def evaluate_rows(
+    spec: ModelSpec,
+    versions: Mapping[str, str],
+    limit: float | None,
+    x: Floats,
+    seed: NDArray[np.uint64],
+    start: int,
+    run: str = "",
+) -> tuple[Chunk, float]:
+    """Run some rows on a worker; return their outputs and the time it took [s].
+
+    One dask task, given plain data only: a worker that lacks the model would not survive receiving
+    one of its objects.
+
+    Parameters
+    ----------
+    spec : uq.execution.child.ModelSpec
+    versions : dict of str to str
+        Versions that the worker must have; see `uq.study.provenance.versions`.
+    limit : float or None
+        Time limit of a row [s].
+    x, seed, start
+        As in `uq.study.evaluate.evaluate`.
+    run : str
+        Name of a run of this process whose processes compute (`named`), or "".
+    """
+    if wrong := differences(versions):
+        raise InputError(f"a worker {wrong}")
+    with (_of_runs[run] if run else _shared).one(spec, limit) as child:
+        child.start()
+        began = time.perf_counter()
+        return child.evaluate(x, seed, start), time.perf_counter() - began
+
+
+@contextmanager
+def named(children: Children) -> Iterator[str]:
+    """Yield a name by which tasks in this process find the processes of a run."""
+    name = uuid4().hex
+    _of_runs[name] = children
+    try:
+        yield name
+    finally:
+        del _of_runs[name]
+
+
+def end_children() -> None:
+    """End the idle processes of this worker."""
+    _shared.end_idle()

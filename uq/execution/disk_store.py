@@ -1,0 +1,244 @@
+"""Rows kept on disk as they arrive, whatever happens to the process."""
+
+import time
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.errors import RunError
+from uq.execution.chunk_file import Block, columns_in, in_order, load, pack, save, unpack
+from uq.execution.merge import merge
+from uq.execution.records import RowsRecord, RunRecord, missing
+from uq.execution.row_folder import JOURNAL, clear, folder_of
+from uq.execution.tally import Failures, Tally, joined_failures
+from uq.files.journal import Journal
+from uq.files.whole_files import reason
+from uq.result import result_file
+from uq.result.workload import workload_of
+from uq.study.definition import Study
+from uq.study.evaluate import Chunk
+from uq.study.installed_models import made_here
+from uq.study.row_sampling import Rows, rows
+
+_WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
+_FIRST_COST = 0.01  # of writing [s], before it is known: a very short run writes once
+_PENDING_BYTES = 8_000_000  # in memory at most
+
+Origin = tuple[dict[str, str], dict[str, Any]]
+"""Processor and versions that computed rows, and their settings that differ from the study's."""
+
+
+class DiskStore(Tally):
+    """The rows of one run, in the folder beside its result; the caller holds its lock.
+
+    Parameters
+    ----------
+    study : Study
+    path : Path
+        Of the result.
+
+    Attributes
+    ----------
+    folder : Path
+    settings : dict
+        Settings of the rows to come that differ from the study's.
+    """
+
+    def __init__(self, study: Study, path: Path) -> None:
+        super().__init__(workload_of(study))
+        self.folder = folder_of(path)
+        self.settings: dict[str, Any] = {}
+        self._study = study
+        self._path = path
+        self._journal = Journal(self.folder / JOURNAL)
+        self._records: list[RowsRecord] = []
+        self._pending: list[tuple[int, NDArray[Any]]] = []
+        self._pending_failures: Failures = {}
+        self._made = made_here(study.model_reference)
+        self._written = time.monotonic()
+        self._cost = _FIRST_COST
+
+    @property
+    def missing(self) -> list[Block]:
+        """Blocks of missing rows."""
+        return missing(self._records, self.total)
+
+    @property
+    def end(self) -> int:
+        """Number after the last row that is there."""
+        return max((record.blocks[-1][1] for record in self._records), default=0)
+
+    @property
+    def made(self) -> list[dict[str, str]]:
+        """Processors and versions that computed the rows that were found, each once."""
+        return [dict(pairs) for pairs in {tuple(record.made.items()) for record in self._records}]
+
+    def find(self, records: list[RowsRecord]) -> int:
+        """Take the rows kept earlier; return how many are damaged and therefore missing."""
+        damaged = 0
+        for record in records:
+            if self._load(record) is None:
+                damaged += record.rows
+            else:
+                self._take(record)
+        self.found = self.done
+        return damaged
+
+    def note(self, record: RunRecord) -> None:
+        """Record that a run starts, or where it ends early."""
+        with self._explained():
+            self._journal.append(record.model_dump(mode="json"))
+        self._run = record
+
+    def first(self, study: Study) -> xr.Dataset:
+        """Return the result of a study with fewer samples, whose rows have all arrived."""
+        self._write()
+        data = np.empty(rows(study), self.row_type)
+        for record, part in self._loaded():
+            data[record.numbers] = part
+        return result_file.build(study, *unpack(data), self.examples)
+
+    def cut(self, study: Study) -> None:
+        """End the run with the rows of a study with fewer samples, which have all arrived."""
+        self._study, self.workload = study, workload_of(study)
+        self.total = self.workload.total
+        size = {"samples": study.design.samples, "rows": self.total}
+        self.note(self._run.model_copy(update=size | {"time": time.time()}))
+
+    def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
+        """Count the rows from `start` on; `keep_up` writes them.
+
+        Parameters
+        ----------
+        start : int
+        rows : Rows
+        chunk : Chunk
+        """
+        data = pack(self.row_type, rows, chunk.columns, chunk.status)
+        counts = self.counts(chunk.columns, chunk.status)
+        # Rows last: if a signal ends the process in between, they are not kept without these.
+        self._pending_failures = joined_failures(self._pending_failures, chunk.failures)
+        self._pending.append((start, data))
+        self.count(*counts, chunk.failures)
+
+    def keep_up(self) -> None:
+        """Write what has arrived, unless that would exceed the share of time for writing.
+
+        Raises
+        ------
+        RunError
+            When it cannot be written.
+        """
+        due = time.monotonic() - self._written >= self._cost / _WRITING_SHARE
+        large = sum(data.nbytes for _, data in self._pending) > _PENDING_BYTES
+        if (due or large) and not self.shapes_all_wrong:
+            self._write()
+
+    def adopt(self, blocks: list[Block], rows: Rows, chunk: Chunk, origin: Origin) -> None:
+        """Write rows that were computed earlier; they count as found."""
+        with self._explained():
+            data = pack(self.row_type, rows, chunk.columns, chunk.status)
+            self._take(self._save(blocks, [data], chunk.failures, origin))
+        self.found = self.done
+
+    def dataset(self) -> xr.Dataset:
+        """Write the result of a complete run, and remove what it was made from.
+
+        Raises
+        ------
+        RunError
+            When it cannot be written; the rows stay then.
+        """
+        self._write()
+        try:
+            merge(
+                self._study, self._records, self._loaded(), self.examples, self._path, self.folder
+            )
+        except RunError as error:
+            raise RunError(
+                f"{error}; the rows are kept, and the same command resumes the run"
+            ) from None
+        clear(self.folder)
+        return result_file.open_result(self._path)
+
+    def close(self) -> None:
+        """Write what has arrived, if possible, and remove useless files."""
+        if not self.shapes_all_wrong:
+            with suppress(RunError):
+                self._write()
+        self._journal.close()
+        if not self._records:
+            clear(self.folder)
+        for file in self.folder.glob("*.part"):
+            file.unlink()
+
+    def _write(self) -> None:
+        if not self._pending:
+            return
+        began = time.monotonic()
+        with self._explained():
+            blocks, pieces = in_order(self._pending)
+            origin = self._made, self.settings
+            self._records.append(self._save(blocks, pieces, self._pending_failures, origin))
+        self._pending, self._pending_failures = [], {}
+        self._written = time.monotonic()
+        self._cost = self._written - began
+
+    def _save(
+        self, blocks: list[Block], pieces: list[NDArray[Any]], failures: Failures, origin: Origin
+    ) -> RowsRecord:
+        """Write a chunk file, then its line in the journal."""
+        failed, status = 0, Counter[str]()
+        for data in pieces:
+            _, some, by_label = self.counts(columns_in(data), data["status"])
+            failed += some
+            status.update(by_label)
+        record = RowsRecord(
+            time=time.time(),
+            blocks=tuple(blocks),
+            sha256="",
+            failed=failed,
+            status=dict(status),
+            failures=failures,
+            made=origin[0],
+            settings=origin[1],
+        )
+        record = record.model_copy(update={"sha256": save(self._file(record), *pieces)})
+        self._journal.append(record.model_dump(mode="json"))
+        return record
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        """Say what a disk that cannot be written means for the run."""
+        try:
+            yield
+        except OSError as error:
+            kept = sum(record.rows for record in self._records)
+            raise RunError(
+                f"{self.folder}: could not be written: {reason(error, self.folder)}; {kept} of "
+                f"{self.total} rows are kept, and the same command resumes the run"
+            ) from None
+
+    def _take(self, record: RowsRecord) -> None:
+        self._records.append(record)
+        self.count(record.rows, record.failed, record.status, record.failures)
+
+    def _file(self, record: RowsRecord) -> Path:
+        """Return the path of a chunk file: no record can name another file."""
+        first, last = record.blocks[0][0], record.blocks[-1][1]
+        return self.folder / f"{self._study.identity[:16]}-{first}-{last}.rows"
+
+    def _load(self, record: RowsRecord) -> NDArray[Any] | None:
+        return load(self._file(record), self.row_type, record.rows, record.sha256)
+
+    def _loaded(self) -> Iterator[tuple[RowsRecord, NDArray[Any]]]:
+        for record in self._records:
+            if (data := self._load(record)) is None:
+                raise RunError(f"{self._file(record)}: was damaged during the run")
+            yield record, data

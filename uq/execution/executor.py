@@ -1,0 +1,155 @@
+"""Who computes rows: this computer, and dask workers if the work is worth starting them."""
+
+from contextlib import ExitStack
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats
+from uq.execution.child import ModelSpec
+from uq.execution.children import Children
+from uq.execution.dispatch import Dispatcher
+from uq.execution.isolation import Action, Evaluate, spec_of
+from uq.execution.options import RunOptions
+from uq.files.interrupts import in_background, undone
+from uq.machines.compilation import compilation
+from uq.machines.row_by_row import RowByRow
+from uq.result.workload import Workload
+from uq.study.evaluate import Chunk, evaluate
+
+if TYPE_CHECKING:
+    from uq.execution.workers import Workers
+
+SHORT_SECONDS = 4.0
+"""Shorter work is not worth starting workers."""
+
+_SHARE_HERE = 1 / 64  # of the rows, to learn what they cost before workers take chunks of them
+
+
+def in_one_process(workers: int | None, seconds: float) -> bool:
+    """Return whether one process computes work that takes it so long [s], without workers."""
+    return workers == 0 or (workers is None and seconds < SHORT_SECONDS)
+
+
+def processes(workload: Workload, workers: int | None) -> int:
+    """Return how many processes compute at the same time, if the work is worth starting workers."""
+    from uq.execution.local_cluster import CORES
+
+    return min(1 if workers == 0 else workers or CORES, workload.total // workload.group)
+
+
+def first_rows_alone(workload: Workload, workers: int | None) -> bool:
+    """Return whether one process computes the first rows, before workers share the others.
+
+    It learns what they cost, and compiles the model, which one from outside does not need.
+    """
+    return not workers or not isinstance(workload.model.batch, RowByRow)
+
+
+class Executor:
+    """Computes the rows of one dispatcher after another; a context manager.
+
+    Workers start when they are first needed, and stay for the next dispatcher.
+
+    Parameters
+    ----------
+    workload : Workload
+        With the model and settings of all dispatchers.
+    options : RunOptions
+    compiling : callable
+        Called when compilation of the model starts.
+
+    Attributes
+    ----------
+    evaluate : Evaluate
+        Computes rows on this computer, in a separate process unless the user wants none.
+
+    Raises
+    ------
+    InputError
+        When options exclude each other.
+    """
+
+    evaluate: Evaluate
+
+    def __init__(
+        self, workload: Workload, options: RunOptions, compiling: Action = lambda: None
+    ) -> None:
+        options.check()
+        self._workload, self._options = workload, options
+        self._compiling = compiling
+        self._children = Children()
+        self._crew: Workers | None = None
+        self._stack = ExitStack()
+        self._seconds = 0.0
+
+    def __enter__(self) -> Self:
+        if self._options.workers == 0:
+            self._stack.enter_context(compilation(self._compiling))
+            self.evaluate = partial(_in_process, self._workload)
+        else:
+            self._stack.enter_context(undone(self._children.close))
+            self._begin(1)
+            self.evaluate = self._in_a_child
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._stack.close()
+        if isinstance(self._workload.model.batch, RowByRow):
+            self._workload.model.batch.leave()  # after the processes that were stopped
+
+    def finish(self, dispatcher: Dispatcher) -> None:
+        """Have all rows of a dispatcher computed."""
+        workers = self._options.workers
+        if self._options.scheduler is not None:
+            crew = self._started(dispatcher)  # before anything is computed
+            dispatcher.begin_here(_SHARE_HERE)
+            dispatcher.finish_on(crew)
+            return
+        begun = not workers and self._crew is None
+        if begun:
+            dispatcher.begin_here(share=1)
+        # Counting earlier dispatchers, is the work worth starting workers?
+        seconds = self._seconds + dispatcher.row_seconds * dispatcher.left
+        if self._crew is None and in_one_process(workers, seconds):
+            dispatcher.finish_here()
+        elif dispatcher.left:
+            crew = self._started(dispatcher)
+            if not begun and first_rows_alone(self._workload, workers):
+                dispatcher.begin_here(_SHARE_HERE)
+            dispatcher.finish_on(crew)
+        self._seconds += dispatcher.row_seconds * dispatcher.rows
+
+    def _started(self, dispatcher: Dispatcher) -> "Workers":
+        from uq.execution.local_cluster import local_workers
+
+        if self._crew is None:
+            if self._options.scheduler is not None:
+                from uq.execution.remote_cluster import remote_workers
+
+                crew = remote_workers(self._options.scheduler)
+            else:
+                count = processes(dispatcher.workload, self._options.workers)
+                self._begin(count)  # they import while dask does
+                crew = local_workers(count, self._children)
+            self._crew = self._stack.enter_context(crew)
+        return self._crew
+
+    @cached_property
+    def _wanted(self) -> tuple[ModelSpec, float | None]:
+        """What processes compute, with the time limit of a row [s]."""
+        return spec_of(self._workload), self._options.row_limit
+
+    def _begin(self, count: int) -> None:
+        self._children.begin(count, *self._wanted, self._compiling)
+
+    def _in_a_child(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
+        with self._children.one(*self._wanted) as child:
+            return child.evaluate(x, seed, start)
+
+
+def _in_process(workload: Workload, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
+    """Compute rows in this process, which nothing protects from them."""
+    return in_background(lambda: evaluate(workload.model, workload.settings, x, seed, start))

@@ -1,0 +1,223 @@
+"""Rows computed in a separate process, which they may crash or never leave.
+
+Such rows are computed again in parts, down to single rows: the guilty ones get a status and a
+message, the others the same values as anywhere.
+"""
+
+import signal
+import subprocess
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from math import ceil
+from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Status
+from uq.errors import RunError
+from uq.execution import child
+from uq.execution.child import Action
+from uq.execution.environment import started
+from uq.files.interrupts import undone
+from uq.machines.child_processes import end_with_descendants
+from uq.machines.row_by_row import RowByRow
+from uq.study.evaluate import Chunk, Fault, joined, lost_rows
+from uq.study.installed_models import code_of
+
+if TYPE_CHECKING:
+    from uq.result.workload import Workload
+
+TRIES = 3
+"""How often rows kill their process before they are blamed: it may be killed from outside."""
+
+_PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash more often
+_STARTS = 3
+_DYING_SECONDS = 5.0
+_STUCK_SECONDS = 5.0  # beyond its limit, after which a row is stopped that should stop itself
+
+Evaluate = Callable[[Floats, NDArray[np.uint64], int], Chunk]
+"""``evaluate(x, seed, start)`` -> chunk, as `uq.study.evaluate.evaluate` for one model."""
+
+
+def spec_of(workload: "Workload") -> child.ModelSpec:
+    """Return what a process needs to compute rows of a workload."""
+    settings = tuple(asdict(workload.settings).items())
+    code = code_of(workload.model_reference)
+    return child.ModelSpec(
+        workload.model_reference, workload.model.version, settings, workload.output, code
+    )
+
+
+@contextmanager
+def isolated(
+    spec: child.ModelSpec,
+    limit: float | None = None,
+    compiling: Action = lambda: None,
+    prints: int = subprocess.DEVNULL,
+) -> Iterator[Evaluate]:
+    """Yield a function that computes rows in a separate process; parameters as of `Isolated`."""
+    process = Isolated(spec, limit, compiling, prints)
+    with undone(process.close):
+        process.begin()
+        yield process.evaluate
+
+
+class Isolated:
+    """A process that computes rows, and is replaced when it dies.
+
+    Parameters
+    ----------
+    spec : uq.execution.child.ModelSpec
+    limit : float or None
+        Time limit of a row [s]; compilation does not count.
+    compiling : callable
+        Called when the process starts to compile.
+    prints : int
+        File descriptor for what the model prints.
+    """
+
+    def __init__(
+        self,
+        spec: child.ModelSpec,
+        limit: float | None = None,
+        compiling: Action = lambda: None,
+        prints: int = subprocess.DEVNULL,
+    ) -> None:
+        self.spec = spec
+        self.limit = limit
+        self._compiling = compiling
+        self._prints = prints
+        self._process: subprocess.Popen[bytes] | None = None
+        self._connection: Connection | None = None
+        self._ready: child.Ready | None = None
+        self._closed = threading.Event()
+
+    def evaluate(self, x: Floats, seed: NDArray[np.uint64], start: int = 0) -> Chunk:
+        """Run some rows; parameters and exceptions as in `uq.study.evaluate.evaluate`.
+
+        Raises
+        ------
+        RunError
+            When the process cannot start, or was closed from another thread.
+        """
+        chunk = self._ask(x, seed, start)
+        if isinstance(chunk, Chunk):
+            return chunk
+        if len(x) == 1:
+            return self._single(x, seed, start)
+        # Waiting for the time limit costs more than computing rows one by one.
+        size = ceil(len(x) / _PARTS) if chunk.status is Status.CRASHED else 1
+        parts = range(0, len(x), size)
+        part = self.evaluate if size > 1 else self._single
+        return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
+
+    def _single(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
+        """Run one row by itself, to find out whether it is guilty."""
+        for _ in range(TRIES - 1):  # that of its chunk was the first
+            outcome = self._ask(x, seed, start)
+            if isinstance(outcome, Chunk):
+                return outcome
+            if outcome.status is not Status.CRASHED:
+                break
+        fault = cast(Fault, outcome)
+        model, settings = self.spec.load()
+        if isinstance(model.batch, RowByRow):
+            kept = model.batch.kept(x[0].tolist(), int(seed[0]))
+            fault = fault._replace(message=fault.message + kept)
+        return lost_rows(model, settings, 1, fault, start)
+
+    def close(self) -> None:
+        """End the process, whatever it is doing."""
+        self._closed.set()
+        self._end(at_once=True)
+
+    def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
+        try:
+            connection = self.start()
+            connection.send((x, seed, start))
+            answer = self._answer(connection, self._patience(len(x)))
+        except (EOFError, OSError):
+            return Fault(Status.CRASHED, f"killed its process ({self._end()})")
+        if self._ready:
+            self._ready = self._ready._replace(loads_first=False)
+        if answer is None:
+            self._end(at_once=True)
+            return Fault(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
+        kind, value = answer
+        if kind == child.REFUSED:
+            raise value
+        return cast(Chunk, value)
+
+    def _patience(self, rows: int) -> float | None:
+        """Return how long rows that are computed together may take [s]."""
+        if self.limit is None or self._ready is None:
+            return None
+        if self._ready.stops_rows:
+            return rows * self.limit + _STUCK_SECONDS
+        return self.limit + (child.FIRST_SECONDS if self._ready.loads_first else 0.0)
+
+    def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
+        """Return the answer of the process, or None when its time is over."""
+        return child.answer_of(connection, limit, self._compiling)
+
+    def begin(self) -> None:
+        """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
+        with suppress(OSError):
+            self._begun()
+
+    def _begun(self) -> Connection:
+        if self._connection:
+            return self._connection
+        self._process, self._connection = started("uq.execution.child", self._prints)
+        with suppress(OSError):  # of a process that died: `start` sees it
+            self._connection.send((self.spec, self.limit))
+        return self._connection
+
+    def start(self) -> Connection:
+        """Start the process and load the model, unless done; again if it is killed meanwhile.
+
+        Raises
+        ------
+        InputError
+            When it has no such model, or a different one.
+        RunError
+            When it cannot start, or was closed.
+        """
+        if self._connection and self._ready:
+            return self._connection
+        for _ in range(_STARTS):
+            if self._closed.is_set():
+                raise RunError("the process for the rows was ended")
+            try:
+                connection = self._begun()
+                kind, value = connection.recv()
+            except (EOFError, OSError):
+                reason = self._end()
+                continue
+            if kind == child.REFUSED:
+                self._end()
+                raise value
+            self._ready = child.Ready(*value)
+            return connection
+        raise RunError(f"a process for the rows could not start: {reason}")
+
+    def _end(self, at_once: bool = False) -> str:
+        """End the process, unless it is already dying; return how it ended."""
+        process, connection = self._process, self._connection
+        self._process = self._connection = None
+        self._ready = None
+        if connection:
+            connection.close()
+        if not process:
+            return "ended"
+        try:
+            process.wait(0.0 if at_once else _DYING_SECONDS)
+        except subprocess.TimeoutExpired:
+            end_with_descendants(process.pid)
+        process.communicate()  # closes its standard input, and waits
+        code = process.returncode
+        return signal.strsignal(-code) or "signal" if code < 0 else f"exit code {code}"

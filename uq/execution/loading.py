@@ -1,0 +1,226 @@
+"""Studies and models, with functions that do not declare what they return run to find out.
+
+The nominal row and the first rows of the design are run, in a process of their own; what they
+return is remembered on this computer until the function changes.
+"""
+
+import hashlib
+import json
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from uq.contract import Model
+from uq.errors import InputError, first_fault_alone
+from uq.execution.child import FIRST_SECONDS, REFUSED, Action, answer_of
+from uq.execution.environment import started
+from uq.execution.options import Say, ignore
+from uq.files.paths import cache_path
+from uq.machines.child_processes import end_with_descendants
+from uq.machines.returned import Returned, as_plain, from_plain, joined
+from uq.machines.row_by_row import RowByRow
+from uq.study.installed_models import code_of, located, model_at, with_returns
+from uq.study.sources import DISTRIBUTION
+from uq.text.numbers import counted, duration
+
+if TYPE_CHECKING:
+    from uq.study.definition import Study
+
+SEEN = 64
+"""Rows of a design that show what a function returns."""
+
+_WORTH_KEEPING = 1.0  # seconds that these rows took
+_SLOW = 3.0  # seconds after which a user is told that rows are run
+
+Row = tuple[list[float], int]
+
+
+def load_study(
+    path: str | PathLike[str],
+    model: str | None = None,
+    say: Say = ignore,
+    row_limit: float | None = None,
+) -> "Study":
+    """Read and check a study file.
+
+    Parameters
+    ----------
+    path : path-like
+        A TOML file.
+    model : str, optional
+        Use this model instead of the file's: an installed name, ``"package.module:ATTRIBUTE"``,
+        or a file ``"mine.py"`` (``"mine.py:NAME"`` where it has several).
+    say : callable, optional
+        Called with a line for the user if it takes long to find out what the model returns.
+    row_limit : float, optional
+        Time limit of a row that is run to find out [s].
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the file, one line per fault.
+
+    Examples
+    --------
+    >>> study = uq.load_study("studies/ishigami.toml")
+    >>> study.design.samples, list(study.uncertain)
+    (256, ['x1', 'x2', 'x3'])
+    """
+    from uq.study import definition
+
+    study = _known(definition.load_study(path, model and located(model)), say, row_limit)
+    if isinstance(study.model.batch, RowByRow):
+        from uq.execution.scaling_checks import check_scales
+
+        check_scales(study, row_limit)
+    return study
+
+
+def study_of_text(text: str, source: str, model: str | None) -> "Study":
+    """Check the text of a study of a result; see `load_study`. Its faults are one line."""
+    from uq.study.definition import study_from_text
+
+    reference = model and located(model)
+    if reference:
+        model_at(reference)  # the faults of a user's own model are listed in full
+    with first_fault_alone():
+        study = study_from_text(text, source, reference)
+    return _known(study)
+
+
+def load_model(reference: str) -> Model:
+    """Return a model; what a function returns that does not declare it, by its nominal row."""
+    return model_at(known_reference(reference))
+
+
+def known_reference(reference: str) -> str:
+    """Return a reference that holds in any process, to a model of which the outputs are known."""
+    reference = located(reference)
+    model = model_at(reference)
+    if model.outputs:
+        return reference
+    nominal = list(model.nominal.values()), 0
+    return with_returns(reference, _found(reference, [nominal]))
+
+
+def _known(study: "Study", say: Say = ignore, limit: float | None = None) -> "Study":
+    """Return a study whose model has outputs."""
+    if study.model.outputs:
+        return study
+    from uq.study.definition import study_from_text
+    from uq.study.row_sampling import row_block, rows
+
+    first = row_block(study, 0, min(SEEN, rows(study)))
+    nominal = study.model.nominal | dict(study.fixed)
+    tried = [(list(nominal.values()), 0)]
+    tried += zip(first.x.tolist(), first.seed.tolist(), strict=True)
+    reference = study.model_reference
+    known = with_returns(reference, _found(reference, tried, say, limit))
+    return study_from_text(study.text, study.path, known)
+
+
+def _found(
+    reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
+) -> dict[str, Returned]:
+    """Return what a function returns, from the rows tried, the nominal one first."""
+    from uq.study.provenance import __version__
+
+    numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
+    code = f"{__version__}\n{reference}\n{code_of(reference)}"
+    key = hashlib.sha256(code.encode() + numbers).hexdigest()
+    kept = cache_path(DISTRIBUTION) / "returns" / f"{key}.json"
+    if not kept.is_absolute():  # there is no home: the path begins with "~"
+        return joined(list(_returned(reference, tried, say, limit)))
+    with suppress(OSError, ValueError):
+        return from_plain(json.loads(kept.read_text()))
+    began = time.monotonic()
+    found = joined(list(_returned(reference, tried, say, limit)))
+    if time.monotonic() - began > _WORTH_KEEPING:
+        with suppress(OSError):
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            kept.write_text(json.dumps(as_plain(found)))
+    return found
+
+
+def _returned(
+    reference: str, tried: list[Row], say: Say, limit: float | None
+) -> Iterator[dict[str, Returned]]:
+    """Yield what rows return; a later one that fails is passed over, as in a run it has a status.
+
+    Raises
+    ------
+    InputError
+        When the nominal row fails.
+    """
+    from uq.execution import probe
+
+    todo, done = iter(tried), 0
+    began, told = time.monotonic(), False
+
+    def waiting() -> None:
+        nonlocal told
+        seconds, left = time.monotonic() - began, len(tried) - done
+        if seconds < _SLOW or told:
+            return
+        told = True
+        more = seconds / done * left if done else 0.0
+        about = f": about {duration(more) or f'{more:.0f} s'}" if done else ""
+        say(
+            f"running {counted(left, 'row')}, once, to see what the model returns{about}; 'returns'"
+            " in @uq.machine states it"
+        )
+
+    while done < len(tried):
+        for said, value in _in_process(reference, todo, limit, waiting):
+            done += 1
+            if said == probe.RETURNED:
+                yield from_plain(value)
+            elif done == 1:
+                raise InputError(f"model '{reference}': its nominal row {value}")
+
+
+def _in_process(
+    reference: str, todo: Iterator[Row], limit: float | None, waiting: Action
+) -> Iterator[tuple[str, Any]]:
+    """Yield what each row did, until one ends the process or must be stopped.
+
+    Raises
+    ------
+    InputError
+        When the process has no such model.
+    """
+    from uq.execution import probe
+
+    process, connection = started("uq.execution.probe")
+    grace: float | None = None
+    try:
+        connection.send(reference)
+        for row in todo:
+            try:
+                if grace is None:
+                    said, value = connection.recv()
+                    if said == REFUSED:
+                        raise value
+                    grace = FIRST_SECONDS
+                connection.send(row)
+                answer = answer_of(connection, limit and limit + grace, waiting=waiting)
+            except (EOFError, OSError):
+                yield probe.RAISED, "killed its process"
+                return
+            if answer is None:
+                yield probe.RAISED, f"did not end within {limit:g} s"
+                return
+            yield answer
+            grace = 0.0
+    finally:
+        connection.close()
+        end_with_descendants(process.pid)
+        process.communicate()

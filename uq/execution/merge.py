@@ -1,0 +1,135 @@
+"""From chunk files to one result, one file at a time: memory does not grow with the rows."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Mask
+from uq.execution.chunk_file import Block, unpack
+from uq.execution.records import RowsRecord
+from uq.files.seal import seal
+from uq.files.whole_files import whole
+from uq.result import result_file
+from uq.study.definition import Study
+from uq.study.row_sampling import rows
+from uq.text.literals import read_toml, toml
+
+Loaded = Iterable[tuple[RowsRecord, NDArray[Any]]]
+
+
+def merge(
+    study: Study,
+    records: Sequence[RowsRecord],
+    loaded: Loaded,
+    failures: Mapping[str, str],
+    path: Path,
+    folder: Path,
+) -> None:
+    """Write the result of a complete study.
+
+    The file depends on the rows alone, not on how they are split into chunk files.
+
+    Parameters
+    ----------
+    study : Study
+    records : sequence of RowsRecord
+    loaded : iterable of (RowsRecord, ndarray)
+        The same records in any order, each with its rows.
+    failures : dict of str to str
+        As for `uq.result.result_file.build`.
+    path : Path
+    folder : Path
+        Of the temporary file.
+
+    Raises
+    ------
+    RunError
+        When it cannot be written; `path` is unchanged then.
+    """
+    import netCDF4
+
+    made = _made(records)
+    variants = _variants(records)
+    with whole(path, folder) as temporary:
+        with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
+            for record, data in loaded:
+                parts = unpack(data)
+                ds = result_file.build(study, *parts, failures, record.numbers).assign_attrs(made)
+                if len(variants) > 1:
+                    ds["rerun"] = _rerun(variants, variants.index(record.settings), record.rows)
+                if not file.variables:
+                    _define(file, ds, rows(study))
+                _place(file, ds, record.blocks)
+        seal(temporary)
+
+
+def _define(file: Any, ds: xr.Dataset, total: int) -> None:
+    """Write everything in a result but the rows."""
+    variables, attributes = xr.conventions.encode_dataset_coordinates(ds)
+    file.setncatts(attributes)
+    for dim, size in ds.sizes.items():
+        file.createDimension(dim, total if dim == "sample" else size)
+    for name, variable in variables.items():
+        kind = str if variable.dtype.kind == "U" else variable.dtype
+        made = file.createVariable(
+            name, kind, variable.dims, fill_value=None if kind is str else False
+        )
+        made.setncatts(variable.attrs)
+        made.set_auto_maskandscale(False)
+        if "sample" not in variable.dims:
+            made[...] = variable.values.astype(object) if kind is str else variable.values
+
+
+def _place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
+    """Write rows to their places."""
+    for name, variable in ds.variables.items():
+        if "sample" in variable.dims:
+            done = 0
+            for start, stop in blocks:
+                file[name][start:stop] = variable.values[done : done + stop - start]
+                done += stop - start
+
+
+def _made(records: Sequence[RowsRecord]) -> dict[str, str]:
+    """Return the processors and versions that computed the rows, as attributes of the result."""
+    names = dict.fromkeys(name for record in records for name in record.made)
+    return {
+        name: "; ".join(sorted({record.made.get(name, "unknown") for record in records}))
+        for name in names
+    }
+
+
+def _variants(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
+    """Return the sets of settings that differ from the study's, ordered by first row."""
+    variants: list[dict[str, Any]] = [{}]
+    for record in sorted(records, key=lambda record: record.blocks):
+        if record.settings not in variants:
+            variants.append(record.settings)
+    return variants
+
+
+def _rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.Variable:
+    labels = ["no", *(f"changed-{i}" for i in range(1, len(variants)))]
+    attrs: dict[str, Any] = {
+        "role": "rerun",
+        "long_name": "whether a failed row was computed again with changed settings",
+        "flag_values": np.arange(len(variants), dtype=np.int16),
+        "flag_meanings": " ".join(labels),
+    }
+    attrs |= {f"changed_{i}": toml(variants[i]) for i in range(1, len(variants))}
+    return xr.Variable("sample", np.full(count, code, np.int16), attrs)
+
+
+def by_settings(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], Mask]]:
+    """Yield the settings of rows that differ from the study's, and which rows have them."""
+    if "rerun" not in ds:
+        yield {}, np.ones(ds.sizes["sample"], np.bool_)
+        return
+    codes = ds["rerun"].values
+    for code in np.unique(codes):
+        text = ds["rerun"].attrs.get(f"changed_{code}", "{}")
+        yield read_toml(f"settings = {text}")["settings"], codes == code

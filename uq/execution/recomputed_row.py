@@ -1,0 +1,144 @@
+"""A row of a result, computed again here and compared with the one there."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Status, censored_name
+from uq.errors import InputError, first_fault_alone
+from uq.execution.isolation import isolated, spec_of
+from uq.execution.loading import study_of_text
+from uq.execution.merge import by_settings
+from uq.result.one_row import Row, computed
+from uq.result.workload import workload_of
+from uq.sampling.named_values import fault_lines, read_settings
+from uq.study.changes import what_changed
+from uq.study.definition import Study
+from uq.study.installed_models import find_model, made_here
+from uq.study.row_sampling import row_block
+
+
+def study_here(
+    text: str, identity: str, version: str, samples: int, source: str, model: str | None = None
+) -> tuple[Study, str]:
+    """Return a study as the model here understands it, and what has changed in it since.
+
+    Parameters
+    ----------
+    text : str
+        The study file.
+    identity, version : str
+        Of the study and of its model when its rows were computed.
+    samples : int
+    source : str
+        Name of the result in messages.
+    model : str, optional
+        Where the model lives, if it is not installed.
+
+    Returns
+    -------
+    study : Study
+    change : str
+        The first difference; "" if it is the same study.
+
+    Raises
+    ------
+    InputError
+        When there is no such model, or the study does not suit it.
+    """
+    study = study_of_text(text, f"{source}: its study", model).with_samples(samples)
+    return study, "" if study.identity == identity else what_changed(text, version, study)
+
+
+def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
+    """Return the settings of a study with some changes.
+
+    Raises
+    ------
+    InputError
+        When one is not admissible, or would change shapes or coordinates of the outputs.
+    """
+    changed, wrong = read_settings(study.model, asdict(study.settings) | dict(settings))
+    if wrong:
+        raise InputError(*fault_lines("setting ", settings, wrong))
+    axes, others = (
+        {dim: list(values) for dim, values in study.model.coordinates(each).items()}
+        for each in (changed, study.settings)
+    )
+    if axes != others:
+        names = ", ".join(settings)
+        raise InputError(f"setting {names}: would give these rows other outputs than the rest")
+    return changed
+
+
+def settings_by_row(ds: xr.Dataset, study: Study, places: np.ndarray) -> dict[int, Any]:
+    """Return the settings with which some rows of a result were computed, by place."""
+    found: dict[int, Any] = {}
+    for changes, rows in by_settings(ds):
+        own = places[rows[places]].tolist()
+        if own:
+            with first_fault_alone():
+                found |= dict.fromkeys(own, changed_settings(study, changes))
+    return found
+
+
+def other_versions(ds: xr.Dataset, model: str | None = None) -> dict[str, tuple[str, str]]:
+    """Return what differs here from what made a result: name -> (there, here).
+
+    Compared are processor, Python, libraries and the code of the model.
+    """
+    if model is None:
+        find_model(model := str(ds.attrs["model"]))  # refuses all but the name of an installed one
+    pairs = made_here(model).items()
+    found = {name: (str(ds.attrs.get(name, "unknown")), here) for name, here in pairs}
+    return {name: (made, here) for name, (made, here) in found.items() if made != here}
+
+
+def computed_again(study: Study, settings: Any, number: int, status: int = Status.OK) -> Row:
+    """Compute a row of a study.
+
+    Parameters
+    ----------
+    study : Study
+    settings : object
+        Of this row.
+    number : int
+        From 0.
+    status : int
+        How it ended before: one that crashed is computed in a process of its own.
+
+    Returns
+    -------
+    Row
+    """
+    rows = row_block(study, number, number + 1)
+    values = dict(zip(study.model.parameter_names, rows.x[0].tolist(), strict=True))
+    seed = int(rows.seed[0])
+    if status != Status.CRASHED:
+        return computed(study.model, settings, values, seed)
+    with isolated(spec_of(workload_of(study)._replace(settings=settings))) as batch:
+        return computed(study.model, settings, values, seed, lambda x, seeds: batch(x, seeds, 0))
+
+
+def differing(again: Row, there: xr.Dataset) -> list[str]:
+    """Return the names of what differs by a bit between a row and the one in a result.
+
+    Parameters
+    ----------
+    again : Row
+    there : xarray.Dataset
+        The row in the result, along a dimension ``sample`` of size 1.
+    """
+    found = {name: np.float64(value) for name, value in again.values.items()} | again.columns
+    found |= {"status": again.status}
+    flags = {censored_name(name) for name in again.model.outputs}
+    return [
+        name
+        for name, values in found.items()
+        if name not in there.variables
+        or np.asarray(values, np.int8 if name in flags else None).tobytes()
+        != there[name].values.tobytes()
+    ]

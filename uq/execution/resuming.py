@@ -1,0 +1,241 @@
+"""Starting a run whose rows are kept on disk, or resuming it."""
+
+import os
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Status
+from uq.errors import InputError
+from uq.execution.chunk_file import blocks_of
+from uq.execution.disk_store import DiskStore
+from uq.execution.merge import by_settings
+from uq.execution.records import History, RunRecord, without_overlap
+from uq.execution.row_folder import clear, folder_of, history, locked
+from uq.execution.tally import Failures, row_bytes
+from uq.files.interrupts import undone
+from uq.files.whole_files import check_target
+from uq.result import result_file
+from uq.study.changes import refusal_to_extend, what_changed
+from uq.study.columns import columns_of
+from uq.study.definition import Study
+from uq.study.evaluate import Chunk
+from uq.study.installed_models import is_other_code, made_here
+from uq.study.row_sampling import Rows, row_block, rows
+from uq.text.numbers import counted
+
+_ROWS = 100_000  # of a result, at a time
+_REMEDY = "choose another output, or start over with --fresh"
+
+
+@contextmanager
+def keep(
+    study: Study,
+    path: Path,
+    fresh: bool = False,
+    again: Mapping[str, Any] | None = None,
+    say: Callable[[str], object] = lambda _: None,
+    mixed: bool = False,
+) -> Iterator[DiskStore]:
+    """Keep the rows of a run on disk, with those already there.
+
+    Parameters
+    ----------
+    study : Study
+    path : Path
+        Of the result. An existing result is of this study, with as many samples or fewer: its
+        rows are reused.
+    fresh : bool
+        Drop the rows kept so far, and the result.
+    again : dict, optional
+        Reuse only rows that did not fail, and compute the others with these settings instead of
+        the study's.
+    say : callable
+        Called with a line for the user: what was found.
+    mixed : bool
+        Also reuse rows computed by other code of the model.
+
+    Yields
+    ------
+    DiskStore
+
+    Raises
+    ------
+    InputError
+        When there is no room, the rows there are not of this study or were computed by other
+        code, or another process is writing.
+    RunError
+        When nothing can be written.
+    """
+    folder = folder_of(path)
+    kept = sum(file.stat().st_size for file in folder.iterdir()) if os.path.isdir(folder) else 0
+    check_target(path, 2 * row_bytes(study) * rows(study) - kept)  # rows, and the result of them
+    with locked(folder):
+        found = None if fresh else _usable(folder, study, again)
+        if found is None:
+            clear(folder)
+        if not fresh and not mixed:
+            _check_code(study, path, found)
+        store = DiskStore(study, path)
+        with undone(store.close):
+            if found is not None:
+                _find(store, found, say)
+            elif path.is_file() and not fresh:
+                _adopt(store, study, path, all_rows=again is None)
+            store.note(_run_record(study, store, again is not None))
+            store.settings = dict(again or {})
+            if store.found:
+                say(f"{path}: {store.found} of {store.total} rows were already done")
+            for line in _other_versions(study, store):
+                say(f"{path}: {line}")
+            yield store
+
+
+def drop_leftovers(path: Path) -> None:
+    """Remove the rows of a complete result, left by a process killed at the very end."""
+    folder = folder_of(path)
+    if folder.is_dir():
+        with suppress(InputError), locked(folder):
+            found = history(folder)
+            if found is None or found.complete:
+                clear(folder)
+
+
+def _usable(folder: Path, study: Study, again: Mapping[str, Any] | None) -> History | None:
+    """Return the history of a folder, if it is of use; refuse that of another study."""
+    found = history(folder)
+    if found is None or (again is not None and found.complete):  # left by a result's own run
+        return None
+    last = found.run
+    if again is not None and not last.again:
+        raise InputError(f"{folder}: has rows of a run that is not complete; finish it first")
+    if last.identity != study.identity:
+        change = what_changed(last.study, last.model_version, study)
+        raise InputError(f"{folder}: has rows of another study ({change}); {_REMEDY}")
+    if last.samples != study.design.samples:
+        sizes = f"samples = {last.samples}, now {study.design.samples}"
+        if last.samples > study.design.samples:
+            raise InputError(f"{folder}: has rows of this study with more ({sizes}); {_REMEDY}")
+        if problem := refusal_to_extend(study):
+            raise InputError(f"{folder}: has rows of this study with fewer ({sizes}); {problem}")
+    return found
+
+
+def _find(store: DiskStore, found: History, say: Callable[[str], object]) -> None:
+    if found.run.row_type != str(store.row_type):
+        raise InputError(
+            f"{store.folder}: the model's outputs have changed since its rows were computed; "
+            f"{_REMEDY}"
+        )
+    if damaged := store.find(without_overlap(found.chunks, store.total)):
+        rows = counted(damaged, "row is", "rows are")
+        say(f"{store.folder}: {rows} damaged and will be computed again")
+
+
+def _run_record(study: Study, store: DiskStore, again: bool) -> RunRecord:
+    return RunRecord(
+        time=time.time(),
+        host=os.uname().nodename,
+        pid=os.getpid(),
+        identity=study.identity,
+        study=study.text,
+        model_version=study.model.version,
+        samples=study.design.samples,
+        rows=store.total,
+        row_type=str(store.row_type),
+        again=again,
+    )
+
+
+def _check_code(study: Study, path: Path, found: History | None) -> None:
+    """Refuse to resume with rows computed by other code of the model."""
+    made: list[Mapping[str, object]] = [record.made for record in found.chunks] if found else []
+    if found is None and path.is_file():
+        made = [result_file.open_result(path).attrs]
+    if any(is_other_code(one, study.model_reference) for one in made):
+        raise InputError(
+            f"{path}: has rows that other code of model '{study.model.name}' computed, although "
+            "its version is the same; start over with uq run --fresh, or continue with --mixed"
+        )
+
+
+def _other_versions(study: Study, store: DiskStore) -> Iterator[str]:
+    here = made_here(study.model_reference)
+    for made in store.made:
+        differing = [name for name in here if made.get(name) != here[name]]
+        if differing:
+            pairs = ", ".join(f"{name} {made.get(name)} (here {here[name]})" for name in differing)
+            yield f"some rows were computed with {pairs}"
+
+
+def _adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
+    """Copy the rows of a result into a store.
+
+    Parameters
+    ----------
+    store : DiskStore
+    study : Study
+        The result's own, perhaps with more samples.
+    path : Path
+    all_rows : bool
+        Whether to include failed rows.
+    """
+    ds = result_file.open_result(path)
+    if fault := _incomplete(ds, study):
+        raise InputError(f"{path}: not a sound result: {fault}")
+    here = made_here(study.model_reference)
+    made = {name: str(ds.attrs[name]) for name in here if name in ds.attrs}
+    for first in range(0, ds.sizes["sample"], _ROWS):
+        some = ds.isel(sample=slice(first, first + _ROWS)).load()
+        wanted = np.ones(some.sizes["sample"], np.bool_) if all_rows else ~result_file.failed(some)
+        for settings, variant in by_settings(some):
+            numbers = first + np.flatnonzero(wanted & variant)
+            if numbers.size:
+                part = some.isel(sample=numbers - first)
+                rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
+                store.adopt(blocks_of(numbers), rows, chunk, (made, settings))
+
+
+def _incomplete(ds: xr.Dataset, study: Study) -> str:
+    """Return what a result lacks of the rows of its study, or ""."""
+    if not np.array_equal(ds["sample"].values, np.arange(ds.sizes["sample"])):
+        return "'sample' does not number all rows from 0"
+    for name in study.model.parameter_names:
+        if name not in ds.data_vars or ds[name].attrs.get("role") not in ("input", "fixed"):
+            return f"it does not hold the input '{name}'"
+    for name, column in columns_of(study.model, study.settings).items():
+        if name not in ds.data_vars:
+            return f"it does not hold the output '{name}'"
+        if ds[name].dims[:1] != ("sample",) or ds[name].shape[1:] != column.shape:
+            return f"'{name}' is not of the shape that the settings give"
+    return ""
+
+
+def _inputs(study: Study, part: xr.Dataset, first: int) -> Rows:
+    numbers = part["sample"].values
+    drawn = row_block(study, first, int(numbers[-1]) + 1)
+    kept = Rows(*(field[numbers - first] for field in drawn))
+    for i, name in enumerate(study.model.parameter_names):
+        kept.x[:, i] = part[name].values
+    return kept
+
+
+def _outputs(study: Study, part: xr.Dataset, numbers: NDArray[np.int64]) -> Chunk:
+    columns = {
+        name: part[name].values.astype(column.dtype)
+        for name, column in columns_of(study.model, study.settings).items()
+    }
+    status = part["status"].values
+    failures: Failures = {}
+    for code in np.unique(status[status != Status.OK]):
+        kind, row = Status(code), int(numbers[np.argmax(status == code)])
+        example = str(part["status"].attrs.get(f"example_{kind.name.lower()}", ""))
+        known = example.startswith(f"row {row}: ")
+        failures[kind.label] = row, example.partition(": ")[2] if known else kind.meaning
+    return Chunk(columns, status, failures)

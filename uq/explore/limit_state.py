@@ -1,0 +1,179 @@
+"""How far rows of a study lie beyond a threshold, as a function on standard normal space."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from uq.contract import Floats, Output, Status, censored_name
+from uq.errors import InputError, nearest
+from uq.execution.dispatch import Dispatcher
+from uq.execution.executor import Executor
+from uq.execution.options import RunOptions
+from uq.execution.tally import MemoryStore
+from uq.result.workload import Workload
+from uq.sampling.named_values import unknown_name
+from uq.study.definition import Study
+from uq.study.evaluate import Chunk
+from uq.study.row_sampling import Rows, physical, row_seeds
+from uq.text.element_names import place_of, places
+
+Evaluator = Callable[[Floats, NDArray[np.uint64]], Chunk]
+"""``evaluator(x, seed)`` -> outputs of rows x (n, d), in declared order, with seeds (n,): the same
+bits wherever they are computed."""
+
+
+@contextmanager
+def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Evaluator]:
+    """Yield a function that runs the model of a study.
+
+    Parameters
+    ----------
+    study : Study
+    output : str
+        The output that is wanted: computed alone if the model can do so.
+    options : RunOptions
+    """
+    cheap = output in study.model.cheap
+    model = study.model.alone(output) if cheap else study.model
+    none = Rows.without_design(np.empty((0, 0)), np.empty(0, np.uint64))
+    wanted = output if cheap else ""
+    work = Workload(
+        model, study.model_reference, study.settings, 0, 1, block=none.part, output=wanted
+    )
+    with Executor(work, options) as executor:
+
+        def evaluator(x: Floats, seed: NDArray[np.uint64]) -> Chunk:
+            batch = work._replace(total=len(x), block=Rows.without_design(x, seed).part)
+            store = MemoryStore(batch)
+            executor.finish(Dispatcher(batch, options, store, executor.evaluate))
+            return store.chunk()
+
+        yield evaluator
+
+
+class LimitState:
+    """The distance of rows beyond a threshold.
+
+    Parameters
+    ----------
+    study : Study
+    name : str
+        An output, or one element of an output with dimensions.
+    threshold : float
+        In the output's unit.
+    below : bool
+        Whether the event lies below it.
+    evaluator : Evaluator
+    first : int, optional
+        Number of the first row, which with the seed gives the random numbers of a row.
+
+    Attributes
+    ----------
+    output : Output
+    dimension : int
+        Of standard normal space.
+    rows : int
+        Rows computed so far.
+    failed : int
+        Those that failed, or were censored before the threshold.
+    undefined : int
+        Those whose output was undefined.
+    failures : dict of str to str
+        Status label -> message of the first row with that status.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        name: str,
+        threshold: float,
+        below: bool,
+        evaluator: Evaluator,
+        first: int = 0,
+    ) -> None:
+        self.study, self.threshold, self.below = study, threshold, below
+        self.output, self._place = find_element(study, name)
+        self.dimension = len(study.uncertain)
+        self._column = name.partition("[")[0]
+        self._evaluator = evaluator
+        self._first = first
+        self.rows = self.failed = self.undefined = 0
+        self.failures: dict[str, str] = {}
+
+    def physical(self, u: Floats) -> Floats:
+        """Map points of standard normal space, (n, dimension), to the model's parameters."""
+        return physical(self.study, np.clip(ndtr(u), 2.0**-54, 1.0 - 2.0**-53))
+
+    def uncertain(self, u: Floats) -> Floats:
+        """Map points of standard normal space to the uncertain parameters."""
+        names = self.study.model.parameter_names
+        return self.physical(u)[:, [names.index(name) for name in self.study.uncertain]]
+
+    def __call__(self, u: Floats) -> Floats:
+        """Compute the rows of some points.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n, dimension)
+            Standard normal.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Distance beyond the threshold, positive within the event; -inf for a row without a
+            value, which counts as outside.
+        """
+        # Every row has its own random numbers, as in a study.
+        number = np.arange(len(u)) + self.rows + self._first
+        chunk = self._evaluator(self.physical(u), row_seeds(self.study.design.seed, number))
+        for label, (row, text) in chunk.failures.items():
+            self.failures.setdefault(label, f"row {self.rows + row}: {text}")
+        self.rows += len(u)
+        return self._margin(chunk)
+
+    def _margin(self, chunk: Chunk) -> Floats:
+        def column(name: str) -> NDArray[Any]:
+            return chunk.columns[name].reshape(len(chunk.status), -1)[:, self._place]
+
+        values = column(self._column)
+        absent = self.output.is_absent(values)
+        undefined = np.isnan(values) & (chunk.status == Status.OK)
+        values = self.output.for_thresholds(values)
+        margin = self.threshold - values if self.below else values - self.threshold
+        if self.output.has_censored_flag:
+            censored = column(censored_name(self._column)).astype(bool)
+            absent |= censored & (values < self.threshold)
+            if not self.below:
+                margin[censored] = np.inf
+        margin[absent] = -np.inf
+        self.undefined += int(undefined.sum())
+        self.failed += int((absent & ~undefined).sum())
+        return margin
+
+
+def find_element(study: Study, name: str) -> tuple[Output, int]:
+    """Find an output by its name or that of one of its elements; return it and the element's place.
+
+    Raises
+    ------
+    InputError
+        When there is no such output or element, or it is a category.
+    """
+    model, output = study.model, name.partition("[")[0]
+    if output not in model.outputs:
+        problem = unknown_name("output", output, model, tuple(model.outputs))
+        raise InputError(f"'{output}': {problem}")
+    declared = model.outputs[output]
+    if declared.is_category:
+        raise InputError(f"'{output}' is a category: it has shares, not thresholds")
+    coordinates = model.coordinates(study.settings)
+    axes = {dim: coordinates[dim] for dim in declared.dims}
+    labels, chosen = [label for label, *_ in places(output, axes)], place_of(name, axes)
+    if not chosen:
+        choice = f"; choose one, such as '{labels[0]}'" if name == output else ""
+        raise InputError(f"'{name}': no such element{choice or nearest(name, labels)}")
+    return declared, labels.index(chosen[0][0])

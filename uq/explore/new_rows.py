@@ -1,0 +1,276 @@
+"""New rows where the inspections point, if those of a result hardly go there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats
+from uq.errors import InputError, RunError, choices
+from uq.execution.options import RunOptions
+from uq.execution.recomputed_row import study_here
+from uq.explore.given_rows import computed, with_given_rows
+from uq.learning.importance import repetitions_of, with_rounds
+from uq.learning.inspections import Inspection
+from uq.learning.posterior import Posterior, on_wide_grids, posterior, shared_inputs
+from uq.learning.posterior_result import digest
+from uq.learning.repetition import Repetition
+from uq.learning.trust import censoring, distrust
+from uq.result.nesting import nesting_of
+from uq.result.weights import IMPORTANCE, ROUND
+from uq.sampling.designs import DESIGNS
+from uq.study.definition import Study
+from uq.study.row_sampling import unit_block
+
+ENOUGH = 400.0
+"""Effective rows after which no more are drawn."""
+
+_SHARE = 4
+_FEWEST = 100
+_SEED = 23
+
+
+@dataclass(frozen=True)
+class Budget:
+    """New rows that may be computed.
+
+    Attributes
+    ----------
+    rows : int
+    options : RunOptions
+        How they are computed.
+    output : Path or None
+        The result beside which they are kept until it is complete; None: in memory.
+    model : str or None
+        Where the model lives, if it is not installed.
+    """
+
+    rows: int
+    options: RunOptions
+    output: Path | None
+    model: str | None
+
+
+class Enlarged(NamedTuple):
+    """The rows of a result with new ones.
+
+    Attributes
+    ----------
+    rows : xarray.Dataset
+    found : Posterior
+    kept : list of Path
+        Files of the new rows, no longer needed once the posterior is written.
+    """
+
+    rows: xr.Dataset
+    found: Posterior
+    kept: list[Path]
+
+
+def enlarged(
+    own: xr.Dataset,
+    found: Posterior,
+    inspections: Sequence[Inspection],
+    model_cv: float,
+    budget: Budget,
+) -> Enlarged:
+    """Draw new rows, in rounds, until they represent what the inspections leave.
+
+    Parameters
+    ----------
+    own : xarray.Dataset
+        A result.
+    found : Posterior
+        What the inspections leave of it.
+    inspections : sequence of Inspection
+    model_cv : float
+    budget : Budget
+
+    Returns
+    -------
+    Enlarged
+
+    Raises
+    ------
+    InputError
+        When new rows of such a result cannot be drawn.
+    RunError
+        When the budget is spent before that.
+
+    Notes
+    -----
+    Adaptive importance sampling in independent repetitions, whose scatter gives the intervals of
+    all that is read from the rows. Each begins with its part of the rows (`repetitions_of`) and
+    draws its part of each round from a mixture of Student laws around its own rows so far, weighted
+    with as much of the likelihood as they bear. A row of any round counts by the density of the
+    laws over that of the mixture of all that its repetition has drawn [1]_. Once these rows
+    represent what the inspections leave, they are dropped: further rounds come from a last mixture
+    around them, and count by the density over that of this mixture and the laws. The likelihood
+    may jump. An integrated input keeps its law. Of several units, the mixture is that around the
+    rows of each.
+
+    References
+    ----------
+    .. [1] J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, "Adaptive multiple importance
+       sampling", Scand. J. Stat. 39, 798-812 (2012).
+    """
+    study = _study_of(own, found, budget.model)
+    n, of = own.sizes["sample"], repetitions_of(own)
+    count = len(np.unique(of))
+    step = count * nesting_of(own).units
+    each = -(-max(n // _SHARE, _FEWEST) // step) * step
+    if budget.rows < each:
+        raise InputError(f"rows = {budget.rows}: a round of new rows takes {each}")
+    scores = special.ndtri(unit_block(study, 0, n))
+    rounds = _Rounds(study, own, inspections, model_cv, budget, each)
+    seeking = [Repetition(scores[of == r], each // count) for r in range(count)]
+    settled = rounds.settled(seeking, *rounds.until_enough(seeking, own, found))
+    return Enlarged(*rounds.until_enough(settled, own, found), rounds.kept)
+
+
+class _Rounds:
+    """Rounds of new rows of a study, within a budget."""
+
+    def __init__(
+        self,
+        study: Study,
+        own: xr.Dataset,
+        inspections: Sequence[Inspection],
+        model_cv: float,
+        budget: Budget,
+        each: int,
+    ):
+        self._study, self._own, self._budget, self._each = study, own, budget, each
+        self._inspections, self._cv = inspections, model_cv
+        self._name = _digest(own, inspections, model_cv)
+        self._number = 0
+        self.kept: list[Path] = []
+
+    def until_enough(
+        self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
+    ) -> tuple[xr.Dataset, Posterior]:
+        """Add rounds to the rows of the study until they represent what the inspections leave."""
+        rounds, of, why = list[xr.Dataset](), repetitions_of(rows), distrust(found)
+        while why or min(one.effective for one in found.weights) < ENOUGH:
+            if (self._number + 1) * self._each > self._budget.rows:
+                if not why:
+                    break
+                raise RunError(f"after {self._number * self._each} new rows: {_short(rounds, why)}")
+            rounds.append(self._computed(self._drawn(repetitions, found, of)))
+            count = len(repetitions)
+            of = np.append(of, np.repeat(np.arange(count, dtype=of.dtype), self._each // count))
+            log_importance = np.empty(len(of))
+            for r, one in enumerate(repetitions):
+                log_importance[of == r] = one.log_importance
+            rows = with_rounds(self._own, rounds, log_importance, of)
+            found = posterior(rows, self._inspections, self._cv)
+            if censored := censoring(found):
+                raise RunError(censored)
+            why = distrust(found)
+        return rows, found
+
+    def settled(
+        self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
+    ) -> list[Repetition]:
+        """Return repetitions that draw around the rows of these, and drop them."""
+        of, likelihoods = rows["replicate"].values, _log_likelihoods(found)
+        each = [[log[of == r] for log in likelihoods] for r in range(len(repetitions))]
+        return Repetition.settled(
+            repetitions, each, _columns(self._study, found), self._rng(len(repetitions))
+        )
+
+    def _drawn(
+        self, repetitions: Sequence[Repetition], found: Posterior, of: NDArray[np.integer]
+    ) -> list[Floats]:
+        """Return the part of a round that each repetition draws."""
+        likelihoods, columns = _log_likelihoods(found), _columns(self._study, found)
+        return [
+            one.drawn([log[of == r] for log in likelihoods], columns, self._rng(r))
+            for r, one in enumerate(repetitions)
+        ]
+
+    def _rng(self, part: int) -> np.random.Generator:
+        return np.random.default_rng((self._study.design.seed, _SEED, self._number, part))
+
+    def _computed(self, scores: Sequence[Floats]) -> xr.Dataset:
+        """Return the next round, kept beside the result until that is complete."""
+        self._number += 1
+        number, output = self._number, self._budget.output
+        path = output and output.with_name(f"{output.stem}-{self._name}-round-{number}.nc")
+        seed = np.random.SeedSequence((self._study.design.seed, _SEED, number)).generate_state(1)
+        given = with_given_rows(
+            self._study, np.concatenate(scores), f"round {number}", int(seed[0])
+        )
+        self.kept += [path] if path else []
+        return computed(given, path, self._budget.options)
+
+
+def _short(rounds: Sequence[xr.Dataset], why: str) -> str:
+    return why if rounds else "all were needed to find where to draw; allow more"
+
+
+def why_no_new_rows(own: xr.Dataset, found: Posterior) -> str:
+    """Return why new rows of a result cannot be drawn, or ""."""
+    method, place = own.attrs["design"], nesting_of(own)
+    design = DESIGNS[method]
+    if not design.nests:
+        able = " or ".join(f"'{name}'" for name, one in DESIGNS.items() if one.nests)
+        return f"the design is '{method}', not {able}"
+    if not design.independent and int(own.attrs["replicates"]) == 1:
+        return f"a '{method}' design shows errors only by replicates: set [design] replicates = 8"
+    if place.repeats > 1:
+        return f"each unit has {place.repeats} repeats, not one"
+    if place.units > 1 and (shared := shared_inputs(own, found.scale)):
+        return f"units share {choices(shared)}, and may share only what scales lives"
+    if taken := [name for name in (IMPORTANCE, ROUND) if name in own.variables]:
+        return f"the model has a '{taken[0]}', which is what a variable of new rows is called"
+    return ""
+
+
+def _study_of(own: xr.Dataset, found: Posterior, model: str | None) -> Study:
+    """Return the study of a result, if more rows can be drawn from its laws."""
+    if why := why_no_new_rows(own, found):
+        raise InputError(
+            f"new rows cannot be drawn: {why}; run the study with more samples, or with a law that"
+            " allows for what was found"
+        )
+    attrs = own.attrs
+    recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
+    samples = nesting_of(own).samples // int(attrs["replicates"])
+    study, change = study_here(*recorded, samples, "result", model)
+    if change:
+        raise InputError(f"the result was computed with another model ({change}): run it again")
+    return study
+
+
+def _columns(study: Study, found: Posterior) -> NDArray[np.intp]:
+    """Return the inputs to draw from a law of their own: all but the integrated one."""
+    integrated = found.scale.name if found.scale else ""
+    names = list(study.uncertain)
+    return np.array([i for i, name in enumerate(names) if name != integrated], dtype=np.intp)
+
+
+def _log_likelihoods(found: Posterior) -> list[Floats]:
+    """Return the likelihood of each row as each inspected unit, given all other inspections."""
+    grids, evidence = on_wide_grids(found)
+    likelihoods = []
+    for unit, (grid, rest) in enumerate(zip(grids, evidence.rest, strict=True)):
+        block = found.likelihoods.blocks[unit]
+        joint = rest[found.world[block]] + found.likelihoods.of(unit, grid.values)
+        counted, log_before = special.logsumexp(joint, axis=1), found.likelihoods.log_before(unit)
+        known = np.isfinite(log_before)
+        likelihoods.append(np.where(known, counted - np.where(known, log_before, 0.0), -np.inf))
+    return likelihoods
+
+
+def _digest(own: xr.Dataset, inspections: Sequence[Inspection], model_cv: float) -> str:
+    """Return what new rows depend on, in short."""
+    asked = [digest(one) for one in inspections]
+    what = repr((own.attrs["study_identity"], own.sizes["sample"], asked, float(model_cv)))
+    return sha256(what.encode()).hexdigest()[:8]

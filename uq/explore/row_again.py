@@ -1,0 +1,206 @@
+"""One row of a result: found, and computed again with its time history."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Status
+from uq.errors import InputError
+from uq.execution.recomputed_row import (
+    computed_again,
+    differing,
+    other_versions,
+    settings_by_row,
+    study_here,
+)
+from uq.explore.simulation import with_trajectory
+from uq.result.elements import flags
+from uq.result.one_row import Row
+from uq.result.result_file import open_result
+from uq.result.row_choice import Choice, lowest_row, near_quantile_row
+from uq.result.stored_row import place_of, stored_row
+from uq.result.weights import refuse_weights
+from uq.study.installed_models import model_at
+
+PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
+"""Variables that give the place of a row in its design."""
+
+
+@dataclass(frozen=True)
+class RowAgain:
+    """A row of a result, and the same computed again here.
+
+    Attributes
+    ----------
+    number : int
+    there : xarray.Dataset
+        The row in the result, along a dimension ``sample`` of size 1.
+    row : Row
+        The same as plain numbers.
+    again : Row or None
+        None where it cannot be computed again.
+    differing : list of str
+        The variables that differ by a bit.
+    reason : str
+        Why it is not equal; "" if it is.
+    versions : dict of str to tuple of str
+        What differs here from what made the result: name -> (there, here).
+    choice : Choice, optional
+        Why this row.
+    """
+
+    number: int
+    there: xr.Dataset
+    row: Row
+    again: Row | None = None
+    differing: tuple[str, ...] = ()
+    reason: str = ""
+    versions: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    choice: Choice | None = None
+
+    @property
+    def equal(self) -> bool:
+        """Whether computing it again gave the same bits."""
+        return self.again is not None and not self.differing
+
+    @property
+    def place(self) -> dict[str, int | str]:
+        """Its place in the design, by name; of the block its label."""
+        there = self.there
+        found: dict[str, int | str] = {
+            name: int(there[name][0]) for name in PLACES if name in there
+        }
+        return found | {"block": dict(flags(there["block"]))[int(there["block"][0])]}
+
+
+def row(
+    result: xr.Dataset | str | Path,
+    number: int | None = None,
+    *,
+    lowest: str | None = None,
+    near_quantile: tuple[float, str] | None = None,
+    model: str | None = None,
+    trajectory: bool = True,
+) -> xr.Dataset:
+    """Return one row of a result, computed again with its time history.
+
+    Parameters
+    ----------
+    result : xarray.Dataset or path-like
+        A result, or its file.
+    number : int, optional
+        Of the row, from 0. Give this, `lowest` or `near_quantile`.
+    lowest : str, optional
+        An output, or an element of one: take the row in which it is lowest. Lives that are censored
+        count as longer than those that ended, lives that never end as the longest.
+    near_quantile : tuple of float and str, optional
+        A probability and an output or element: take the row closest to this quantile.
+    model : str, optional
+        Where the model lives, if it is not installed.
+    trajectory : bool
+        Whether to compute the time history as well.
+
+    Returns
+    -------
+    xarray.Dataset
+        The row in the result, with ``equal``: whether computing it again gives the same bits, or
+        else its attribute ``reason``; and, if the model has one, ``trajectory`` (time, quantity).
+
+    Raises
+    ------
+    InputError
+        When there is no such row, output or model.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> shortest = uq.row(ds, lowest="life")
+    >>> shortest["life"].item() == ds["life"].min().item(), shortest["equal"].item()
+    (True, True)
+    """
+    ds = result if isinstance(result, xr.Dataset) else open_result(result)
+    found = row_again(ds, number, lowest, near_quantile, model)
+    attrs = {"long_name": "whether computing the row again gave the same bits"}
+    reason = {"reason": found.reason} if found.reason else {}
+    one = found.there.assign(equal=((), found.equal, attrs | reason))
+    if not trajectory or found.again is None:
+        return one
+    return with_trajectory(one, found.again)
+
+
+def row_again(
+    ds: xr.Dataset,
+    number: int | None = None,
+    lowest: str | None = None,
+    near_quantile: tuple[float, str] | None = None,
+    model: str | None = None,
+    source: str = "this result",
+) -> RowAgain:
+    """Find a row of a result and compute it again; see `row`."""
+    if sum(given is not None for given in (number, lowest, near_quantile)) != 1:
+        raise InputError("give one of: the number of a row, --lowest, --near-quantile")
+    refuse_weights(ds, "a row computed again")
+    choice = None
+    if lowest is not None:
+        choice = lowest_row(ds, lowest)
+    elif near_quantile is not None:
+        choice = near_quantile_row(ds, *near_quantile)
+    chosen = choice.number if choice else int(number or 0)
+    place = place_of(ds, chosen)
+    there, stored = ds.isel(sample=[place]).load(), stored_row(ds, place)
+    found = RowAgain(chosen, there, stored, choice=choice)
+    return _computed(ds, found, place, model, source)
+
+
+def _computed(
+    ds: xr.Dataset, found: RowAgain, place: int, model: str | None, source: str
+) -> RowAgain:
+    attrs, status = ds.attrs, int(found.row.status[0])
+    if model is not None and (other := model_at(model).name) != attrs["model"]:
+        raise InputError(f"--model {model}: is '{other}'; the rows are of '{attrs['model']}'")
+
+    def without(reason: str) -> RowAgain:
+        return replace(found, reason=f"it cannot be computed again: {reason}")
+
+    if status == Status.TIMED_OUT:
+        return without("it outlived its time limit")
+    try:
+        study, change = study_here(
+            attrs["study"],
+            attrs["study_identity"],
+            attrs["model_version"],
+            int(attrs["samples"]),
+            source,
+            model,
+        )
+        if study.model.name != attrs["model"]:
+            return without(
+                f"'{study.model.name}' is not its model, '{attrs['model']}'; name that with --model"
+            )
+        settings = settings_by_row(ds, study, np.array([place]))[place]
+        again = computed_again(study, settings, found.number, status)
+        versions = other_versions(ds, study.model_reference)
+    except InputError as error:
+        return without("; ".join(error.lines))
+    names = tuple(differing(again, found.there))
+    reason = _reason(change, versions, source) if names else ""
+    if again.status == found.row.status:  # the sentence of this row, not of the first such row
+        found = replace(found, row=found.row._replace(failures=again.failures))
+    return replace(found, again=again, differing=names, reason=reason, versions=versions)
+
+
+def _reason(change: str, versions: Mapping[str, tuple[str, str]], source: str) -> str:
+    """Return why a row may differ."""
+    if change:
+        return f"another model computed it ({change})"
+    if "code" in versions:
+        return "other code of the model computed it"
+    if versions:
+        return f"it was computed with another {', '.join(versions)}"
+    return (
+        f"either {source} has been changed, which 'uq verify' checks, or the model does not return"
+        " the same for the same row"
+    )

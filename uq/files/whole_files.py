@@ -1,0 +1,143 @@
+"""Files written completely or not at all."""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import xarray as xr
+
+from uq.errors import InputError, RunError
+from uq.files.interrupts import undone
+from uq.files.paths import file_behind
+from uq.files.seal import seal
+
+
+def check_target(path: Path, size: int, option: str = "-o") -> None:
+    """Refuse a path that cannot be written, before anything is computed.
+
+    Parameters
+    ----------
+    path : Path
+    size : int
+        Expected size of what will be written [bytes].
+    option : str
+        Of the command, to choose another.
+
+    Raises
+    ------
+    InputError
+    """
+    folder = nearest_folder(file_behind(path, option))
+    elsewhere = f"choose another place with {option}"
+    remedy = "copy it elsewhere" if path.is_file() else elsewhere
+    if not folder.is_dir():
+        raise InputError(f"{path}: {folder} is a file, not a folder; {remedy}")
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise InputError(f"{path}: cannot write in {folder}: {error.strerror}; {remedy}") from None
+    free = shutil.disk_usage(folder).free
+    if free < size:
+        raise InputError(
+            f"{path}: the result takes about {size / 1e6:.0f} MB, "
+            f"and {folder} has {free / 1e6:.0f} MB left; {remedy}"
+        )
+
+
+def write(ds: xr.Dataset, path: Path) -> None:
+    """Write a Dataset as netCDF4 under a temporary name, then rename it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    path : Path
+        Missing folders are created.
+
+    Raises
+    ------
+    RunError
+        When it cannot be written; nothing is left behind then.
+    """
+    with whole(path) as temporary:
+        ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+
+
+def write_result(ds: xr.Dataset, path: Path) -> None:
+    """Write a result as `write` does, with its checksum."""
+    with whole(path) as temporary:
+        ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+        seal(temporary)
+
+
+@contextmanager
+def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
+    """Yield a temporary name; the file written under it becomes `path` when the block ends.
+
+    Parameters
+    ----------
+    path : Path
+        Missing folders are created; a link is followed.
+    folder : Path, optional
+        Of the temporary file, on the same disk; by default the folder of the file.
+
+    Yields
+    ------
+    Path
+
+    Raises
+    ------
+    InputError
+        When there is something other than a file.
+    RunError
+        When the file cannot be written; nothing is left behind then.
+    """
+    file = file_behind(path)
+    made = [parent for parent in file.absolute().parents if not parent.exists()]
+    temporary = (folder or file.parent) / f".{file.name}.{os.getpid()}.part"
+
+    def clear() -> None:
+        temporary.unlink(missing_ok=True)
+        remove_empty(made)
+
+    with undone(clear):
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            yield temporary
+            flush(temporary)
+            os.replace(temporary, file)
+            flush(file.parent)
+        except (OSError, RuntimeError) as error:
+            raise RunError(f"{path}: could not be written: {reason(error, path)}") from None
+
+
+def remove_empty(folders: list[Path]) -> None:
+    """Remove empty folders, the innermost first."""
+    for folder in folders:
+        if folder.exists() and not any(folder.iterdir()):
+            folder.rmdir()
+
+
+def flush(path: Path) -> None:
+    """Wait until a file, or the entries of a folder, are on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def nearest_folder(path: Path) -> Path:
+    """Return the innermost folder above `path` that exists."""
+    return next(parent for parent in path.absolute().parents if os.path.exists(parent))
+
+
+def reason(error: Exception, path: Path) -> str:
+    """Say why a write failed: HDF5 reports a full disk or a quota as "HDF error"."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    free = shutil.disk_usage(nearest_folder(path)).free
+    return f"{error} ({free / 1e6:.0f} MB left on the disk, unless there is a quota)"

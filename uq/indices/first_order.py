@@ -1,0 +1,202 @@
+"""First-order indices from a plain sample, with intervals."""
+
+from collections.abc import Mapping
+from itertools import combinations_with_replacement
+from typing import NamedTuple
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.indices.given_data import DUMMIES, beside_nulls, null_of, one_kind
+from uq.indices.index import S1, Indices, RefusedError
+from uq.indices.measures import first_order
+from uq.indices.residual_variance import (
+    Part,
+    Residual,
+    ordered_residual_variance,
+    residual_variance,
+    variance,
+)
+from uq.indices.sample import Sample
+from uq.stats.estimate import NOTHING, Estimate
+from uq.stats.intervals import upper_probability
+from uq.stats.quantile_functions import student
+
+ENOUGH_ROWS = 200
+"""Rows from which indices have intervals. Of an input that matters in 3 % of the rows alone, those
+of 100 rows would cover 84 %, of 200 rows 92 %, of 300 rows 98 %. Whether they are given must not
+depend on the values: samples without the rows that decide would look the surest."""
+
+_IMPOSSIBLE = 0.999
+"""Confidence that indices add up to more than 1 with which none of them is believed."""
+
+_FEW = f"has no interval: {ENOUGH_ROWS} rows are needed"
+
+
+def first_order_indices(sample: Sample) -> Indices:
+    """Estimate the share of the variance that each input explains alone.
+
+    Parameters
+    ----------
+    sample : Sample
+        Of independent inputs; of a whole output the variances of its elements are summed.
+
+    Returns
+    -------
+    Indices
+        ``S1``, 1 less the variance that is left when an input is known over that of all rows
+        (`uq.indices.residual_variance`), without bias however steep the output is. Intervals are
+        Student's, on the scale of log(1 - S1), by the influence of each row [1]_, raised at both
+        ends by one more row as influential as the most influential. They are those of independent
+        rows for replicates, too, whose mean influence scatters no more; a few replicates may have
+        as many rows each beyond a jump, and hide its error. None of fewer than `ENOUGH_ROWS` rows;
+        of an event, inputs without effect then show what is negligible. Of one replicate, whose
+        rows depend on each other, the index is that of random balance, beside inputs without
+        effect.
+
+    Raises
+    ------
+    RefusedError
+        The indices add up to more than 1, by more than their errors.
+
+    Notes
+    -----
+    No estimator sees what no row shows: a defect in 3.7 / n of the rows is in none of them once in
+    forty samples, in which other inputs explain its share as well. Of waves as short as five rows
+    each, none sees more than noise.
+
+    References
+    ----------
+    .. [1] S. Da Veiga, F. Gamboa, "Efficient estimation of sensitivity indices", J. Nonparametr.
+       Stat. 25, 573-595 (2013).
+    """
+    part = sample.replicate
+    if part is not None and len(np.unique(part)) < 2:
+        by_balance = beside_nulls(one_kind(S1, first_order))(sample)
+        note = (
+            "the rows of one replicate depend on each other: by random balance, too small where"
+            " the output is steep in an input; [design] replicates = 8 gives unbiased indices"
+            " with intervals"
+        )
+        return Indices(by_balance.values, (note, *by_balance.notes), by_balance.nulls)
+    y = sample.values.reshape(len(sample.values), -1)
+    y = y - y.mean(axis=0)
+    names, lacks_rows = list(sample.inputs), len(y) < ENOUGH_ROWS
+    shares = _of_rows(sample.inputs, y, part)
+    quantile = student(upper_probability(sample.confidence), len(y) - 1)
+    errors = quantile**2 * shares.products
+    halves = np.sqrt(np.diag(errors))
+    indices = {
+        name: Estimate(value, reason=_FEW) if lacks_rows else _estimate(value, half, widest)
+        for name, value, half, widest in zip(
+            names, shares.values.tolist(), halves.tolist(), shares.widest.T, strict=True
+        )
+    }
+    products = {
+        (names[i], names[j]): float(errors[i, j])
+        for i, j in combinations_with_replacement(range(len(names)), 2)
+    }
+    lacking = {name: index.reason for name, index in indices.items() if index.reason}
+    notes = tuple(f"S1 of {name} has no interval: {why}" for name, why in lacking.items())
+    if not lacking:
+        sure = student(upper_probability(_IMPOSSIBLE), len(y) - 1)
+        _refuse_more_than_all(shares.unexplained(sure))
+    nulls = {}
+    if lacking and sample.nulls and len(np.unique(y)) == 2:
+        nulls = {S1: null_of(_without_effect(y, part), len(names))}
+    factors = dict.fromkeys(lacking, ENOUGH_ROWS / len(y)) if lacks_rows else {}
+    return Indices(
+        {S1: indices},
+        (f"S1 {_FEW}",) if lacks_rows else notes,
+        nulls,
+        half_products=products,
+        rows_factors=factors,
+        unexplained=NOTHING if lacking else shares.unexplained(quantile),
+    )
+
+
+def _refuse_more_than_all(left: Estimate) -> None:
+    """Refuse indices that leave less than nothing to be explained."""
+    if left.high < 0:
+        total, low, high = (1 - end for end in (left.value, left.high, left.low))
+        raise RefusedError(
+            f"S1 of all inputs add up to {total:.2f} ({low:.2f} to {high:.2f}), which cannot be:"
+            " the output changes within a few rows of an input, or the inputs depend on each other"
+        )
+
+
+def _without_effect(y: Floats, part: Part) -> Floats:
+    """Return the indices of inputs without effect."""
+    every = variance(y, part)
+    orders = np.random.default_rng(0).random((DUMMIES, len(y))).argsort(axis=1)
+    parts = [None if part is None else part[order] for order in orders]
+    left = [
+        ordered_residual_variance(y[order], of) for order, of in zip(orders, parts, strict=True)
+    ]
+    return 1 - np.array(left) / every
+
+
+class _OfRows(NamedTuple):
+    """Indices of k inputs, and what their errors are estimated from.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+    products : ndarray, shape (k, k)
+        Variances and covariances of their errors.
+    widest : ndarray, shape (2, k)
+        What one more row as influential as the most influential changes: of the lower and of the
+        upper end.
+    widest_left : ndarray, shape (2,)
+        The same of what no single input explains.
+    """
+
+    values: Floats
+    products: Floats
+    widest: Floats
+    widest_left: Floats
+
+    def unexplained(self, quantile: float) -> Estimate:
+        """Return 1 less the sum of all indices."""
+        value = float(1 - self.values.sum())
+        half = quantile * max(float(self.products.sum()), 0.0) ** 0.5
+        low, high = self.widest_left.tolist()
+        return Estimate(value, value - half - low, value + half + high)
+
+
+def _of_rows(columns: Mapping[str, Floats], y: Floats, part: Part) -> _OfRows:
+    n, every = len(y), variance(y, part)
+    squares = np.sum(y**2, axis=1)
+    values, influences, noises = [], [], []
+    for column in columns.values():
+        left = residual_variance(column, y, part)
+        value = 1 - max(left.variance, 0.0) / every  # beside a jump it may be negative
+        influence = (left.squares - (1 - value) * squares) / every
+        influence -= influence.mean()
+        values.append(value)
+        influences.append(influence)
+        noises.append(_beyond(left, influence, value, every))
+    influence = np.array(influences)
+    scatter = influence @ influence.T / (n - 1) + np.diag(noises)
+    widest = np.array([influence.max(axis=1), -influence.min(axis=1)]) / n
+    of_all = influence.sum(axis=0)
+    widest_left = np.array([-of_all.min(), of_all.max()]) / n
+    return _OfRows(np.array(values), scatter / n, widest, widest_left)
+
+
+def _beyond(left: Residual, influence: Floats, value: float, every: float) -> float:
+    """Return the variance of pairs, less the part of the influence's that smoothing adds."""
+    scatter = float(influence @ influence) / (len(influence) - 1)
+    excess = min(max(1 - value, 0.0), 1.0) * left.excess / every**2
+    return left.noise / every**2 - min(excess, 0.9 * scatter)
+
+
+def _estimate(value: float, half: float, widest: Floats) -> Estimate:
+    """Return an index with its interval on the scale of log(1 - S1)."""
+    if not half > 0:
+        return Estimate(value, reason="the rows show no error")
+    # Beyond an error as large as what is left, the scale would send the lower end far away.
+    relative = min(half / (1 - value), 1.0) if value < 1 else 1.0
+    low = value - half * np.expm1(relative) / relative - widest[0]
+    high = value - half * np.expm1(-relative) / relative + widest[1]
+    return Estimate(value, float(low), float(high))

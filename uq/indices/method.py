@@ -1,0 +1,134 @@
+"""A sensitivity method: the rows it needs, its estimate, and what that means."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from uq.indices.index import IndexKind, Indices, RefusedError
+from uq.indices.sample import Sample
+from uq.sampling.layouts import PLAIN, Layout
+from uq.stats.intervals import sized
+from uq.text.numbers import counted
+
+NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
+NO_VARIANCE = "the same value in all rows: there is no variance to apportion"
+UNSEEN = (
+    "the same value in all independent rows, though not in those between them: they show no"
+    " variance to apportion; more samples are needed"
+)
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to find which inputs matter.
+
+    Attributes
+    ----------
+    question : str
+        What it answers, in one line.
+    layout : Layout
+        How the rows of a design must belong together for it.
+    estimate : callable
+        ``estimate(sample)`` -> `Indices`, or `RefusedError`. Groups with a row without a value are
+        left out by it (`Sample.whole`); every row of a plain sample has a value.
+    kinds : tuple of IndexKind
+        What it estimates; none where that depends on the study.
+    gives : str
+        The same in words.
+    source : str
+        Whose estimator it is.
+    intervals : str
+        What its intervals come from; "" where it has none.
+    has_null : bool
+        Whether its indices come with the null of inputs without effect.
+    least : int
+        Fewer whole groups give no indices.
+    most_rows : int or None
+        Of a larger plain sample this many rows are chosen: all would take too long.
+    assumes_independence : bool
+        Whether the inputs must be independent of each other. If not, they may depend in any way in
+        a plain sample, and as the study states in the rows of a design.
+    aggregates : bool
+        Whether it also gives one index for all elements of an output: the sum of what an input
+        explains of their variances, over the sum of these variances (Gamboa et al. 2014).
+    takes_events, takes_numbers : bool
+        Whether it is for events, outputs of 0 or 1, and for other outputs.
+    conditional : bool
+        Whether it is about an output among the rows in which an event happens, not about the event.
+    scale_free : bool
+        Whether it compares distributions: no increasing function of an output changes its indices.
+    noise : str
+        How it treats the noise of a random model where rows share seeds.
+    pilot : callable or None
+        ``pilot(sample)`` -> kind -> the largest standard deviation, over inputs, of a group's term
+        in the mean that an index is; given where ``uq plan`` and ``uq convergence`` show indices.
+    """
+
+    question: str
+    layout: Layout
+    estimate: Callable[[Sample], Indices]
+    kinds: tuple[IndexKind, ...]
+    gives: str = ""
+    source: str = ""
+    intervals: str = ""
+    has_null: bool = False
+    least: int = 1
+    most_rows: int | None = None
+    assumes_independence: bool = True
+    aggregates: bool = False
+    takes_events: bool = True
+    takes_numbers: bool = True
+    conditional: bool = False
+    scale_free: bool = False
+    noise: str = ""
+    pilot: Callable[[Sample], dict[IndexKind, float]] | None = None
+
+    @property
+    def of_variance(self) -> bool:
+        """Whether its indices are shares of the variance."""
+        return any(kind.unit == "variance" for kind in self.kinds)
+
+    def indices(self, sample: Sample) -> Indices:
+        """Estimate the indices of one output.
+
+        Parameters
+        ----------
+        sample : Sample
+            Its rows laid out as the method needs them.
+
+        Returns
+        -------
+        Indices
+
+        Raises
+        ------
+        RefusedError
+            Too few groups have a value in each row, or the method finds no indices in them.
+        """
+        self.refuse_few_groups(sample)
+        if self.of_variance:  # shares, of whatever unit
+            sample = replace(sample, values=sized(sample.values)[0])
+        if self.layout is not PLAIN:
+            return self.estimate(sample)
+        rows, note = np.flatnonzero(sample.whole), ""
+        if sample.is_constant(sample.values[rows]):
+            raise RefusedError(NO_EFFECT)
+        kept = len(rows)
+        if self.most_rows is not None and kept > self.most_rows:
+            # At random: imported rows may come in a meaningful order.
+            rows = np.sort(np.random.default_rng(0).choice(rows, self.most_rows, replace=False))
+            note = (
+                f"from {self.most_rows} of {kept} rows, chosen at random: all would take too long"
+            )
+        found = self.estimate(sample.rows(rows))
+        return replace(found, notes=(note, *found.notes) if note else found.notes)
+
+    def refuse_few_groups(self, sample: Sample) -> None:
+        """Refuse a sample in which too few groups have a value in each row."""
+        kept, every = int(sample.whole.sum()), sample.whole.size
+        if kept < self.least:
+            where = " where the event happens" * self.conditional
+            seen = counted(kept, *self.layout.group) + where + f" (of {every})" * (kept < every)
+            few = f"only {seen}" if kept else f"no {seen.removeprefix('0 ')}"
+            raise RefusedError(f"{few}; {self.least} are needed", self.least / max(kept, 1))

@@ -1,0 +1,195 @@
+"""Sobol' indices of a crossed design, with intervals from the replicates."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import combinations
+
+import numpy as np
+
+from uq.indices.given_data import (
+    Values,
+    effective_rows,
+    one_more_row,
+    pooled_with_intervals,
+    widened,
+    with_difference,
+)
+from uq.indices.index import S1, S2, ST, IndexKind, Indices, RefusedError
+from uq.indices.method import NO_VARIANCE, UNSEEN
+from uq.indices.sample import Floats, Sample
+from uq.sampling.layouts import NOISE
+
+MIN_GROUPS = 8
+"""Fewer groups than this do not give a useful index."""
+
+_NOISE = IndexKind(NOISE, "share of noise", "variance")
+
+Estimates = Callable[[Sequence[str], Floats], Values]
+"""Names of the blocks, and groups of shape (n, blocks), standardised -> indices."""
+
+
+def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices:
+    """Estimate first-order, total and, where the design has them, second-order indices.
+
+    Those of a whole output are aggregated [5]_: parts of the variance are summed over its elements.
+
+    Parameters
+    ----------
+    sample : Sample
+        Of a crossed design.
+    estimates : callable, optional
+        Estimators to compare with those below.
+
+    Returns
+    -------
+    Indices
+        Pooled over all groups, with intervals from the scatter between replicates. Where the
+        variance rests on few rows, intervals are widened by the effect of one more such row. For a
+        random model `noise` is the total index of the seed.
+
+    Raises
+    ------
+    RefusedError
+        A constant output.
+
+    Notes
+    -----
+    S1 is the estimator of [1]_ with a control variate, after [2]_; ST is that of [3]_, S2 that of
+    [4]_. `benchmarks/estimators.py` compares them with others on the same rows.
+
+    For a random model A and AB_i share a seed, B and BA_i another, and `NOISE` has the inputs of A
+    and the seed of B. S1 and S2 are means of products of rows with different seeds, which noise
+    enters through the variance alone. ST is a mean square of differences at one seed: of the noise
+    it includes the interaction with the input.
+
+    References
+    ----------
+    .. [1] A. Janon, T. Klein, A. Lagnoux, M. Nodet, C. Prieur, "Asymptotic normality and efficiency
+       of two Sobol index estimators", ESAIM: Probab. Stat. 18, 342-364 (2014).
+    .. [2] G. Glen, K. Isaacs, "Estimating Sobol sensitivity indices using correlations", Environ.
+       Model. Softw. 37, 157-166 (2012): spurious correlations are subtracted.
+    .. [3] M. J. W. Jansen, "Analysis of variance designs for model output", Comput. Phys. Commun.
+       117, 35-43 (1999).
+    .. [4] A. Saltelli, "Making best use of model evaluations to compute sensitivity indices",
+       Comput. Phys. Commun. 145, 280-297 (2002).
+    .. [5] F. Gamboa, A. Janon, T. Klein, A. Lagnoux, "Sensitivity analysis for multidimensional
+       and functional outputs", Electron. J. Stat. 8, 575-603 (2014).
+    """
+    y, whole = sample.grouped, sample.whole
+    ends = [sample.blocks.index("A"), sample.blocks.index("B")]
+    independent = y[whole][:, ends]
+    if sample.is_constant(independent):
+        raise RefusedError(NO_VARIANCE if sample.is_constant(y[whole]) else UNSEEN)
+    # The estimators lose digits, and scatter more, for values far from zero (Sobol' 2001).
+    y = (y - independent.mean(axis=(0, 1))) / np.sqrt(independent.var(axis=(0, 1)).sum())
+
+    replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
+    few = any(len(own) < 2 or sample.is_constant(own[:, ends]) for own in replicates)
+    lacking = "in some replicates too few rows differ" if few else ""
+    of_blocks = partial(estimates or _estimates, sample.blocks)
+    estimate = with_difference(of_blocks, sample.difference)
+    found, notes = pooled_with_intervals(
+        estimate, y[whole], replicates, "indices", lacking, sample.confidence
+    )
+    independent = y[whole][:, ends].reshape(-1, *y.shape[3:])
+    given = not notes
+    more = one_more_row(independent, int(whole.sum()), len(replicates), sample.confidence)
+    if more and given:
+        rows = effective_rows(independent) / len(replicates)
+        notes += (
+            f"the variance rests on about {rows:.2g} rows of each replicate: intervals are widened"
+            " by the effect of one more such row, and are conservative",
+        )
+    indices = {
+        kind: {label: widened(estimate, more) for label, estimate in values.items()}
+        for kind, values in found.items()
+    }
+    noise = indices.pop(_NOISE, {}).get("")
+    inert = [name for name, total in indices[ST].items() if total.value == 0]
+    if inert:
+        notes += (f"no effect in any row, hence no interval: {', '.join(inert)}",)
+    alike = [name for name, one in indices[ST].items() if not (name in inert or one.has_interval)]
+    if alike and given:
+        notes += (f"the same ST in each replicate, hence no interval: {', '.join(alike)}",)
+    return Indices(indices, notes, noise=noise)
+
+
+def _parameters(blocks: Sequence[str]) -> list[str]:
+    return [label.removeprefix("AB_") for label in blocks if label.startswith("AB_")]
+
+
+def _estimates(blocks: Sequence[str], y: Floats) -> Values:
+    """Return each index from groups y, shape (n, blocks) or (n, blocks, e)."""
+    block = dict(zip(blocks, np.moveaxis(y, 1, 0), strict=True))
+    a, b, names = block["A"], block["B"], _parameters(blocks)
+    found = {
+        S1: {name: first_order(a, block[f"AB_{name}"], b) for name in names},
+        ST: {name: total_order(a, block[f"AB_{name}"], b) for name in names},
+    }
+    if NOISE in block:
+        found[_NOISE] = {"": total_order(a, block[NOISE], b)}
+    if any(label.startswith("BA_") for label in block):
+        found[S2] = {
+            f"{one},{other}": second_order(
+                a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b
+            )
+            for one, other in combinations(names, 2)
+        }
+    return found
+
+
+def first_order(a: Floats, ab: Floats, b: Floats) -> float:
+    """Return S1 from the blocks A, AB_i and B.
+
+    The mean product of B and AB_i, which share input i, over the variance of these rows (Janon et
+    al. 2014). The product of A and B, of mean zero, is a control variate: by chance, B correlates
+    with AB_i as far as it does with A and A is like AB_i, by 1 - ST (Glen & Isaacs 2012).
+    """
+    a, ab, b = (one - one.mean(axis=0) for one in (a, ab, b))
+    apart, spread = np.mean((a - ab) ** 2, axis=0) / 2, np.var(np.r_[a, ab], axis=0)
+    alike = 1 - np.divide(apart, spread, out=np.zeros_like(apart), where=spread > 0)
+    return _share(np.mean(b * (ab - alike * a), axis=0), b, ab)
+
+
+def total_order(a: Floats, ab: Floats, b: Floats) -> float:
+    """Return ST from the blocks A, AB_i and B: Jansen (1999)."""
+    return _share(0.5 * np.mean((a - ab) ** 2, axis=0), a, b)
+
+
+def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
+    """Return S2 from the blocks A, AB_i, AB_j, BA_i and B: Saltelli (2002)."""
+    parts = (ba * ab_other - a * b, b * (ab - a), b * (ab_other - a))
+    both, one, other = (_share(np.mean(part, axis=0), a, b) for part in parts)
+    return both - one - other
+
+
+def _share(part: Floats, a: Floats, b: Floats) -> float:
+    """Return a part of the variance over all of it; 0 where there is none but by rounding."""
+    variance = np.var(np.r_[a, b], axis=0).sum()
+    return float(part.sum() / variance) if variance > np.finfo(float).eps else 0.0
+
+
+def pilot(sample: Sample) -> dict[IndexKind, float]:
+    """Return the largest standard deviation, over inputs, of a group's share in S1 and in ST.
+
+    Parameters
+    ----------
+    sample : Sample
+        A few groups of a crossed design, of which some are whole.
+
+    Returns
+    -------
+    dict of IndexKind to float
+    """
+    y = sample.grouped[sample.whole]
+    block = dict(zip(sample.blocks, ((y - y.mean()) / y.std()).T, strict=True))
+    mixed = [block[f"AB_{name}"] for name in _parameters(sample.blocks)]
+    a, b = block["A"], block["B"]
+    spread: dict[IndexKind, list[float]] = {S1: [], ST: []}
+    for ab in mixed:
+        apart = (a - ab) ** 2 / 2
+        product = b * (ab - (1 - apart.mean()) * a)
+        # A ratio of means, whose error is that of a difference.
+        spread[S1].append(np.std(product - product.mean() * (b**2 + ab**2) / 2))
+        spread[ST].append(np.std(apart))
+    return {kind: max(of) for kind, of in spread.items()}

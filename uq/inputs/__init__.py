@@ -1,1 +1,0 @@
-"""What is uncertain: laws, dependence between inputs, observed data."""

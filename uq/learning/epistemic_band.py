@@ -1,0 +1,61 @@
+"""How the probability of an end spreads over what units share, as the inspections leave it."""
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.scaling import inputs_of
+from uq.contract import Floats
+from uq.learning.integrated_input import free_scales
+from uq.learning.posterior_inputs import quantiles
+from uq.result.element import Element
+from uq.result.nesting import levels_of
+from uq.result.weights import INTEGRATED, WEIGHT, WORLDS
+from uq.sampling.levels import SHARED
+
+ENDS = (0.025, 0.975)
+
+
+def over_shared(ds: xr.Dataset, element: Element, seen: float, time: float) -> dict[float, float]:
+    """Return the 95 % range of P(T < time) given T > `seen`, of a unit never inspected.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of `uq.update`.
+    element : Element
+        A life of its rows.
+    seen, time : float
+        In the unit of the life.
+
+    Returns
+    -------
+    dict of float to float
+        Probability -> quantile over what units share. Empty unless that is one integrated input
+        that scales this life, and no row is censored too early: only then does each of its values
+        give the probability without the noise of a few units.
+    """
+    name = ds.attrs[INTEGRATED]
+    if not name or ds.attrs[WORLDS] > 1 or levels_of(ds)[name] != SHARED:
+        return {}
+    exponent = free_scales(inputs_of(ds), element.declared).get(name)
+    if exponent is None:
+        return {}
+    shared, weights = ds[name].values, ds[WEIGHT].values
+    longer = shared**exponent
+    latest = time * longer / longer.min()
+    if (element.censored & (element.values < latest)).any():
+        return {}
+    known = element.present
+    lives = element.values[known] / longer[known]  # with a shared input of 1
+    before, by = (_below(lives, weights[known], at / longer) for at in (seen, time))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ended = (by - before) / (1 - before)
+    runs = before < 1
+    return quantiles(ended[runs], weights[runs] * (1 - before[runs]), ENDS)
+
+
+def _below(values: Floats, weights: Floats, at: Floats) -> Floats:
+    """Return the share of weighted values below others."""
+    order = np.argsort(values)
+    share = np.append(0.0, np.cumsum(weights[order]) / weights.sum())
+    return np.asarray(share[np.searchsorted(values[order], at, side="left")])

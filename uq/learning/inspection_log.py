@@ -1,0 +1,91 @@
+"""All inspections of a result, each used once."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import xarray as xr
+
+from uq.errors import InputError
+from uq.files.paths import node
+from uq.learning.inspections import Inspection, Kind, read_inspections, read_tables
+from uq.learning.posterior_result import inspections_of
+from uq.text.literals import read_toml
+
+Given = str | Path | Sequence[Mapping[str, object]]
+"""A file of inspections, CSV or TOML, or tables with the same columns."""
+
+_HEADER = re.compile(r"\s*\[\[\s*[\"']?inspection[\"']?\s*\]\]")
+
+
+def read(given: Given) -> list[Inspection]:
+    """Return the inspections of a file or of tables."""
+    if isinstance(given, str | Path) and Path(given).suffix.lower() != ".toml":
+        return read_inspections(Path(given))
+    if isinstance(given, str | Path):
+        found = read_tables(*_tables(Path(given)))
+    else:
+        found = read_tables(given)
+    if not found:
+        raise InputError("there is no inspection")
+    return found
+
+
+def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
+    """Return the tables ``[[inspection]]`` of a TOML file, and where each is written."""
+    if what := node(path):
+        raise InputError(f"{path}: is {what}, not a file")
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+        data = read_toml(text)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (ValueError, OverflowError, RecursionError) as error:
+        raise InputError(f"{path}: not TOML: {error}") from None
+    tables = data.get("inspection", [])
+    if list(data) != ["inspection"] or not isinstance(tables, list):
+        raise InputError(f"{path}: must consist of tables [[inspection]]")
+    if not all(isinstance(one, dict) for one in tables):
+        raise InputError(f"{path}: must consist of tables [[inspection]]")
+    begin = [n for n, line in enumerate(text.splitlines(), start=1) if _HEADER.match(line)]
+    if len(begin) == len(tables):
+        return tables, [f"{path}, inspection at line {number}" for number in begin]
+    return tables, [f"{path}: inspection {number + 1}" for number in range(len(tables))]
+
+
+def all_of(ds: xr.Dataset, new: Sequence[Inspection]) -> list[Inspection]:
+    """Return the inspections that a result has been updated with, and new ones.
+
+    Raises
+    ------
+    InputError
+        One line for each that has been used.
+    """
+    used, faults = inspections_of(ds), []
+    count = len(used)
+    for one in new:
+        if one in used:
+            place = used.index(one)
+            by = "this result" if place < count else used[place].where
+            faults.append(
+                f"{one.where} (unit {one.unit}, {one.output}, {one.kind}): already used by {by}; a"
+                " measurement counts once"
+            )
+        used.append(one)
+    faults += _contradictions(used)
+    if faults:
+        raise InputError(*faults)
+    return used
+
+
+def _contradictions(inspections: Sequence[Inspection]) -> Iterator[str]:
+    """Yield which lives had ended before they were seen running."""
+    ended = [one for one in inspections if one.kind is Kind.ENDED]
+    for one in inspections:
+        for end in ended:
+            same = (one.unit, one.output) == (end.unit, end.output)
+            if same and one.kind is Kind.SURVIVED and (one.time or 0.0) >= (end.time or 0.0):
+                yield (
+                    f"{one.where} (unit {one.unit}, {one.output}): survived until {one.time:g}, but"
+                    f" had ended by {end.time:g} ({end.where})"
+                )

@@ -1,0 +1,98 @@
+"""The input that only scales lives and is integrated on a grid, not drawn."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.assess.row_inputs import Inputs, inputs_of
+from uq.assess.scaling import scalers
+from uq.contract import Floats, Output
+from uq.learning.dependent_outputs import dependent_outputs
+from uq.learning.observables import Look
+from uq.result.nesting import levels_of
+from uq.sampling.levels import OWN, SHARED
+from uq.sampling.truncation import ppf_within
+
+
+@dataclass(frozen=True)
+class Scale:
+    """An input that only scales lives, and is integrated on a grid.
+
+    Attributes
+    ----------
+    name : str
+    level : str
+    exponents : dict of str to float
+        What was inspected -> its exponent.
+    drawn : ndarray, shape (n,)
+        The values of the rows.
+    inputs : Inputs
+    """
+
+    name: str
+    level: str
+    exponents: Mapping[str, float]
+    drawn: Floats
+    inputs: Inputs
+
+    @property
+    def is_own(self) -> bool:
+        """Whether each unit has its own."""
+        return self.level == OWN
+
+    def quantiles(self, probability: Floats) -> Floats:
+        """Return quantiles of its prior."""
+        return ppf_within(self.inputs.laws[self.name], probability, self.inputs.bounds[self.name])
+
+    def longer(self, look: Look, rows: NDArray[np.intp], values: Floats) -> Floats:
+        """Return by which factor lives of some rows are longer with other values, shape (m, g).
+
+        These are the same in all rows, shape (g,), or differ, shape (m, g).
+        """
+        if look.name not in self.exponents:
+            return np.ones((len(rows), values.shape[-1]))
+        return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
+
+
+def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> tuple[Scale | None, tuple[str, ...]]:
+    """Return the input to integrate, and sentences on those that do too much to be integrated.
+
+    A shared one first, of these the one that scatters lives most. One that scales all lives and
+    depths that were inspected, and that no other output depends on: that would keep the values
+    computed with the input as drawn.
+    """
+    inputs, levels = inputs_of(rows), levels_of(rows)
+    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
+    exponents = {look.name: free_scales(inputs, look.declared) for look in scaled}
+    common = set.intersection(*map(set, exponents.values())) if exponents else set()
+    candidates = [name for name in inputs.laws if name in common and levels[name] in (SHARED, OWN)]
+    others = {name: list(dependent_outputs(rows, name)) for name in candidates}
+    why = [
+        f"{name} is not integrated: {' and '.join(those)}"
+        f" {'depends' if len(those) == 1 else 'depend'} on it otherwise."
+        for name, those in others.items()
+        if those
+    ]
+    free = [name for name in candidates if not others[name]]
+    if not free:
+        return None, tuple(why)
+    first = next(iter(exponents.values()))
+
+    def spread(name: str) -> float:
+        return float(abs(first[name]) * np.log(inputs.values[name]).std())
+
+    best = max(free, key=lambda name: (levels[name] == SHARED, spread(name)))
+    of = {name: one[best] for name, one in exponents.items()}
+    return Scale(best, levels[best], of, inputs.values[best], inputs), tuple(why)
+
+
+def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:
+    """Return the exponent of each input that only scales lives and is independent of all others."""
+    return {
+        name: exponent
+        for name, exponent in scalers(inputs, output).items()
+        if inputs.laws[name].times is None and name not in inputs.correlated
+    }

@@ -1,0 +1,277 @@
+"""What inspections looked at, in the rows of a result."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Mask, Output
+from uq.errors import InputError, choices, nearest
+from uq.learning.inspections import OUTCOMES, Inspection, Kind
+from uq.learning.likelihood import log_likelihood, log_outcome
+from uq.learning.worn_depth import WornDepths
+from uq.result.element import Element, places
+from uq.result.elements import elements_of
+from uq.result.variables import outputs_of
+from uq.text.element_names import same_name
+
+_REACH = 3.0  # standard errors of a measurement
+_SAME = 0.01  # relative difference of likelihoods that tell as much
+_FAR = 1e6  # times the last declared depth
+
+
+@dataclass(frozen=True)
+class Look:
+    """One quantity that can be inspected, in all rows of a result.
+
+    Attributes
+    ----------
+    name : str
+    declared : Output
+        The output, or the lives until the depths worn.
+    values : ndarray, shape (n,)
+        Of an output; of a censored life its lower bound. Empty for a depth.
+    depths : WornDepths or None
+        Of a depth, with censored lives as infinite.
+    censored : ndarray of bool, shape (n,)
+        Where a life is only bounded; of a depth, where one of the lives is.
+    time_unit : str
+        Of the time of an inspection: that of the life; "" where there is none.
+    """
+
+    name: str
+    declared: Output
+    values: Floats
+    depths: WornDepths | None
+    censored: Mask
+    time_unit: str
+
+    @property
+    def unit(self) -> str:
+        """Of its values."""
+        return self.declared.unit
+
+    def truth(self, time: float | None, rows: NDArray[np.intp], longer: Floats) -> Floats:
+        """Return what an inspection would have found without error.
+
+        Parameters
+        ----------
+        time : float or None
+            Of the inspection, in `time_unit`.
+        rows : ndarray of int, shape (n,)
+        longer : ndarray, shape (n, g)
+            Factors by which lives of these rows are longer than computed.
+
+        Returns
+        -------
+        ndarray, shape (n, g)
+        """
+        if self.depths is not None:
+            assert time is not None
+            chosen = WornDepths(self.depths.depths, self.depths.lives[rows])
+            return chosen.at(time / longer)
+        values = self.values[rows, None]
+        return (
+            values * longer if self.declared.is_lifetime else np.broadcast_to(values, longer.shape)
+        )
+
+    def log_likelihood(self, one: Inspection, truth: Floats, model_cv: float) -> Floats:
+        """Return the logarithm of the likelihood of an inspection, given `truth`."""
+        if one.kind in OUTCOMES:
+            return log_outcome(one.kind, truth, np.full(truth.shape, one.time))
+        if self.declared.is_angle:
+            truth = self._angle(one, truth)
+        return log_likelihood(one, truth, model_cv)
+
+    def _angle(self, one: Inspection, truth: Floats) -> Floats:
+        """Return an angle on the turn of the value measured; of a limit, its magnitude."""
+        if one.kind is not Kind.MEASURED or one.value is None:
+            return np.abs(truth)
+        turn = 2 * np.pi if self.unit == "rad" else 360.0
+        return one.value + (truth - one.value + turn / 2) % turn - turn / 2
+
+    def bounded(
+        self, one: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
+    ) -> Mask:
+        """Return where only bounds of the truth are known that leave the likelihood open, (n, g).
+
+        A depth at which wear stops lies between two declared ones, and one of a censored life
+        anywhere beyond those that are reached.
+        """
+        if self.depths is not None:
+            assert one.time is not None
+            least = self.truth(one.time, rows, longer)
+            both = (least, np.broadcast_to(self._most(rows)[:, None], least.shape))
+            first, last = (np.exp(self.log_likelihood(one, end, model_cv)) for end in both)
+            differ = np.abs(first - last) > _SAME * np.maximum(first, last)
+            return differ & self.open_depth(one.time, rows, longer)
+        most = (one.time or 0.0) if one.kind in OUTCOMES else reach(one)
+        return self.censored[rows, None] & (self.values[rows, None] * longer < most)
+
+    def open_depth(self, time: float, rows: NDArray[np.intp], longer: Floats) -> Mask:
+        """Return where only bounds of the depth at a time are known, shape (n, g)."""
+        assert self.depths is not None
+        lives = self.depths.lives[rows]
+        last = np.where(np.isfinite(lives), lives, 0.0).max(axis=1, keepdims=True)
+        return (time / longer > last) & self.depths.settled[rows, None]
+
+    def _most(self, rows: NDArray[np.intp]) -> Floats:
+        """Return what the depths of rows stay below, as far as their lives tell, shape (n,)."""
+        assert self.depths is not None
+        beyond = np.append(self.depths.depths, _FAR * self.depths.depths[-1])
+        reached = np.isfinite(self.depths.lives[rows]).sum(axis=1)
+        return np.where(self.censored[rows], beyond[-1], beyond[reached])
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """What of a result can be inspected.
+
+    Attributes
+    ----------
+    known : dict of str to Element
+    depths : dict of str to Look
+    """
+
+    known: Mapping[str, Element]
+    depths: Mapping[str, Look]
+
+    @property
+    def time_units(self) -> list[str]:
+        """Of lives, each once."""
+        return list({one.units: None for one in self.known.values() if one.is_lifetime})
+
+
+def quantities_of(ds: xr.Dataset) -> Quantities:
+    """Return what can be inspected of a result, or of some rows of one."""
+    known = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
+    return Quantities(known, dict(_depths(ds)))
+
+
+def as_named(quantities: Quantities, one: Inspection) -> Inspection:
+    """Return an inspection with the name that the result has for what it looked at."""
+    name = same_name(one.output, [*quantities.known, *quantities.depths])
+    return one if name == one.output else replace(one, output=name)
+
+
+def look_at(quantities: Quantities, one: Inspection) -> Look:
+    """Return what an inspection looked at.
+
+    Parameters
+    ----------
+    quantities : Quantities
+    one : Inspection
+
+    Returns
+    -------
+    Look
+
+    Raises
+    ------
+    InputError
+        When the result has no such quantity, or it cannot be inspected in this way.
+    """
+    known, depths = quantities.known, quantities.depths
+    if one.output in known:
+        element, units = known[one.output], quantities.time_units
+        _check_output(element, one, units)
+        unit = element.units if element.is_lifetime else units[0] if len(units) == 1 else ""
+        return Look(one.output, element.declared, element.values, None, element.censored, unit)
+    if one.output in depths:
+        if one.kind in OUTCOMES:
+            raise InputError(
+                f"output = {one.output}: a depth does not end; name a life (allowed:"
+                f" {choices(n for n, e in known.items() if e.is_lifetime)})"
+            )
+        if one.time is None:
+            unit = depths[one.output].time_unit
+            raise InputError(f"time is missing: when {one.output} was inspected [{unit}]")
+        found = depths[one.output]
+        _check_reach(found, one)
+        return found
+    names = [*known, *depths]
+    raise InputError(
+        f"output = {one.output}: no such output{nearest(one.output, names)} (allowed:"
+        f" {choices(names)})"
+    )
+
+
+def _numbers(ds: xr.Dataset) -> list[str]:
+    return [name for name, output in outputs_of(ds).items() if not output.is_category]
+
+
+def _check_output(element: Element, one: Inspection, time_units: Sequence[str]) -> None:
+    if one.kind in OUTCOMES and not element.is_lifetime:
+        raise InputError(
+            f"kind = {one.kind}: {one.output} is not a life; write measured, below or above"
+        )
+    if one.time is None or one.kind in OUTCOMES:
+        return
+    if element.is_lifetime:
+        raise InputError(
+            f"time = {one.time:g}: leave it out where a life is {one.kind}: the life is the value"
+        )
+    if len(time_units) > 1:
+        raise InputError(
+            f"time = {one.time:g}: leave it out: {one.output} is not a life, and lives are in"
+            f" several units ({choices(time_units)})"
+        )
+
+
+def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
+    """Yield the depths that the lives of a result are declared for, such as ``depth[site=left]``.
+
+    A dimension with a unit, along which an output is a life, is a depth. Of several outputs with
+    the same dimensions the first counts.
+    """
+    seen = set()
+    for output, declared in outputs_of(ds).items():
+        if not declared.is_lifetime or not declared.dims:
+            continue
+        depth = declared.dims[-1]
+        axis = ds[depth]
+        if "units" not in axis.attrs or not np.issubdtype(axis.dtype, np.number):
+            continue
+        elements = list(elements_of(ds, [output], every=True))
+        others = {dim: ds[dim].values for dim in declared.dims[:-1]}
+        size = axis.size
+        for number, (name, _, _) in enumerate(places(depth, others)):
+            if name in seen:
+                continue
+            seen.add(name)
+            lives = elements[number * size : (number + 1) * size]
+            cut = np.stack([one.censored for one in lives], axis=1)
+            times = np.stack([one.values for one in lives], axis=1)
+            order = np.argsort(axis.values)
+            worn = WornDepths(
+                axis.values[order].astype(float), np.where(cut, np.inf, times)[:, order]
+            )
+            shown = Output(str(axis.attrs["units"]), declared.meaning, scales=declared.scales)
+            censored = np.asarray(cut.any(axis=1))
+            yield name, Look(name, shown, np.empty(0), worn, censored, declared.unit)
+
+
+def reach(one: Inspection) -> float:
+    """Return the largest value that an inspection can tell from larger ones."""
+    if one.detection_90 is not None:
+        return one.detection_90
+    assert one.value is not None
+    if one.kind is not Kind.MEASURED:
+        return one.value
+    if one.cv is not None:
+        return one.value * float(np.exp(_REACH * one.cv))
+    return one.value + _REACH * (one.sd or 0.0)
+
+
+def _check_reach(look: Look, one: Inspection) -> None:
+    """Refuse a depth beyond the last one that the result knows of."""
+    assert look.depths is not None
+    most, last = reach(one), float(look.depths.depths[-1])
+    if most > last:
+        raise InputError(
+            f"value = {one.value or most:g}: with its error it reaches {most:.3g} {look.unit},"
+            f" beyond the last depth of the result, {last:g} {look.unit}; add a deeper one to the"
+            " study's depths"
+        )

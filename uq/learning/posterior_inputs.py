@@ -1,0 +1,179 @@
+"""Inputs before and after the inspections, and which of them the inspections confound."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.assess.posterior_scale import learnt_input, moments_of_input
+from uq.assess.row_inputs import inputs_of
+from uq.contract import Floats
+from uq.learning.importance import importance_of
+from uq.learning.posterior_result import as_unit, prior_of
+from uq.result.elements import analysis_of, replicates_of
+from uq.result.nesting import levels_of
+from uq.result.weights import WEIGHT
+from uq.sampling.levels import SHARED
+from uq.stats.estimate import Estimate
+from uq.stats.weighted_means import moments_of_rows, trusted
+
+QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
+
+CONFOUNDED = 0.3
+"""Correlation of ranks, in magnitude, from which a pair is reported."""
+
+_FEW_ROWS = "it rests on a few rows, and more hardly help; read the quantiles"
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Mean, standard deviation and quantiles of an input.
+
+    Attributes
+    ----------
+    mean, sd : Estimate
+        Of the posterior with intervals, which say how well the rows determine them; missing, with
+        the reason, where Pareto k of weight times value, or times its square, is too large.
+    quantiles : dict of float to float
+    """
+
+    mean: Estimate
+    sd: Estimate
+    quantiles: dict[float, float]
+
+
+@dataclass(frozen=True)
+class InputLearnt:
+    """An input before and after the inspections.
+
+    Attributes
+    ----------
+    name : str
+        Of an input that a unit has of its own: ``initial_gap[unit=A1]``.
+    units : str
+    prior, posterior : Spread
+    """
+
+    name: str
+    units: str
+    prior: Spread
+    posterior: Spread
+
+    @property
+    def unit(self) -> str:
+        """The label of the unit that has it, "" for one that is shared."""
+        return self.name.partition("[unit=")[2].removesuffix("]")
+
+
+@dataclass(frozen=True)
+class Confounded:
+    """Two inputs whose ranks are correlated by the inspections.
+
+    Attributes
+    ----------
+    first, second : str
+    correlation : float
+        Of their ranks, given the inspections.
+    before : float
+        The same of the rows.
+    """
+
+    first: str
+    second: str
+    correlation: float
+    before: float
+
+
+def inputs_learnt(ds: xr.Dataset) -> Iterator[InputLearnt]:
+    """Yield the shared inputs of a posterior, then those of each inspected unit."""
+    levels, before = levels_of(ds), prior_of(ds)
+    asked = tuple(sorted({*QUANTILES, *analysis_of(ds).quantiles}))
+    counted = importance_of(before).of_rows
+    prior = {name: _before(before[name].values, counted, asked) for name in levels}
+    for name in (one for one, level in levels.items() if level == SHARED):
+        after = _after(ds, name, asked)
+        yield InputLearnt(name, str(ds[name].attrs["units"]), prior[name], after)
+    for label in map(str, ds["inspected"].values):
+        unit = as_unit(ds, label)
+        for name in (one for one, level in levels.items() if level != SHARED):
+            after = _after(unit, name, asked)
+            units = str(ds[name].attrs["units"])
+            yield InputLearnt(f"{name}[unit={label}]", units, prior[name], after)
+
+
+def confounded(ds: xr.Dataset) -> list[Confounded]:
+    """Return the pairs of inputs that the inspections tie, the most correlated first.
+
+    Shared inputs, and in each inspected unit those with its own.
+    """
+    levels, before = levels_of(ds), prior_of(ds)
+    shared = [name for name, level in levels.items() if level == SHARED]
+    found = _pairs(ds, before, shared, set(shared), "")
+    for label in map(str, ds["inspected"].values):
+        unit = as_unit(ds, label)
+        found += _pairs(unit, before, list(levels), set(levels) - set(shared), label)
+    return sorted(found, key=lambda one: -abs(one.correlation))
+
+
+def _pairs(
+    ds: xr.Dataset, before: xr.Dataset, names: list[str], wanted: set[str], label: str
+) -> list[Confounded]:
+    """Return the pairs of which one at least is wanted."""
+    if len(names) < 2:
+        return []
+    after = _correlations([ds[name].values for name in names], ds[WEIGHT].values)
+    first = _correlations([before[name].values for name in names], importance_of(before).of_rows)
+    called = {name: f"{name}[unit={label}]" if label and name in wanted else name for name in names}
+    return [
+        Confounded(called[one], called[other], float(after[i, j]), float(first[i, j]))
+        for i, one in enumerate(names)
+        for j, other in enumerate(names[:i])
+        if {one, other} & wanted and abs(after[i, j]) >= CONFOUNDED > abs(first[i, j])
+    ]
+
+
+def _correlations(columns: list[Floats], weights: Floats) -> Floats:
+    """Return the rank correlations of weighted values."""
+    ranks = np.stack([_ranks(*_ascending(column, weights)) for column in columns])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        covariance = np.cov(ranks, aweights=weights)
+        size = np.sqrt(np.diag(covariance))
+        return np.asarray(covariance / np.outer(size, size))
+
+
+def _ranks(order: NDArray[np.intp], share: Floats) -> Floats:
+    found = np.empty(len(share))
+    found[order] = share
+    return found
+
+
+def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """Return the order of values, and the share of the weight up to the middle of each."""
+    order = np.argsort(values, kind="stable")
+    worth = weights[order] / weights.sum()
+    return order, np.cumsum(worth) - worth / 2
+
+
+def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread:
+    mean = float(np.average(values, weights=weights))
+    sd = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
+    return Spread(Estimate(mean), Estimate(sd), quantiles(values, weights, asked))
+
+
+def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
+    values, weights = ds[name].values, ds[WEIGHT].values
+    part, of_rows, within = replicates_of(ds), values, np.zeros(len(values))
+    if name == learnt_input(ds):
+        of_rows, within = moments_of_input(ds, inputs_of(ds))
+    mean, sd = moments_of_rows(of_rows, weights, part, within)
+    mean = trusted(mean, weights * of_rows, part, hopeless=_FEW_ROWS)
+    sd = trusted(sd, weights * (of_rows**2 + within), part, hopeless=_FEW_ROWS)
+    return Spread(mean, sd, quantiles(values, weights, asked))
+
+
+def quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:
+    """Return the quantiles asked for of weighted values."""
+    order, share = _ascending(values, weights)
+    return dict(zip(asked, np.interp(asked, share, values[order]).tolist(), strict=True))

@@ -1,0 +1,302 @@
+"""The posterior as a result: its rows weighted, with the inspections inside."""
+
+import json
+from collections.abc import Sequence
+from hashlib import sha256
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtri
+
+from uq.assess.posterior_scale import SCORES, terms_at
+from uq.assess.row_inputs import inputs_of
+from uq.contract import Floats
+from uq.errors import InputError, choices, first_fault_alone, nearest
+from uq.learning.inspections import COLUMNS, Inspection, read_tables
+from uq.learning.integrated_input import free_scales
+from uq.learning.posterior import Posterior, Weighted
+from uq.result.elements import weights_of
+from uq.result.nesting import nesting_of
+from uq.result.variables import error_name, outputs_of
+from uq.result.weights import (
+    INPUT,
+    INSPECTIONS,
+    INTEGRATED,
+    LAW_FOLLOWS,
+    LAW_PULLS,
+    LAW_SCORES,
+    LEDGER,
+    MODEL_ERROR,
+    MOST,
+    NEW_ROWS,
+    OF_UNIT,
+    ONLY_INSPECTED,
+    ROWS,
+    SCALE_SCORES,
+    SCORE,
+    UNIT_MOST,
+    UNIT_PULLS,
+    UNIT_SCALE,
+    UNIT_SCORES,
+    UNIT_WEIGHT,
+    WEIGHT,
+    WORLDS,
+    has_weights,
+)
+from uq.sampling.truncation import cdf_within
+from uq.stats.importance_weights import Smoothed
+from uq.text.numbers import counted
+
+PRIOR = "prior_"
+_LAW = (LAW_PULLS, UNIT_PULLS, LAW_FOLLOWS, LAW_SCORES)
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
+_NESTING = ("world", "unit", "repeat")
+_COMPRESSED = {"zlib": True, "complevel": 1}
+"""Most rows stand for one of the inspected units, and say the same of all others."""
+
+
+def as_result(
+    rows: xr.Dataset,
+    found: Posterior,
+    inspections: Sequence[Inspection],
+    model_cv: float,
+    new_rows: int = 0,
+) -> xr.Dataset:
+    """Return a result with what inspections leave of its rows.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    found : Posterior
+        What the inspections leave of them.
+    inspections : sequence of Inspection
+    model_cv : float
+    new_rows : int
+        How many new rows were allowed, 0 if none was needed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``weight`` of each row, as a unit that was not inspected; ``unit_weight`` (inspected,
+        sample), as each inspected one. An integrated input has the values that the inspections
+        leave, and the lives that it scales are those for these values; as computed they are kept
+        with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
+        of each inspected unit, one value of its law in each row; ``unit_scale_scores``
+        (inspected, sample, score): that law. ``learnt_law_pulls``, ``learnt_law_follows``
+        (sample, term), ``unit_law_pulls`` (inspected, sample, term), ``learnt_law_scores``
+        (score,): what the rows say together of one that all units share
+        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of each.
+    """
+    if taken := [name for name in _WEIGHTS if name in rows.variables]:
+        raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
+    ds = rows
+    if found.scale is not None:
+        assert found.any_unit.scale is not None
+        replaced = _rescaled(rows, found.scale.name, found.any_unit.scale)
+        kept = {f"{PRIOR}{name}": _as_prior(rows[name]) for name in replaced}
+        ds = rows.assign(replaced | kept)
+    n = rows.sizes["sample"]
+    meaning = "how much the row counts, given the inspections"
+    attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
+    both = ("inspected", "sample")
+    most = [one.weights.most for one in _units(found)]
+    of_units = np.stack([_spread_out(one, one.weights.weights, n, 0.0) for one in _units(found)])
+    variables = {
+        WEIGHT: ("sample", found.any_unit.weights.weights, attrs),
+        UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
+        UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
+    }
+    if found.scale is not None:
+        scales = [_spread_out(one, one.scale, n, np.nan) for one in _units(found)]
+        of_scale = {"role": WEIGHT, "units": rows[found.scale.name].attrs["units"]}
+        of_scale["long_name"] = f"{found.scale.name} of the inspected unit"
+        variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
+        laws = [_spread_out(one, one.scores, n, SCORES) for one in _units(found)]
+        meaning = f"normal score before, of {found.scale.name} of the inspected unit"
+        of_law = attrs | {"long_name": meaning}
+        variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
+        variables |= _of_law(found, attrs)
+        meaning = "normal score given the inspections and the rest of the row"
+        ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
+    ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
+    units, count = len(found.units), len(inspections)
+    given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
+    if found.only_inspected:
+        ds = ds.assign_attrs({ONLY_INSPECTED: found.only_inspected})
+    found_attrs = {
+        "title": f"{_prior_title(rows)}, {given}",
+        INTEGRATED: found.scale.name if found.scale else "",
+        INSPECTIONS: json.dumps([as_table(one) for one in inspections]),
+        LEDGER: json.dumps([digest(one) for one in inspections]),
+        MODEL_ERROR: float(model_cv),
+        NEW_ROWS: new_rows,
+        WORLDS: len(found.evidence.log_worlds),
+        "prior_title": _prior_title(rows),
+    }
+    for variable in ds.variables.values():
+        variable.encoding["_FillValue"] = None
+    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS} & {*ds.variables}:
+        ds[name].encoding |= _COMPRESSED
+    return ds.assign_attrs(found_attrs)
+
+
+def _of_law(found: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
+    """Return what the rows say together of an input that all units share."""
+    if (law := found.law) is None:
+        return {}
+    assert found.scale is not None
+    of_pulls = attrs | {"long_name": f"pull on terms of the law of {found.scale.name}"}
+    pulls = found.pulls
+    of_pulls[ROWS] = len(pulls)
+    of_terms = attrs | {"long_name": "terms in the row"}
+    of_scores = attrs | {"long_name": f"normal score before, of {found.scale.name}"}
+    units = np.stack([one.without_own(pulls) for one in _units(found)])
+    return {
+        LAW_PULLS: (("sample", "term"), found.any_unit.without_own(pulls), of_pulls),
+        UNIT_PULLS: (("inspected", "sample", "term"), units, of_pulls),
+        LAW_FOLLOWS: (("sample", "term"), found.any_unit.terms, of_terms),
+        LAW_SCORES: (SCORE, law.scores, of_scores),
+    }
+
+
+def prior_of(ds: xr.Dataset) -> xr.Dataset:
+    """Return the rows of a posterior as they were before the inspections."""
+    if not has_weights(ds):
+        return ds
+    kept = [str(name) for name in ds.data_vars if ds[name].attrs.get("role") == "prior"]
+    back = {}
+    for name in kept:
+        own = name.removeprefix(PRIOR)
+        back[own] = ds[own].copy(data=ds[name].values)
+    gone = [*kept, *(one for one in (*_WEIGHTS, "inspected", SCORE) if one in ds)]
+    found = ds.assign(back).drop_vars(gone)
+    attrs = {name: value for name, value in ds.attrs.items() if name not in _OF_POSTERIOR}
+    found.attrs = attrs | {"title": _prior_title(ds)}
+    return found
+
+
+_OF_POSTERIOR = (
+    *(INTEGRATED, INSPECTIONS, LEDGER, MODEL_ERROR, NEW_ROWS),
+    *(WORLDS, ONLY_INSPECTED, "prior_title"),
+)
+
+
+def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
+    """Return the rows of a posterior as those of one inspected unit.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of `uq.update`.
+    label : str
+        Of the unit, as in the inspections.
+
+    Returns
+    -------
+    xarray.Dataset
+        A result with weights, which every reader of results takes.
+
+    Raises
+    ------
+    InputError
+        When the rows have no weights, or no such unit was inspected.
+    """
+    if not has_weights(ds):
+        raise InputError("a unit can be named only of a result of 'uq update'")
+    known = [str(one) for one in ds["inspected"].values]
+    if label not in known:
+        raise InputError(
+            f"unit '{label}' was not inspected{nearest(label, known)} (allowed: {choices(known)})"
+        )
+    place = known.index(label)
+    rows, name = prior_of(ds), ds.attrs[INTEGRATED]
+    if name:
+        scale, drawn = ds[UNIT_SCALE].values[place], rows[name].values
+        rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
+        if UNIT_SCORES in ds:  # posteriors of older versions have none
+            law = ds[UNIT_SCORES]
+            attrs = law.attrs | {INPUT: name}
+            rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
+        if LAW_PULLS in ds:
+            rows = rows.assign(_law_of_unit(ds, rows, place))
+    if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
+        # Rows of one sample have nothing in common: each has a value of the integrated input.
+        rows = rows.drop_vars(_NESTING, errors="ignore")
+    weight = ds.variables[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
+    weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
+    attrs = {"title": f"{_prior_title(ds)}, unit {label}", OF_UNIT: label}
+    return rows.assign({WEIGHT: weight}).assign_attrs(attrs)
+
+
+def _law_of_unit(ds: xr.Dataset, rows: xr.Dataset, place: int) -> dict[str, Any]:
+    """Return what the rows of a unit have learnt with all others."""
+    name, law, pulls, inputs = ds.attrs[INTEGRATED], ds[LAW_SCORES], ds[UNIT_PULLS], inputs_of(rows)
+    below = cdf_within(inputs.laws[name], rows[name].values, inputs.bounds[name])
+    follows = terms_at(law.values, ndtri(below))
+    return {
+        LAW_PULLS: (pulls.dims[1:], pulls.values[place], pulls.attrs),
+        LAW_FOLLOWS: (pulls.dims[1:], follows),
+        LAW_SCORES: law,
+    }
+
+
+def inspections_of(ds: xr.Dataset) -> list[Inspection]:
+    """Return the inspections that a posterior rests on."""
+    with first_fault_alone():
+        return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
+
+
+def as_table(one: Inspection) -> dict[str, object]:
+    """Return what is known of an inspection: column -> value."""
+    values = {name: getattr(one, name) for name in COLUMNS}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def digest(one: Inspection) -> str:
+    """Return what identifies a measurement in a ledger."""
+    return sha256(json.dumps(as_table(one), sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _prior_title(ds: xr.Dataset) -> str:
+    return str(ds.attrs.get("prior_title", ds.attrs["title"]))
+
+
+def _units(found: Posterior) -> list[Weighted]:
+    return list(found.units.values())
+
+
+def _spread_out(one: Weighted, values: Floats | None, n: int, other: float | Floats) -> Floats:
+    """Return values of the rows of a unit among all rows."""
+    found = np.full((n, *np.shape(other)), other)
+    if values is not None:
+        found[one.rows] = values
+    return found
+
+
+def _as_prior(variable: xr.DataArray) -> xr.DataArray:
+    about = {"role": "prior", "long_name": f"before the inspections: {variable.attrs['long_name']}"}
+    return variable.assign_attrs(variable.attrs | about)
+
+
+def _rescaled(rows: xr.Dataset, name: str, values: Floats) -> dict[str, xr.DataArray]:
+    """Return an input with other values, those equal to it, and the lives that they scale."""
+    inputs, known = inputs_of(rows), outputs_of(rows)
+    members = (name, *(one for one, leader in inputs.tied.items() if leader == name))
+    found = {one: rows[one].copy(data=values) for one in members}
+    ratio = values / rows[name].values
+    for output, declared in known.items():
+        exponent = free_scales(inputs, declared).get(name)
+        for one in (output, error_name(output)) if exponent else ():
+            if one in known:
+                of = rows[one]
+                factor = (ratio**exponent).reshape(-1, *[1] * (of.ndim - 1))
+                found[one] = of.copy(data=of.values * factor)
+    return found
+
+
+def unit_quality(ds: xr.Dataset) -> list[Smoothed]:
+    """Return the weights of the rows of a posterior, as any unit and as each inspected one."""
+    units = [as_unit(ds, str(label)) for label in ds["inspected"].values]
+    return [found for one in (ds, *units) if (found := weights_of(one)) is not None]

@@ -1,0 +1,197 @@
+"""Remaining lives: of each unit still running, and of units never inspected."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.conditional_survival import Surviving
+from uq.assess.population import Population
+from uq.assess.scaling import population
+from uq.contract import Output
+from uq.errors import InputError, choices
+from uq.learning.epistemic_band import over_shared
+from uq.learning.inspections import Inspection, Kind
+from uq.learning.observables import look_at, quantities_of
+from uq.learning.posterior_result import as_unit, inspections_of, prior_of
+from uq.result.elements import Element, analysis_of, replicates_of, shown_outputs
+from uq.result.variables import outputs_of
+from uq.result.weights import ONLY_INSPECTED, WEIGHT
+from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import effective_rows, per_sample
+from uq.stats.intervals import Replicates, replicates_of_some
+from uq.text.quantities import read_threshold
+
+
+def shown_lives(ds: xr.Dataset) -> Iterator[tuple[str, Output]]:
+    """Yield the lives that a result shows and that end, not succeed."""
+    declared = outputs_of(ds)
+    for name in shown_outputs(ds, analysis_of(ds)):
+        if declared[name].is_lifetime and not declared[name].success:
+            yield name, declared[name]
+
+
+def read_times(option: str, texts: Sequence[str], ds: xr.Dataset) -> list[float]:
+    """Return times that an option of the command line gives, with or without a unit.
+
+    Parameters
+    ----------
+    option : str
+        Such as ``--by``.
+    texts : sequence of str
+    ds : xarray.Dataset
+        Whose lives they are times of.
+
+    Raises
+    ------
+    InputError
+        When one is no such time, in a unit that does not fit, or lives are in several units.
+    """
+    if not texts:
+        return []
+    units = list({output.unit: None for _, output in shown_lives(ds)})
+    if len(units) != 1:
+        found = f"lives are in several units ({choices(units)})" if units else "no life is shown"
+        raise InputError(f"{option} {texts[0]}: {found}; name one life in [analysis] outputs")
+    times = [read_threshold(option, text, "a life", units[0]) for text in texts]
+    check_times(times, option)
+    return times
+
+
+def check_times(times: Sequence[float], asked_by: str) -> None:
+    """Refuse times that are negative or not finite."""
+    if wrong := [time for time in times if not 0 <= time < inf]:
+        raise InputError(f"{asked_by}: time = {wrong[0]:g}: must be finite, and 0 or more")
+
+
+PROBABILITIES = (0.05, 0.5, 0.95)
+ANY = ""
+"""A unit that was never inspected."""
+
+_GONE = "hardly any row agrees with its inspections and still runs"
+_LEAST = 1e-3
+
+
+@dataclass(frozen=True)
+class Remaining:
+    """How long a unit still runs, given that it does.
+
+    Attributes
+    ----------
+    unit : str
+        Its label; `ANY` for units never inspected.
+    output : str
+        Which life.
+    units : str
+        CF unit of that life and of all times here.
+    seen : float
+        When it was last seen running; for units never inspected, the latest inspection.
+    runs : Estimate
+        Probability that this life has not ended by then, given the inspections.
+    life : dict of float to Estimate
+        Probability -> quantile of the remaining life, from then on.
+    by : dict of float to Estimate
+        Time from the beginning of the life -> probability that it has ended by then.
+    effective_rows : float
+    over_shared : dict of float to dict of float to float
+        For units never inspected: time -> 2.5 and 97.5 % points, over what units share, of that
+        probability (`uq.learning.epistemic_band`).
+    """
+
+    unit: str
+    output: str
+    units: str
+    seen: float
+    runs: Estimate
+    life: dict[float, Estimate]
+    by: dict[float, Estimate]
+    effective_rows: float
+    over_shared: dict[float, dict[float, float]] = field(default_factory=dict)
+
+
+def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
+    """Yield the remaining lives of units that no inspection has found ended.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of `uq.update`.
+    by : sequence of float
+        Times from the beginning of the life, in its unit; by default the thresholds of the study.
+
+    Raises
+    ------
+    InputError
+        When a time is negative or not finite.
+    """
+    check_times(by, "by")
+    inspections, quantities = inspections_of(ds), quantities_of(prior_of(ds))
+    units = {one: look_at(quantities, one).time_unit for one in inspections}
+    if ONLY_INSPECTED not in ds.attrs:
+        yield from _of_unit(ds, ANY, _last_seen(units), by)
+    for label in map(str, ds["inspected"].values):
+        own = {one: unit for one, unit in units.items() if one.unit == label}
+        if not any(one.kind is Kind.ENDED for one in own):
+            yield from _of_unit(as_unit(ds, label), label, _last_seen(own), by)
+
+
+def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
+    """Return the time of the latest of some inspections in each unit of time."""
+    found: dict[str, float] = {}
+    for one, unit in units.items():
+        if one.time is not None:
+            found[unit] = max(one.time, found.get(unit, 0.0))
+    return found
+
+
+def _of_unit(
+    rows: xr.Dataset, label: str, last_seen: Mapping[str, float], by: Sequence[float]
+) -> Iterator[Remaining]:
+    thresholds = analysis_of(rows).thresholds
+    counted = rows[WEIGHT].values > 0
+    part = replicates_of_some(replicates_of(rows), counted)
+    rows = rows.isel(sample=counted)
+    for element in population(rows, [name for name, _ in shown_lives(rows)]):
+        seen = last_seen.get(element.units, 0.0)
+        times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]
+        found = _of_life(element, part, label, seen, times)
+        later = [time for time in found.by if time > seen and label == ANY]
+        ranges = {time: over_shared(rows, element, seen, time) for time in later}
+        yield replace(found, over_shared={t: one for t, one in ranges.items() if one})
+
+
+def _of_life(
+    element: Element, part: Replicates, label: str, seen: float, times: Sequence[float]
+) -> Remaining:
+    runs = Population(element, part).outliving(seen) if seen > 0 else Estimate(1.0)
+    assert element.weights is not None
+    alive = np.where(element.censored & (element.values <= seen), 0.0, element.above(seen))
+    weights, still = element.weights * alive, alive > 0
+    nothing = Remaining(label, element.name, element.units, seen, runs, {}, {}, 0.0)
+    share = float(weights.sum() / element.weights.sum())
+    if not share > _LEAST:
+        return replace(nothing, runs=Estimate(runs.value, reason=_GONE))
+    running = replace(
+        element,
+        values=np.where(still, element.values, np.nan),
+        censored=element.censored & still,
+        failed=~still,
+        law=None if element.law is None else Surviving(element.law, element.below(seen), seen),
+        weights=weights,
+        most=element.most * still.mean() / share,
+    )
+    of = Population(running, part)
+    return replace(
+        nothing,
+        life={p: _after(seen, of.quantile(p)) for p in PROBABILITIES},
+        by={time: of.below(time) if time > seen else Estimate(0.0) for time in times},
+        effective_rows=effective_rows(per_sample(weights[still], replicates_of_some(part, still))),
+    )
+
+
+def _after(seen: float, life: Estimate) -> Estimate:
+    """Return what remains of a life."""
+    ends = {name: max(getattr(life, name) - seen, 0.0) for name in ("value", "low", "high")}
+    return replace(life, **ends)

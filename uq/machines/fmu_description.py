@@ -1,0 +1,147 @@
+"""What an FMU [1]_ says of itself, read by FMPy: its parameters, outputs and times.
+
+References
+----------
+.. [1] T. Blochwitz et al., "Functional Mockup Interface 2.0: The standard for tool independent
+   exchange of simulation models", Proc. 9th Int. Modelica Conf., 173-184 (2012).
+"""
+
+import re
+from functools import cache
+from math import inf
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import iterparse
+from zipfile import ZipFile
+
+from uq.errors import InputError, described
+from uq.machines.machine_file import file_there
+
+_VERSION = "2.0"
+_UNBOUNDED = 1e300  # written by tools for no bound at all
+
+
+def said_of(path: Path) -> Any:
+    """Return the model description of an FMU, an `fmpy.model_description.ModelDescription`.
+
+    Raises
+    ------
+    InputError
+        When FMPy is not installed, or the file is no FMU that can be simulated here.
+    """
+    file_there(path)
+    return _read(path, stamp_of(path))
+
+
+def stamp_of(path: Path) -> tuple[int, int]:
+    """Return what changes when a file is written again."""
+    found = path.stat()
+    return found.st_mtime_ns, found.st_size
+
+
+@cache
+def _read(path: Path, stamp: tuple[int, int]) -> Any:
+    try:
+        import fmpy
+    except ImportError:
+        raise InputError(f"{path}: an FMU needs FMPy: pip install 'vibrolife[fmu]'") from None
+    try:
+        version = _version_of(path)  # FMPy reads others too, and complains of what is in them
+        if version != _VERSION:
+            raise InputError(f"{path}: is of FMI {version}, not {_VERSION}; export it as such")
+        said = fmpy.read_model_description(str(path), validate=False)
+        platforms = fmpy.supported_platforms(str(path))
+    except InputError:
+        raise
+    except Exception as error:
+        raise InputError(f"{path}: not an FMU: {described(error)}") from None
+    if said.coSimulation is None and said.modelExchange is None:
+        raise InputError(f"{path}: is neither for co-simulation nor for model exchange")
+    if fmpy.platform not in platforms:
+        there = ", ".join(sorted(platforms)) or "none"
+        raise InputError(f"{path}: has no binary for {fmpy.platform} (there: {there})")
+    return said
+
+
+def _version_of(path: Path) -> str:
+    """Return the version of FMI that an FMU is written for."""
+    with ZipFile(path) as archive, archive.open("modelDescription.xml") as file:
+        _, root = next(iterparse(file, ["start"]))
+    return root.attrib["fmiVersion"]
+
+
+def variables_of(said: Any, causality: str = "") -> dict[str, Any]:
+    """Return the real variables of an FMU, all or those of a causality, by name."""
+    return {
+        one.name: one
+        for one in said.modelVariables
+        if one.type == "Real" and causality in ("", one.causality)
+    }
+
+
+def times_of(said: Any, stop: float | None, step: float | None) -> tuple[float, float, float]:
+    """Return start, end and step of a simulation [s]: as asked for, else as the FMU says.
+
+    Raises
+    ------
+    ValueError
+        When the FMU does not say how long, or cannot do such steps.
+    """
+    experiment = said.defaultExperiment
+
+    def default(name: str) -> float | None:
+        value = getattr(experiment, name, None)
+        return None if value is None else float(value)
+
+    start = default("startTime") or 0.0
+    end = stop or default("stopTime")
+    if end is None:
+        raise ValueError("states no stop time; give stop in a machine file")
+    if not end > start:
+        raise ValueError(f"ends at {end:g} s, but starts at {start:g} s")
+    how = said.coSimulation
+    step = step or getattr(how, "fixedInternalStepSize", None) or default("stepSize")
+    step = float(step or (end - start) / 1000)
+    steps = (end - start) / step
+    if how and not how.canHandleVariableCommunicationStepSize:
+        if abs(steps - round(steps)) > 1e-6 * steps:
+            raise ValueError(f"does whole steps of {step:g} s only; they do not end at {end:g} s")
+    return start, end, min(step, end - start)
+
+
+def bounds_of(variable: Any) -> tuple[float, float]:
+    """Return the bounds of a variable."""
+    ends = [_own(variable, name) for name in ("min", "max")]
+    low, high = (inf if one is None or abs(float(one)) > _UNBOUNDED else float(one) for one in ends)
+    return (-inf if low == inf else low), high
+
+
+def unit_of_variable(variable: Any) -> str:
+    """Return the unit of a variable as a CF string."""
+    return cf_unit(_own(variable, "unit") or "1")
+
+
+def _own(variable: Any, name: str) -> Any:
+    """Return what a variable says, or else its type."""
+    found = getattr(variable, name)
+    return getattr(variable.declaredType, name, None) if found is None else found
+
+
+def cf_unit(unit: str) -> str:
+    """Return a unit as Modelica writes it as a CF string; one of another form as it is.
+
+    Examples
+    --------
+    >>> cf_unit("N.m/rad"), cf_unit("kg/(m.s2)"), cf_unit("1/s"), cf_unit("-")
+    ('N m rad-1', 'kg m-1 s-2', 's-1', '1')
+    """
+    factors = []
+    for place, part in enumerate(unit.strip().split("/")):
+        for text in re.split(r"[.*]", part.strip().removeprefix("(").removesuffix(")")):
+            found = re.fullmatch(r"([A-Za-z\u00b5\u03a9%]+)\^?(-?\d*)", text)
+            if found:
+                power = int(found[2] or 1) * (-1 if place else 1)
+                factors.append(found[1] if power == 1 else f"{found[1]}{power}")
+            elif text not in ("1", "-", ""):
+                return unit
+    return " ".join(factors) or "1"

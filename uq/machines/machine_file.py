@@ -1,0 +1,335 @@
+"""A machine file: a program, its input and its results, described in TOML."""
+
+import os
+import re
+import shutil
+from codecs import BOM_UTF8
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import inf, isfinite
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from uq.errors import InputError, nearest, one_line
+from uq.files.paths import node
+from uq.machines.row_by_row import SEED
+from uq.sampling.input_faults import Fault, fault_of
+from uq.text.literals import read_toml
+
+_LONGEST = 1_000_000  # bytes of a machine file
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=100)]
+"""Of a parameter or output."""
+
+MachineName = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+
+
+class Table(BaseModel):
+    """A table, or a file as a whole."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+T = TypeVar("T", bound=Table)
+
+
+def file_there(path: Path) -> None:
+    """Refuse a path without a file.
+
+    Raises
+    ------
+    InputError
+    """
+    if what := node(path):
+        raise InputError(f"{path}: is {what}, not a file")
+    if not path.is_file():
+        others = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else []
+        raise InputError(f"{path}: no such file{nearest(path.name, [one.name for one in others])}")
+
+
+def data_of(path: Path) -> dict[str, Any]:
+    """Return what a machine file says, unchecked.
+
+    Raises
+    ------
+    InputError
+    """
+    file_there(path)
+    if path.stat().st_size > _LONGEST:
+        raise InputError(f"{path}: larger than a machine file can be")
+    try:
+        data = read_toml(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, OverflowError, RecursionError) as error:
+        raise InputError(f"{path}: not valid TOML: {one_line(error)}") from None
+    if "study" in data and "machine" not in data:
+        raise InputError(f"{path}: is a study, not a machine file; it needs a table [machine]")
+    return data
+
+
+def content_of(path: Path) -> bytes:
+    """Return a machine file as it is identified: without a byte-order mark, lines ended by LF."""
+    return path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
+
+
+def read_as(kind: type[T], path: Path) -> T:
+    """Return a machine file as tables of a kind.
+
+    Raises
+    ------
+    InputError
+        One line for each mistake.
+    """
+
+    def known(place: Sequence[Any]) -> list[str]:
+        """Return what may stand in the place of an unknown key."""
+        if len(place) == 1:
+            return list(kind.model_fields)
+        return _keys(kind.model_fields[place[0]].annotation)
+
+    try:
+        return kind.model_validate(data_of(path))
+    except ValidationError as invalid:
+        refuse(path, (fault_of(dict(one), known) for one in invalid.errors(include_url=False)))
+        raise
+
+
+def _keys(annotation: Any) -> list[str]:
+    """Return the keys of a table, or of those in a dict of tables."""
+    table: Any = annotation if isinstance(annotation, type) else annotation.__args__[-1]
+    return [field.alias or name for name, field in table.model_fields.items()]
+
+
+def refuse(path: Path, faults: Iterable[Fault]) -> None:
+    """Refuse a machine file for its faults.
+
+    Raises
+    ------
+    InputError
+    """
+    if lines := [f"{path}: {fault.line}" for fault in faults]:
+        raise InputError(*lines)
+
+
+_PLACE = r"\{(%s)(:[^{}]*)?\}"
+
+_LONGEST_TEMPLATE = 10_000_000  # bytes
+
+STDOUT = "stdout"
+
+FOLDER = "machine_folder"
+"""The place of the folder of the machine file, in a command or template."""
+
+
+class MachineTable(Table):
+    """``[machine]``: the program, and how it is called."""
+
+    name: MachineName
+    command: Annotated[list[str], Field(min_length=1, description="program and arguments")]
+    title: str = ""
+    version: str = "1"
+    template: Annotated[str, Field(description="file whose {places} are filled")] = ""
+    input: Annotated[str, Field(description="name of the filled template")] = "input.txt"
+    files: Annotated[list[str], Field(description="what else counts as its code")] = []
+    environment: dict[str, str] = {}
+    exit_codes: Annotated[dict[str, str], Field(description="what exit codes mean")] = {}
+
+
+class ParameterTable(Table):
+    """``[parameters.NAME]``: an input with its nominal value."""
+
+    nominal: float
+    unit: str = "1"
+    bounds: Annotated[list[float], Field(min_length=2, max_length=2)] = [-inf, inf]
+    meaning: str = ""
+    source: str = "assumed: of the machine file"
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The bounds."""
+        return self.bounds[0], self.bounds[1]
+
+
+class OutputTable(Table):
+    """``[outputs.NAME]``: a result, and where it stands: by json, csv, netcdf or pattern."""
+
+    unit: str = "1"
+    meaning: str = ""
+    life: bool = False
+    shape: list[Annotated[int, Field(ge=1)]] = []
+    may_be_undefined: bool = False
+    scales: Annotated[dict[str, float], Field(description="exponents of what scales a life")] = {}
+    file: Annotated[str, Field(description="file that the program writes")] = STDOUT
+    json_path: Annotated[str, Field(alias="json", description="keys and numbers: a.b.0")] = ""
+    csv: Annotated[str, Field(description="column; its last row counts")] = ""
+    netcdf: Annotated[str, Field(description="variable")] = ""
+    pattern: Annotated[str, Field(description="regular expression with one group")] = ""
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "OutputTable":
+        ways = [self.json_path, self.csv, self.netcdf, self.pattern]
+        if sum(map(bool, ways)) != 1:
+            raise ValueError("give one of json, csv, netcdf and pattern")
+        if self.netcdf and self.file == STDOUT:
+            raise ValueError("netcdf needs a file")
+        if self.pattern:
+            try:
+                groups = re.compile(self.pattern).groups
+            except re.error as error:
+                raise ValueError(f"pattern: {error}") from None
+            if groups != 1:
+                raise ValueError(f"pattern must have one group in parentheses, not {groups}")
+        return self
+
+
+class MachineFile(Table):
+    """A machine file."""
+
+    machine: MachineTable
+    parameters: Annotated[dict[Name, ParameterTable], Field(min_length=1)]
+    outputs: Annotated[dict[Name, OutputTable], Field(min_length=1)]
+
+
+def read_machine(path: Path) -> MachineFile:
+    """Read a machine file.
+
+    Raises
+    ------
+    InputError
+        One line for each mistake.
+    """
+    found = read_as(MachineFile, path)
+    refuse(path, _faults(found, path.parent))
+    return found
+
+
+def template_of(machine: MachineTable, folder: Path) -> str:
+    """Return the text of a template, its line ends as they are; "" without one.
+
+    Raises
+    ------
+    OSError, UnicodeDecodeError
+        Also where it is a pipe or a device, or longer than any input.
+    """
+    if not machine.template:
+        return ""
+    path = folder / machine.template
+    if what := node(path):
+        raise OSError(f"is {what}, not a file")
+    with path.open("rb") as file:
+        content = file.read(_LONGEST_TEMPLATE + 1)
+    if len(content) > _LONGEST_TEMPLATE:
+        raise OSError(f"is longer than {_LONGEST_TEMPLATE // 1_000_000} MB")
+    return content.decode("utf-8-sig")
+
+
+def code_files(machine: MachineTable, folder: Path) -> list[Path]:
+    """Return the files whose content is part of a machine, but for its file and its program.
+
+    They are its template, the files that it names, and those among the arguments.
+    """
+    named = [folder / name for name in (machine.template, *machine.files) if name]
+    for argument in machine.command[1:]:
+        path = folder / (argument.partition(f"{{{FOLDER}}}/")[2] or argument)
+        named += [path] * path.is_file()
+    return named
+
+
+def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
+    machine = found.machine
+    try:
+        texts = [*machine.command, template_of(machine, folder)]
+    except UnicodeDecodeError:
+        problem = "is not a text in UTF-8; let the program read it from {machine_folder}"
+        yield Fault(("machine", "template"), problem, machine.template)
+        return
+    except OSError as error:
+        problem = "no such file" if isinstance(error, FileNotFoundError) else one_line(error)
+        yield Fault(("machine", "template"), problem, machine.template)
+        return
+    if problem := _program_problem(machine.command[0], folder):
+        yield Fault(("machine", "command"), problem)
+    for argument in machine.command[1:]:
+        if (folder / argument).is_file() and not Path(argument).is_absolute():
+            problem = (
+                f"'{argument}' is beside this file, but the program runs in the folder of its row;"
+                f" write {{{FOLDER}}}/{argument}"
+            )
+            yield Fault(("machine", "command"), problem)
+    for name in machine.environment:
+        if not name or "=" in name:
+            yield Fault(("machine", "environment", name), "must be a name without '='")
+    if not _is_name(machine.input):
+        yield Fault(("machine", "input"), _IN_ROW, machine.input)
+    for name, output in found.outputs.items():
+        if not _is_within(output.file):
+            yield Fault(("outputs", name, "file"), _IN_ROW, output.file)
+    try:
+        nominal = {name: one.nominal for name, one in found.parameters.items()}
+        filled(" ".join(texts), {**nominal, SEED: 0, FOLDER: ""})
+    except ValueError as error:
+        yield Fault(("machine", "command"), f"a place in it or in the template: {error}")
+    for name in found.parameters:
+        if name in (SEED, FOLDER):
+            yield Fault(("parameters", name), "is the name of another place; choose another")
+        if not any(re.search(_PLACE % name, text) for text in texts):
+            problem = f"has no place {{{name}}} in command{' or template' * bool(machine.template)}"
+            yield Fault(("parameters", name), problem)
+    for name, one in found.parameters.items():
+        low, high = one.bounds
+        if not (isfinite(one.nominal) and low <= one.nominal <= high):
+            yield Fault(("parameters", name, "nominal"), "must lie within the bounds", one.nominal)
+    for file in machine.files:
+        if not (folder / file).exists():
+            yield Fault(("machine", "files"), "no such file", file)
+    for code in machine.exit_codes:
+        if not re.fullmatch(r"\d{1,3}", code):
+            yield Fault(("machine", "exit_codes", code), "must be a number between 1 and 255")
+
+
+def _program_problem(program: str, folder: Path) -> str:
+    """Return why a program cannot be started, as far as its file shows it; "" if it can."""
+    program = program.replace(f"{{{FOLDER}}}", str(folder.absolute()))
+    path = folder / program
+    if re.search(_PLACE % r"\w+", program) or ("/" not in program and shutil.which(program)):
+        return ""
+    if "/" not in program:
+        remedy = f"; the one beside this file is './{program}'" if path.is_file() else ""
+        return f"'{program}' is not on the PATH{remedy}"
+    if not path.is_file():
+        there = [f"./{one.name}" for one in folder.iterdir() if os.access(one, os.X_OK)]
+        return f"'{program}' is no file{nearest(program, there)}"
+    return "" if os.access(path, os.X_OK) else f"'{program}' is not executable: chmod +x {program}"
+
+
+_IN_ROW = "must be the name of a file in the folder of the row"
+
+
+def _is_name(file: str) -> bool:
+    return Path(file).name == file and file not in ("", "..")
+
+
+def _is_within(file: str) -> bool:
+    """Whether a file lies in the folder of a row, not in one that other rows share."""
+    return bool(file) and not Path(file).is_absolute() and ".." not in Path(file).parts
+
+
+def filled(text: str, values: Mapping[str, float | int | str]) -> str:
+    """Return a text with values in its places: ``{load}``, or ``{load:.6e}`` in a format.
+
+    Other braces stay as they are. Without a format a number has all its digits.
+
+    Raises
+    ------
+    ValueError
+        When a format does not suit a number.
+    """
+
+    def value(found: re.Match[str]) -> str:
+        one = values[found[1]]
+        how = found[2][1:] if found[2] else ""
+        if re.search(r"\d{4}", how):
+            raise ValueError(f"format '{how[:20]}' is wider than 999 characters")
+        return format(one, how)
+
+    return re.sub(_PLACE % "|".join(map(re.escape, values)), value, text)

@@ -1,0 +1,224 @@
+"""A program as a machine: each row runs it once, in a folder of its own."""
+
+import errno
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import time
+from codecs import BOM_UTF8
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from math import inf
+from pathlib import Path
+from typing import Any, Self
+
+from uq.contract import Model, Parameter
+from uq.machines.child_processes import bound_files, end_descendants, ended_within
+from uq.machines.machine_file import (
+    FOLDER,
+    MachineFile,
+    MachineTable,
+    code_files,
+    content_of,
+    filled,
+    read_machine,
+    template_of,
+)
+from uq.machines.program_outputs import STDERR_FILE, STDOUT_FILE, value_in
+from uq.machines.returned import Returned, checked
+from uq.machines.row_by_row import SEED, OverdueError, RowByRow, model_from
+from uq.machines.row_folders import Folders, size_of
+
+_LAST = 300  # characters of what a failed program said
+_LOOK_SECONDS = 1.0  # between looks at the size of a folder
+_TRIES = 3  # of a program that is killed, before it is blamed
+_SEEDS = 2**31 - 1  # many programs take more for the largest of 32 bits, and 0 for the clock
+_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
+_REMEDIES = {
+    errno.EACCES: "; make it executable: chmod +x",
+    errno.ENOEXEC: "; a script begins with a line such as #!/bin/sh",
+}
+
+
+class ProgramError(Exception):
+    """A program that failed, in a sentence."""
+
+
+class _KilledError(ProgramError):
+    """A program that was killed, perhaps from outside."""
+
+
+def program_of(path: Path) -> Model:
+    """Return the model of a machine file.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be used.
+    """
+    read = read_machine(path)
+    returned = {
+        name: Returned(
+            one.unit, one.meaning, one.life, tuple(one.shape), one.may_be_undefined, one.scales
+        )
+        for name, one in read.outputs.items()
+    }
+    folder = path.absolute().parent
+    folders = Folders(folder / f"{read.machine.name}.rows")
+    runner = _Program(read, returned, folder, folders)
+    fields = {
+        name: (Parameter(name, one.unit, one.meaning or name, one.span, one.source), one.nominal)
+        for name, one in read.parameters.items()
+    }
+    machine = read.machine
+    random = _takes_seed(machine, folder)
+    batch = RowByRow(runner, tuple(fields), returned, True, folders.leave, folders.keep)
+    title = machine.title or machine.name
+    return model_from(machine.name, title, machine.version, fields, returned, batch, random)
+
+
+def code_of_program(path: Path) -> str:
+    """Return a hash of a machine file, its template, its program and the files named in it."""
+    read, folder = read_machine(path), path.absolute().parent
+    whole = hashlib.sha256(content_of(path))
+    if _takes_seed(read.machine, folder):
+        whole.update(b"%d seeds\n" % _SEEDS)
+    files = code_files(read.machine, folder)
+    if program := _found(read.machine.command[0], folder):
+        files.append(Path(program))
+    for file in files:
+        for one in sorted(file.rglob("*")) if file.is_dir() else [file]:
+            if one.is_file():
+                content = one.read_bytes().removeprefix(BOM_UTF8)
+                whole.update(b"%s %d\n" % (one.name.encode(), len(content)))
+                whole.update(content)
+    return whole.hexdigest()[:16]
+
+
+def _takes_seed(machine: MachineTable, folder: Path) -> bool:
+    texts = [*machine.command, template_of(machine, folder)]
+    return any(f"{{{SEED}" in text for text in texts)
+
+
+def _found(program: str, folder: Path) -> str | None:
+    """Return the path of a program: beside the machine file if it has a slash, else searched."""
+    if "/" in program:
+        return str((folder / program).absolute())
+    return shutil.which(program)
+
+
+@dataclass(frozen=True)
+class _Program:
+    """What runs a row."""
+
+    read: MachineFile
+    returned: Mapping[str, Returned]
+    folder: Path
+    folders: Folders
+    limit: float = inf  # time for a row [s]
+    template: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "template", template_of(self.read.machine, self.folder))
+
+    def limited(self, seconds: float) -> Self:
+        """Return a runner that stops rows after a time."""
+        return replace(self, limit=seconds)
+
+    def __call__(self, **row: float | int) -> Mapping[str, Any]:
+        """Run the program on a row; return its outputs.
+
+        Raises
+        ------
+        ProgramError, WrongReturnError, NonFiniteError, OverdueError
+        """
+        kept = self.folders.kept(list(row.values()))
+        with self.folders.row(list(row.values())) as folder:
+            try:
+                for _ in range(_TRIES - 1):
+                    with suppress(_KilledError):
+                        self._run(folder, row)
+                        break
+                else:
+                    self._run(folder, row)
+                found = {
+                    name: value_in(folder, name, output)
+                    for name, output in self.read.outputs.items()
+                }
+                list(checked(found, self.returned))  # here: the folder of a failed row is kept
+                return found
+            except Exception as error:
+                error.args = (f"{error}; see {kept}",)
+                raise
+
+    def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
+        machine = self.read.machine
+        places = {**row, FOLDER: str(self.folder)}
+        if SEED in row:
+            places[SEED] = 1 + int(row[SEED]) % _SEEDS
+        if machine.template:
+            (folder / machine.input).write_bytes(filled(self.template, places).encode())
+        program, *arguments = (filled(part, places) for part in machine.command)
+        added = machine.environment
+        path = _found(program, self.folder) or program
+        largest = bound_files(folder)
+        with (
+            (folder / STDOUT_FILE).open("wb") as out,
+            (folder / STDERR_FILE).open("wb") as err,
+        ):
+            try:
+                process = subprocess.Popen(
+                    [path, *arguments],
+                    cwd=folder,
+                    env=dict(os.environ) | added if added else None,
+                    stdin=subprocess.DEVNULL,
+                    stdout=out,
+                    stderr=err,
+                )
+            except OSError as error:
+                remedy = _REMEDIES.get(error.errno or 0, "")
+                said = f"'{program}' cannot be started: {error.strerror}{remedy}"
+                raise ProgramError(said) from None
+            code = self._ended(process, folder, largest)
+        if code == -signal.SIGXFSZ:
+            raise ProgramError(f"was ended, as it wrote a file larger than {largest:.2g} bytes")
+        if code:
+            kind = _KilledError if code in _KILLED else ProgramError
+            raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
+
+    def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
+        """Return the exit code of a program, once it and all that descends from it has ended."""
+        fault: Exception | None = None
+        until = time.monotonic() + self.limit
+        try:
+            while not ended_within(process, min(until - time.monotonic(), _LOOK_SECONDS)):
+                if time.monotonic() >= until:
+                    fault = OverdueError(f"did not end within {self.limit:g} s")
+                elif size_of(folder) > largest:
+                    said = f"was ended, as it wrote files of more than {largest:.2g} bytes"
+                    fault = ProgramError(said)
+                if fault:
+                    process.kill()
+                    break
+            code = process.wait()
+        finally:
+            end_descendants()
+        if fault:
+            raise fault
+        return code
+
+
+def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:
+    if code < 0:
+        text = f"was ended by signal {-code} ({signal.strsignal(-code)})"
+    else:
+        meaning = meanings.get(str(code))
+        text = f"ended with exit code {code}" + (f": {meaning}" if meaning else "")
+    with said.open("rb") as file:
+        file.seek(max(said.stat().st_size - 10 * _LAST, 0))
+        lines = file.read().decode(errors="replace").split("\n")
+    last = next((line.strip() for line in reversed(lines) if line.strip()), "")
+    return f"{text} ({last[:_LAST]})" if last else text

@@ -1,0 +1,218 @@
+"""Rows computed one after the other by something that takes numbers and returns a dict."""
+
+import keyword
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Model, Parameter, Status, censored_name
+from uq.errors import InputError, described
+from uq.machines.returned import NonFiniteError, Returned, WrongReturnError, checked, dimensions
+from uq.sampling.input_faults import unknown
+from uq.text.quantities import fault_of_unit
+
+SEED = "seed"
+"""The name by which the seed of a row is wanted."""
+
+_TAKEN = (
+    "sample replicate group block world unit repeat status rerun".split()  # of a result itself
+)
+
+Fields = Mapping[str, tuple[Parameter, float]]
+"""Parameters, in order: name -> declaration and nominal value."""
+
+
+def model_from(
+    name: str,
+    title: str,
+    version: str,
+    fields: Fields,
+    returned: Mapping[str, Returned],
+    batch: "RowByRow",
+    random: bool,
+) -> Model:
+    """Return a model without settings; arguments as those of `uq.contract.Model`.
+
+    Raises
+    ------
+    InputError
+        When a nominal value, a name or a unit cannot be used.
+    """
+    faults = [*_nominal_faults(fields), *_name_faults(fields, returned)]
+    if faults := [*faults, *_unit_faults(fields, returned), *_scale_faults(fields, returned)]:
+        raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
+    hints = [(one, Annotated[float, parameter]) for one, (parameter, _) in fields.items()]
+    made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
+    made._field_defaults.update({one: nominal for one, (_, nominal) in fields.items()})
+    axes: dict[str, list[int]] = {}
+    for output, one in returned.items():
+        axes |= dimensions(output, one.shape)
+    return Model(
+        name,
+        title,
+        version,
+        made,
+        _NoSettings,
+        {output: one.output(output) for output, one in returned.items()},
+        batch,
+        coordinates=lambda settings: axes,
+        random=random,
+    )
+
+
+def _nominal_faults(fields: Fields) -> Iterator[str]:
+    for name, (parameter, nominal) in fields.items():
+        low, high = parameter.bounds
+        if not low < high:
+            yield f"bounds of '{name}' must be a lower and a higher number, not ({low:g}, {high:g})"
+        elif not (isfinite(nominal) and low <= nominal <= high):
+            within = (
+                f"between {low:g} and {high:g}" if isfinite(high - low) else "within its bounds"
+            )
+            yield f"nominal value {nominal:g} of '{name}' must be a finite number {within}"
+
+
+def _unit_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
+    units = {f"'{name}'": parameter.unit for name, (parameter, _) in fields.items()}
+    units |= {f"output '{name}'": one.unit for name, one in returned.items()}
+    for owner, unit in units.items():
+        if fault := fault_of_unit(unit):
+            yield f"unit '{unit}' of {owner}: {fault}"
+
+
+def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
+    for output, one in returned.items():
+        if one.scales and not one.life:
+            yield f"output '{output}': only a life has scales: life = true"
+        for name, exponent in one.scales.items():
+            if name not in fields:
+                yield f"output '{output}': scales: {unknown('parameter', name, fields)}"
+            elif not (isinstance(exponent, int | float) and isfinite(exponent) and exponent):
+                yield f"output '{output}': scales: {name} = {exponent!r} must be a number but 0"
+            elif not fields[name][1] > 0:
+                yield f"output '{output}': scales: nominal value of '{name}' must be positive"
+
+
+def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
+    """Yield what is wrong with names, all of which stand side by side in a result."""
+    reserved = "of one of a result's own variables"
+    taken = dict.fromkeys(fields, "of a parameter") | dict.fromkeys(_TAKEN, reserved)
+    for name in fields:
+        if not name.isidentifier() or keyword.iskeyword(name) or name.startswith("_"):
+            yield f"parameter '{name}' cannot have this name in Python; choose another"
+        if name in _TAKEN:
+            yield f"parameter '{name}' is the name {taken[name]}; choose another"
+    for name, one in returned.items():
+        made = [name, *dimensions(name, one.shape), *([censored_name(name)] if one.life else [])]
+        for new in made:
+            if new in taken:
+                yield f"output '{name}': '{new}' is the name {taken[new]}; choose another"
+            taken[new] = f"of output '{name}' or of a part of it"
+
+
+@dataclass(frozen=True)
+class _NoSettings:
+    """There are none."""
+
+
+class OverdueError(Exception):
+    """A row that was stopped as its time was over, in a sentence."""
+
+
+@dataclass(frozen=True)
+class RowByRow:
+    """A batch that computes rows one after the other, each with its own end.
+
+    Attributes
+    ----------
+    function : callable
+        Takes the parameters of a row as keywords, and returns a dict of outputs.
+    names : tuple of str
+        Of the parameters, in order.
+    returned : dict of str to Returned
+    wants_seed : bool
+        Whether the function takes the seed of the row too.
+    leave : callable
+        Called after some rows.
+    keep : callable
+        Called with the numbers of a row that was lost with its process: its parameters, then its
+        seed if it is wanted; returns the folder in which its files are kept, or None.
+    loads_first : bool
+        Whether its first row may take longer than others, as it imports or compiles something.
+    """
+
+    function: Callable[..., Any]
+    names: tuple[str, ...]
+    returned: Mapping[str, Returned]
+    wants_seed: bool
+    leave: Callable[[], object] = lambda: None
+    keep: Callable[[list[float | int]], Path | None] = lambda numbers: None
+    loads_first: bool = True
+
+    @property
+    def stops_rows(self) -> bool:
+        """Whether it can stop a row whose time is over."""
+        return hasattr(self.function, "limited")
+
+    def limited(self, seconds: float) -> Self:
+        """Return a batch that stops rows after a time [s]; only one that `stops_rows` can."""
+        function: Any = self.function
+        return replace(self, function=function.limited(seconds))
+
+    def __call__(
+        self, x: Floats, seed: NDArray[np.uint64], settings: object
+    ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
+        """Compute rows; see `uq.contract.Batch`."""
+        n = len(x)
+        columns: dict[str, NDArray[Any]] = {}
+        for name, one in self.returned.items():
+            columns[name] = np.full((n, *one.shape), np.nan)
+            if one.life:
+                columns[censored_name(name)] = np.zeros((n, *one.shape), dtype=bool)
+        status, messages = np.zeros(n, np.int8), dict[int, str]()
+        for i, row in enumerate(x.tolist()):
+            try:
+                for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
+                    columns[name][i] = numbers
+                    if self.returned[name].life:
+                        columns[censored_name(name)][i] = cut
+            except WrongReturnError as error:
+                status[i], messages[i] = Status.BAD_SHAPE, str(error)
+            except NonFiniteError as error:
+                status[i], messages[i] = Status.NON_FINITE, str(error)
+            except OverdueError as error:
+                status[i], messages[i] = Status.TIMED_OUT, str(error)
+            except BaseException as error:  # Ctrl-C reaches another thread or process
+                status[i], messages[i] = Status.RAISED, described(error)
+                if self.wants_seed and _is_too_long(error):
+                    messages[i] += "; the seed of a row has 64 bits: shorten it to seed % 2**32"
+        self.leave()
+        return columns, status, messages
+
+    def kept(self, row: list[float], seed: int) -> str:
+        """Return where the files of a row that was lost with its process are, for its message."""
+        folder = self.keep([*row, seed] if self.wants_seed else row)
+        return f"; see {folder}" if folder else ""
+
+    def row(self, row: list[float], seed: int) -> Any:
+        """Return what the function returns on a row; the current folder stays as it was."""
+        given: dict[str, Any] = dict(zip(self.names, row, strict=True))
+        if self.wants_seed:
+            given[SEED] = seed
+        here = os.getcwd()
+        try:
+            return self.function(**given)
+        finally:
+            os.chdir(here)
+
+
+def _is_too_long(error: BaseException) -> bool:
+    """Whether a generator of random numbers takes no seed of 64 bits."""
+    text = str(error).lower()
+    return isinstance(error, ValueError | OverflowError) and ("seed" in text or "too large" in text)

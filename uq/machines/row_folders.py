@@ -1,0 +1,139 @@
+"""Folders of rows: one for each, removed when the row is done and kept when it failed."""
+
+import hashlib
+import os
+import shutil
+import socket
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from stat import S_ISREG
+
+import psutil
+
+from uq.machines.child_processes import judge
+
+_RUNNING = "running"
+_BLOCK = 512  # bytes, in which the room that a file takes is counted
+_MOST_KEPT = 10_000_000  # bytes of a row that failed
+_SHARE_KEPT = 100  # of the room on the disk, if that is less: many rows may fail
+
+
+def size_of(folder: Path) -> int:
+    """Return the size of the files in a folder [bytes]."""
+    return sum(_sizes(folder).values())
+
+
+def _sizes(folder: Path) -> dict[Path, int]:
+    found = {}
+    for one in folder.rglob("*"):
+        with suppress(OSError):  # it has just been removed
+            status = one.lstat()
+            if S_ISREG(status.st_mode):
+                found[one] = min(status.st_size, _BLOCK * status.st_blocks)
+    return found
+
+
+def _lighten(folder: Path, passing: str) -> None:
+    """Remove what would fill the disk of a row that failed: a folder, and the largest files."""
+    if passing:
+        shutil.rmtree(folder / passing, ignore_errors=True)
+    sizes = _sizes(folder)
+    left = sum(sizes.values())
+    most = min(_MOST_KEPT, (shutil.disk_usage(folder).free + left) // _SHARE_KEPT)
+    for file in sorted(sizes, key=lambda one: sizes[one], reverse=True):
+        if left > most:
+            file.unlink()
+            left -= sizes[file]
+
+
+class Folders:
+    """The folders of the rows of a machine, in one folder.
+
+    Parameters
+    ----------
+    root : Path
+    passing : str
+        Name of a folder in each that is not kept.
+    """
+
+    def __init__(self, root: Path, passing: str = ""):
+        self.root = root
+        self._passing = passing
+        self._tidied = False
+
+    @contextmanager
+    def row(self, numbers: Sequence[float | int]) -> Iterator[Path]:
+        """Yield the folder of a row, empty; if the block raises, it is kept under the row's name.
+
+        Parameters
+        ----------
+        numbers : sequence of float
+            The row: its parameters and seed.
+        """
+        if not self._tidied:
+            self._tidied = True
+            self._tidy()
+        folder = self._new(numbers)
+        try:
+            yield folder
+        except Exception:
+            self._keep(folder, numbers)
+            raise
+        else:
+            shutil.rmtree(self.kept(numbers), ignore_errors=True)  # of an earlier run
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def _new(self, numbers: Sequence[float | int]) -> Path:
+        """Return a new folder of this process."""
+        mine = f"{_running_on_this()}{judge()}-{os.getpid()}-{_digest(numbers)}-"
+        while True:
+            self.root.mkdir(parents=True, exist_ok=True)
+            with suppress(FileNotFoundError):  # another process has just left
+                return Path(tempfile.mkdtemp(prefix=mine, dir=self.root))
+
+    def leave(self) -> None:
+        """Remove folders that killed processes left, and that of all folders if it holds none."""
+        self._tidy()
+        with suppress(OSError):
+            self.root.rmdir()
+
+    def kept(self, numbers: Sequence[float | int]) -> Path:
+        """Return the folder in which a row is kept that failed."""
+        return self.root / f"failed-{_digest(numbers)}"
+
+    def keep(self, numbers: Sequence[float | int]) -> Path | None:
+        """Keep the folder of a row with which a child of this process ended; return its place."""
+        kept = self.kept(numbers)
+        for folder in self.root.glob(f"{_running_on_this()}{os.getpid()}-*-{_digest(numbers)}-*"):
+            self._keep(folder, numbers)
+        return kept if kept.is_dir() else None
+
+    def _keep(self, folder: Path, numbers: Sequence[float | int]) -> None:
+        kept = self.kept(numbers)
+        shutil.rmtree(kept, ignore_errors=True)
+        with suppress(OSError):
+            _lighten(folder, self._passing)
+            folder.rename(kept)
+
+    def _tidy(self) -> None:
+        """Remove the folders of processes on this computer that were killed.
+
+        While the process that judges a row lives, it may want to keep its folder.
+        """
+        for folder in self.root.glob(f"{_running_on_this()}*"):
+            judge, pid, *_ = folder.name.removeprefix(_running_on_this()).split("-")
+            mine = int(judge) == os.getpid()
+            if not psutil.pid_exists(int(pid)) and (mine or not psutil.pid_exists(int(judge))):
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _running_on_this() -> str:
+    """Return how the names of folders of running rows begin on this computer."""
+    return f"{_RUNNING}-{socket.gethostname()}-"
+
+
+def _digest(numbers: Sequence[float | int]) -> str:
+    return hashlib.sha256(repr(list(numbers)).encode()).hexdigest()[:12]

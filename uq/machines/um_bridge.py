@@ -1,0 +1,202 @@
+"""The protocol of UM-Bridge models [1]_: JSON over HTTP, a connection for each call.
+
+References
+----------
+.. [1] L. Seelinger, V. Cheng-Seelinger, A. Davis, M. Parno, A. Reinarz, "UM-Bridge: Uncertainty
+   quantification and modeling bridge", J. Open Source Softw. 8(83), 4748 (2023).
+"""
+
+import http.client
+import json
+import re
+import socket
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
+from math import inf, isfinite
+from threading import Timer
+from typing import Any
+from urllib.parse import SplitResult, urlsplit
+
+from uq.errors import InputError, one_line
+from uq.machines.row_by_row import OverdueError
+from uq.text.literals import read_number
+
+VERSION = 1.0
+"""Of the protocol."""
+
+DESCRIBED = "described"
+"""Entry of a server's model information with names, units and bounds, which UM-Bridge lacks."""
+
+NEVER = "never"
+"""Entry of an answer beside ``output``: which numbers of each vector are null for infinity."""
+
+_LONGEST = 100_000_000  # bytes of an answer
+_PART = 1_000_000  # of it, read at once
+_PATIENCE = 60.0  # seconds for which a server that does not answer is asked again
+_PAUSES = (0.1, 0.3, 1.0, 3.0)
+
+_OUT_SECONDS = 10.0  # for which others are asked before a server that did not answer
+
+_NO_NUMBER = re.compile(rb"(?<=[\[,:\s])[-+]?(?:inf|nan)(?=[\],}\s])", re.IGNORECASE)
+
+_out = dict[str, float]()  # servers that did not answer, and when
+_silent = set[str]()  # servers that have not answered for that time: they are asked only once
+
+
+class ServerError(Exception):
+    """A call that failed, in a sentence."""
+
+
+def split_address(address: str) -> tuple[str, str]:
+    """Return the address of a server and the name of a model on it.
+
+    Raises
+    ------
+    InputError
+        When it is not ``http://HOST:PORT/NAME``.
+    """
+    try:
+        parts: SplitResult = urlsplit(address)
+        known = parts.hostname is not None and parts.port != 0
+    except ValueError:
+        known = False
+    name = parts.path.strip("/") if known else ""
+    if not known or not name or "/" in name or parts.query or parts.fragment:
+        raise InputError(f"{address}: write it as http://HOST:PORT/NAME")
+    return f"{parts.scheme}://{parts.netloc}", name
+
+
+def call(
+    server: str | Sequence[str],
+    what: str,
+    body: Any = None,
+    patience: float | None = None,
+    limit: float = inf,
+) -> Any:
+    """Ask a server and return its answer.
+
+    Parameters
+    ----------
+    server : str or sequence of str
+        ``http://HOST:PORT``; of several, any may answer, and those that lately did not come last.
+    what : str
+        Such as ``Evaluate``.
+    body : object, optional
+        What is sent; nothing is asked for by GET.
+    patience : float, optional
+        How long it is asked again if it does not answer [s], by default a minute. A server that
+        has not answered for so long is asked only once from then on, until it answers: else each
+        row would wait.
+    limit : float
+        How long the call may take [s].
+
+    Raises
+    ------
+    ServerError, OverdueError
+    """
+    began, rounds = time.monotonic(), 0
+    until = began + limit
+    servers = [server] if isinstance(server, str) else list(server)
+    servers.sort(key=lambda one: began < _out.get(one, -inf) + _OUT_SECONDS)
+    while True:
+        for one in servers:
+            try:
+                answer = _answer(one, what, body, until)
+                _silent.discard(one)
+                _out.pop(one, None)
+                return answer
+            except (OSError, http.client.HTTPException) as error:
+                now, reason = time.monotonic(), one_line(error) or type(error).__name__
+                if now > until:
+                    raise OverdueError(f"{one} did not answer within {limit:g} s") from None
+                _out[one] = now
+        longest = _PATIENCE if patience is None else patience
+        if _silent.issuperset(servers) or now - began > longest:
+            _silent.update(servers)
+            do = "do" if len(servers) > 1 else "does"
+            raise ServerError(f"{' and '.join(servers)} {do} not answer: {reason}")
+        pause = _PAUSES[min(rounds, len(_PAUSES) - 1)]
+        time.sleep(max(min(pause, until - time.monotonic()), 0.0))
+        rounds += 1
+
+
+def _answer(server: str, what: str, body: Any, until: float) -> Any:
+    parts = urlsplit(server)
+    secure = parts.scheme == "https"
+    kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
+    connection = kind(parts.hostname or "", parts.port, timeout=_left(until))
+    with closing(connection):
+        connection.connect()
+        with _cut(connection.sock, _left(until)):
+            data = None if body is None else json.dumps(body)
+            headers = {"Content-Type": "application/json", "Connection": "close"}
+            connection.request("GET" if body is None else "POST", f"/{what}", data, headers)
+            response = connection.getresponse()
+            text = bytearray()
+            while part := response.read1(_PART):
+                text += part
+                if len(text) > _LONGEST:
+                    most = f"{_LONGEST:.0e} bytes"
+                    raise ServerError(f"{server} answers {what} with more than {most}")
+        _left(until)
+        if response.length:
+            raise http.client.IncompleteRead(bytes(text), response.length)
+    return _read(server, what, response.status, bytes(text))
+
+
+@contextmanager
+def _cut(connection: socket.socket, seconds: float | None) -> Iterator[None]:
+    """Cut a connection after some seconds, however little comes through it at a time."""
+
+    def cut() -> None:
+        with suppress(OSError):
+            connection.shutdown(socket.SHUT_RDWR)
+
+    timer = Timer(seconds or 0.0, cut)
+    timer.daemon = True
+    if seconds:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def _left(until: float) -> float | None:
+    """Return the time that is left for a call [s], None for any.
+
+    Raises
+    ------
+    TimeoutError
+    """
+    left = until - time.monotonic()
+    if left <= 0:
+        raise TimeoutError
+    return left if isfinite(left) else None
+
+
+def _read(server: str, what: str, status: int, text: bytes) -> Any:
+    """Return what an answer says."""
+    try:
+        answer = json.loads(text, parse_float=read_number)
+    except OverflowError as large:
+        raise ServerError(f"{server} answers {what}: {large}") from None
+    except (ValueError, RecursionError):
+        if bare := _NO_NUMBER.search(text):
+            raise ServerError(
+                f"{server} answers {what}: {bare[0].decode()} is not JSON; return finite numbers,"
+                ' or {"error": {"type": ..., "message": ...}} for a row without them'
+            ) from None
+        said = " ".join(text[:80].decode(errors="replace").split())
+        raise ServerError(
+            f"{server} answers {what} with status {status} and no JSON ({said}); its own output may"
+            " say why"
+        ) from None
+    if isinstance(answer, dict) and "error" in answer:
+        error = answer["error"]
+        words = error.get("message") or error.get("type") if isinstance(error, dict) else error
+        raise ServerError(f"{server} answers {what}: {' '.join(str(words).split())}")
+    if status != http.client.OK:
+        raise ServerError(f"{server} answers {what} with status {status}")
+    return answer

@@ -1,1 +1,0 @@
-"""Sensitivity methods: what each needs, what it gives, and its arithmetic."""

@@ -1,0 +1,129 @@
+"""A figure of a result as an entry of a table: its subjects, its caption, where it appears."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import Any, Literal
+
+from matplotlib.figure import Figure
+
+from uq.assess.findings import Findings
+from uq.render.figures.index_plot import subject
+from uq.text.numbers import capitalized
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The subject of one figure.
+
+    Attributes
+    ----------
+    name : str
+        An output, or a target of indices; "" for the whole result.
+    method : str
+        Of the indices.
+    keywords : dict
+        Passed on to the function that draws it.
+    part : str
+        Which of several figures it is: ``1 of 2``.
+    """
+
+    name: str = ""
+    method: str = ""
+    keywords: Mapping[str, Any] = field(default_factory=dict)
+    part: str = ""
+
+
+Applies = Callable[[Findings, str], bool]
+"""A condition on a result and the name of one of its subjects."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One kind of figure.
+
+    Attributes
+    ----------
+    draw : callable
+        ``draw(ds, output, *, axes=None)`` or, for a whole result, ``draw(ds, *, axes=None)``. The
+        documentation quotes the first line of its docstring.
+    of : callable
+        Findings -> subjects: a function of `uq.render.figures.subjects`.
+    caption : str
+        With ``{what}``, ``{event}`` and ``{method}``: an output or a target in words, and an event.
+    section : str
+        Of the report; "" if the report does not show it.
+    applies : tuple of callable
+        Conditions under which it is drawn.
+    in_report : tuple of callable
+        Further conditions under which the report shows it.
+    needs : tuple of str
+        Attributes of `Findings` that are passed on as keywords.
+    file : tuple of str
+        Parts of the name of its file.
+    """
+
+    draw: Callable[..., Figure]
+    of: Callable[[Findings], Iterator[Subject]]
+    caption: str = "{what}"
+    section: Literal["inputs", "rows", "results", "convergence", ""] = "results"
+    applies: tuple[Applies, ...] = ()
+    in_report: tuple[Applies, ...] = ()
+    needs: tuple[str, ...] = ()
+    file: tuple[str, ...] = ("figure", "method", "name")
+
+
+@dataclass(frozen=True)
+class Drawable:
+    """One figure of a result that can be drawn."""
+
+    figure: str
+    entry: Entry
+    subject: Subject
+    findings: Findings = field(repr=False)
+
+    @property
+    def file(self) -> str:
+        """The name of its file, without a suffix."""
+        words = {"figure": self.figure, "method": self.subject.method, "name": self.subject.name}
+        named = (words[word] for word in self.entry.file)
+        return file_name(*filter(None, (*named, self.subject.part)))
+
+    @property
+    def caption(self) -> str:
+        """What it shows."""
+        ds, name = self.findings.ds, self.subject.name
+        what = str(ds[name].attrs["long_name"]) if name in ds else subject(ds, name) if name else ""
+        event = what.removeprefix("whether ")
+        caption = self.entry.caption.format(what=what, event=event, method=self.subject.method)
+        return capitalized(caption) + f" ({self.subject.part})" * bool(self.subject.part)
+
+    def draw(self) -> Figure:
+        """Return the figure."""
+        needs = {need: getattr(self.findings, need) for need in self.entry.needs}
+        names = filter(None, [self.subject.name])
+        return self.entry.draw(self.findings.ds, *names, **needs, **self.subject.keywords)
+
+
+def drawables(
+    figures: Mapping[str, Entry], findings: Findings, section: str | None = None
+) -> Iterator[Drawable]:
+    """Yield every figure of a result, or those of one section of its report, in order.
+
+    Neighbouring entries with the same subjects alternate: all figures of one output come before
+    those of the next.
+    """
+    chosen = [one for one in figures.items() if section in (None, one[1].section)]
+    for of, entries in groupby(chosen, key=lambda one: one[1].of):
+        together = list(entries)
+        for one in of(findings):
+            for figure, entry in together:
+                conditions = entry.applies + (entry.in_report if section else ())
+                if all(applies(findings, one.name) for applies in conditions):
+                    yield Drawable(figure, entry, one, findings)
+
+
+def file_name(*words: str) -> str:
+    """Join words to a file name without characters special to a shell."""
+    return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words)).strip("_")

@@ -1,0 +1,310 @@
+"""Figures of the distribution of an output: histograms, a lifetime's, a table of quantiles."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistic import Statistic
+from uq.assess.summary import Described, Summary, summarise
+from uq.assess.survival import survival
+from uq.render.figures.elements_plot import (
+    bins,
+    curve_style,
+    display_unit,
+    drawn_elements,
+    entitle,
+    mark_thresholds,
+    occurring_regimes,
+    shares_in_bins,
+)
+from uq.render.figures.figure import Drawing
+from uq.render.figures.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
+from uq.render.figures.style import INK, MARK, ROWS, WIDTH, styled, thinned
+from uq.render.figures.words import as_label, label, literal, rows_in_words, typeset
+from uq.result.elements import Element, analysis_of, independent_rows, named_elements
+from uq.stats.estimate_text import rounded_text
+from uq.text.numbers import minus
+from uq.text.units import Unit
+
+_MOST_PANELS = 4
+_LINE = 0.16  # of the table [inch]
+_COLUMNS = (0.15, 0.49, 1.0)  # right ends
+_BOUND = "dotted: tolerance bound"
+_BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneous band"))
+
+
+@styled
+def histogram(
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw a histogram of an output.
+
+    Dotted lines are the tolerance bounds that the study asks for, on the side that it wants; an
+    angle has none, as bounds of its sign are not those of its magnitude.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        An output other than a lifetime or category, or one element of it.
+    summary : Summary, optional
+        What `uq.assess.summary.summarise` returns, if already computed.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    chosen, part = drawn_elements(independent_rows(ds), output)
+    (panel,) = column(axes, 2.1)
+    together = np.concatenate([element.at_least for element in chosen])
+    unit = display_unit(chosen[0].units, together)
+    edges, wide = bins(together / unit.size)
+    known = (summary or summarise(ds)).outputs
+    marked = False
+    for i, element in enumerate(chosen):
+        colour, line = curve_style(i, element, chosen)
+        marked |= _mark_bounds(panel, ds, element, known.get(element.name), unit, colour)
+        style: Any = {"color": colour, "ls": line, "lw": 1.2}
+        if len(chosen) == 1:
+            style = {"color": ROWS, "fill": True, "lw": 0}
+        shares = shares_in_bins(element, element.present, edges, unit)
+        panel.stairs(shares, edges, label=label(ds, element), **style)
+    panel.set(ylim=(0, None), ylabel="Share of rows per bin")
+    panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
+    logarithmic(panel) if wide else None
+    mark_thresholds(panel, ds, chosen[0], unit)
+    None if wide else roomy(panel)
+    entitle(panel, chosen, part, *[_BOUND] * marked)
+    return finish(panel)
+
+
+@styled
+def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+    """Draw a histogram of an output, stacked by regime.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a model with regimes.
+    output : str
+        An output other than a category, or one element of it. Of more than four elements the
+        first and the last are drawn, and only lives that end.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its area. By default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows = independent_rows(ds)
+    every = named_elements(rows, output)
+    chosen = every if len(every) <= _MOST_PANELS else [every[0], every[-1]]
+    codes = rows["regime"].values
+    ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
+    drawn = set(codes[np.any(ended, axis=0)].tolist())
+    regimes = {name: one for name, one in occurring_regimes(rows).items() if one[0] in drawn}
+    together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
+    unit = display_unit(chosen[0].units, together)
+    edges, wide = bins(together / unit.size)
+    each = 1.1 if len(chosen) < 3 else 0.75
+    panels = column(axes, 0.7 + each * len(chosen), len(chosen))
+    for panel, element, mask in zip(panels, chosen, ended, strict=True):
+        base = np.zeros(len(edges) - 1)
+        for name, (code, colour) in regimes.items():
+            top = base + shares_in_bins(element, mask, edges, unit, codes == code)
+            panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
+            base = top
+        panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
+        entitle(panel, [element], of=label(ds, element))
+    below = "" if chosen == every else f"\nthe first and the last of {len(every)} elements"
+    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name) + below)
+    if wide:
+        logarithmic(panels[-1])
+    for panel in panels:
+        mark_thresholds(panel, ds, chosen[0], unit)
+    if not wide:
+        roomy(panels[-1])
+    return finish(panels[0])
+
+
+@styled
+def lifetime(
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw the probability that a life has ended against time, with its 95 % bands.
+
+    If the end is a success, the axes say what has happened by then, and what has not yet.
+
+    The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
+    whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
+    ended. Dotted lines are the tolerance bounds that the study asks for. The right axis shows
+    the survival probability.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        A lifetime, or one element of it.
+    summary : Summary, optional
+        What `uq.assess.summary.summarise` returns, if already computed.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows = independent_rows(ds)
+    chosen, part = drawn_elements(rows, output)
+    ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
+    unit = display_unit(chosen[0].declared.unit, ends)
+    (panel,) = column(axes, 2.3)
+    bands: dict[str, bool] = {}  # in the order in which they are drawn
+    known = (summary or summarise(ds)).outputs
+    for i, element in enumerate(chosen):
+        curve = survival(ds, element.name)
+        curve = curve.isel(time=thinned(curve.sizes["time"]))
+        time = curve["time"].values / unit.size
+        colour, line = curve_style(i, element, chosen)
+        words = label(ds, element, never=float(curve["never"]))
+        panel.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
+        for which, alpha, meaning in _BANDS:
+            low, high = 1 - curve[f"{which}high"], 1 - curve[f"{which}low"]
+            if np.isfinite(low).any():
+                panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
+                bands[meaning] = True
+        if _mark_bounds(panel, ds, element, known.get(element.name), unit, colour):
+            bands[_BOUND] = True
+    success = chosen[0].declared.success
+    event = typeset(literal(success)) if success else "the life has ended"
+    panel.set(ylim=(0, 1.02), ylabel=f"Probability that\n{event}")
+    panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
+    if is_wide(ends):
+        logarithmic(panel)
+    if len(ends) == 0:
+        panel.set_xticks([])
+    mark_thresholds(panel, ds, chosen[0], unit)
+    panel.set_xlim(panel.get_xlim())
+    marked: set[str] = set()
+    for i, element in enumerate(chosen):
+        colour, _ = curve_style(i, element, chosen)
+        marked |= _mark(panel, known.get(element.name), unit, colour)
+    if marked:
+        bands[f"marks: {', '.join(name for name in B_LIVES if name in marked)}"] = True
+    other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
+    not_yet = "Probability that it has\nnot happened yet"
+    other.set_ylabel(not_yet if success else "Survival probability")
+    entitle(panel, chosen, part, *bands)
+    return finish(panel)
+
+
+def _mark_bounds(
+    axes: Axes, ds: xr.Dataset, element: Element, found: Described | None, unit: Unit, colour: str
+) -> bool:
+    """Draw the tolerance bounds of an element, and return whether there are any."""
+    if found is None or element.is_angle:
+        return False
+    wanted = analysis_of(ds).wanted.get(element.output)
+    if element.is_lifetime:
+        wanted = "below" if element.declared.success else "above"
+    sides = {"above": ["lower"], "below": ["upper"], None: ["lower", "upper"]}[wanted]
+    bounds = [one.estimate.value for side in sides if (one := found.find("tolerance", side))]
+    drawn = [bound for bound in bounds if np.isfinite(bound)]
+    for bound in drawn:
+        axes.axvline(bound / unit.size, color=colour, ls=":", lw=1.2)
+    return bool(drawn)
+
+
+def _mark(axes: Axes, described: Described | None, unit: Unit, colour: str) -> set[str]:
+    """Mark the B-lives of an element with their intervals, and return the names of those known."""
+    if described is None:
+        return set()
+    asked = {name: described.find("b_lives", name) for name in B_LIVES}
+    lives = {name: one.best.estimate for name, one in asked.items() if one is not None}
+    found = {name: one for name, one in lives.items() if np.isfinite(one.value)}
+    if not found:
+        return set()
+    shares = np.array([B_LIVES[name] for name in found])
+    value, low, high = np.array([one.numbers for one in found.values()]).T / unit.size
+    edges = axes.get_xlim()
+    axes.plot(value, shares, "o", ms=MARK, color=colour)
+    axes.hlines(shares, np.clip(low, *edges), np.clip(high, *edges), color=colour, lw=1.0)
+    for ends in (low, high):
+        axes.plot(ends, shares, "|", ms=5, mew=1.0, color=colour)
+    arrows(axes, shares, low, high, "x", color=colour)
+    return set(found)
+
+
+@styled
+def quantile_table(
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw a table of the quantiles of an output, with their 95 % intervals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        An output other than a category.
+    summary : Summary, optional
+        What `uq.assess.summary.summarise` returns, if already computed.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    chosen, part = drawn_elements(independent_rows(ds), output)
+    outputs = (summary or summarise(ds)).outputs
+    found = [outputs[element.name].parts["quantiles"] for element in chosen]
+    values = [one.estimate.finite.value for quantiles in found for one in quantiles]
+    unit = display_unit(chosen[0].units, np.array(values))
+    head = as_label(chosen[0].meaning, unit.name, 58).splitlines()
+    blocks = [
+        (label(ds, element), [_quantile(one, unit.size) for one in quantiles])
+        for element, quantiles in zip(chosen, found, strict=True)
+    ]
+    lines = sum(len(quantiles) + bool(words) for words, quantiles in blocks)
+    height = len(head) + 2.8 + lines
+    if axes is None:
+        figure = Drawing(figsize=(WIDTH, _LINE * (height + 0.6)))
+        axes = figure.add_axes((0.02, 0.0, 0.96, 1.0))
+    axes.set_axis_off()
+    axes.set(xlim=(0, 1), ylim=(height + 0.3, -0.3))
+    axes.text(0, 0, "\n".join(head), va="top")
+    y: float = len(head) + 0.1
+    said = ", ".join(filter(None, (rows_in_words(chosen), part)))
+    axes.text(0, y, said, va="top", color="0.45", size=7)
+    columns = ("quantile", "value", "95 % interval")
+    for x, text in zip(_COLUMNS, columns, strict=True):
+        axes.text(x, y + 1.95, text, ha="right", size=7)
+    for line in (y + 1.05, y + 2.15, height + 0.15):
+        axes.axhline(line, color=INK, lw=0.6)
+    y += 2.95
+    for words, quantiles in blocks:
+        if words:
+            axes.text(0, y, words)
+            y += 1
+        for texts in quantiles:
+            for x, text in zip(_COLUMNS, texts, strict=True):
+                # "beyond the horizon" is longer than the numbers that a column has room for
+                wordy = any(letters.isalpha() and letters != "to" for letters in text.split())
+                axes.text(x, y, minus(text), ha="right", size=6.5 if wordy else None)
+            y += 1
+    return figure_of(axes)
+
+
+def _quantile(one: Statistic, per: float) -> tuple[str, str, str]:
+    value, ends = rounded_text(one.estimate, per)
+    value = value if np.isfinite(one.estimate.value) else one.words(per)
+    return f"{100 * float(one.key[-1]):g} %", value, ends

@@ -1,0 +1,174 @@
+"""What figures of the elements of an output share: styles, titles, units, bins and regimes."""
+
+import textwrap
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from uq.render.figures.panel import is_wide
+from uq.render.figures.style import COLOURS, LIMIT, LINES, SHADES, thinned
+from uq.render.figures.words import labelled, literal, rows_in_words
+from uq.result.elements import Element, Floats, Mask, analysis_of, flags, named_elements
+from uq.result.variables import input_unit
+from uq.text.numbers import minus, printed, threshold
+from uq.text.units import Unit, typical, unit_of
+
+_MOST_BINS = 60
+_MOST_CURVES = 12
+
+
+def drawn_elements(rows: xr.Dataset, output: str) -> tuple[list[Element], str]:
+    """Return the elements of an output that a figure has room for, and how many of all they are.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+    output : str
+
+    Returns
+    -------
+    list of Element
+        Of many, some at even distances, with both ends.
+    str
+        "" where these are all.
+    """
+    every = named_elements(rows, output)
+    chosen = [every[i] for i in thinned(len(every), _MOST_CURVES)]
+    all_drawn = len(chosen) == len(every)
+    return chosen, "" if all_drawn else f"{len(chosen)} of {len(every)} elements"
+
+
+def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
+    """Return the shade and line style of a curve: of two dimensions, the first sets the line."""
+    if len(element.place) < 2:
+        return SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
+    firsts = [next(iter(one.place.values())) for one in chosen]
+    line = list(dict.fromkeys(firsts)).index(firsts[i])
+    return SHADES[firsts[:i].count(firsts[i]) % len(SHADES)], LINES[line % len(LINES)]
+
+
+def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:
+    """Write a wrapped title: the place of the element drawn, how many rows there are, and more."""
+    texts = filter(None, (of, rows_in_words(chosen), *more))
+    text = printed(", ".join(texts))  # no line breaks within a number
+    axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
+
+
+def display_unit(units: str, values: Floats) -> Unit:
+    """Return the unit of an axis that shows these values of an output."""
+    return unit_of(units, typical(values))
+
+
+def input_axis(axes: Axes, ds: xr.Dataset, name: str, width: int = 44) -> float:
+    """Label the horizontal axis as that of an input, and return the size of its unit."""
+    unit = input_unit(ds, name)
+    axes.set_xlabel(labelled(ds[name], unit.name, width))
+    return unit.size
+
+
+def mark_thresholds(
+    axes: Axes, ds: xr.Dataset, element: Element, unit: Unit, vertical: bool = False
+) -> None:
+    """Draw the study's thresholds of an output as lines, those of an angle on both sides.
+
+    One that is so far away that it would squeeze the data is an arrow at the edge.
+
+    Parameters
+    ----------
+    axes : Axes
+        With the data.
+    ds : xarray.Dataset
+    element : Element
+    unit : Unit
+        That of the axis.
+    vertical : bool
+        Whether the output is on the vertical axis.
+    """
+    ends, scale = (axes.get_ylim, axes.get_yscale) if vertical else (axes.get_xlim, axes.get_xscale)
+    line = axes.axhline if vertical else axes.axvline
+    for asked in analysis_of(ds).thresholds.get(element.output, ()):
+        at = asked / unit.size
+        sign = "±" if element.is_angle else ""
+        words = minus(f"threshold {sign}{threshold(asked, element.units)}")
+        low, high = ends()
+        for place in (-at, at) if element.is_angle else (at,):
+            style: Any = {"color": LIMIT, "label": words}
+            if _is_near(place, low, high, scale() == "log"):
+                line(place, lw=1.0, ls=(0, (4, 1.5)), **style)
+            else:
+                edge = float(place > high)
+                arrow = ("v^" if vertical else "<>")[int(edge)]
+                spot = (0.5, edge) if vertical else (edge, 0.5)
+                style["label"] += ", outside the frame"
+                axes.plot(*spot, arrow, ms=5, transform=axes.transAxes, clip_on=False, **style)
+            words = f"_{words}"  # one line of the legend
+
+
+def _is_near(place: float, low: float, high: float, logarithmic: bool) -> bool:
+    if logarithmic and place <= 0:
+        return False
+    place, low, high = np.log10([place, low, high]) if logarithmic else (place, low, high)
+    return bool(low - (high - low) / 2 <= place <= high + (high - low) / 2)
+
+
+def bins(values: Floats) -> tuple[Floats, bool]:
+    """Return the edges of bins for a histogram, and whether its axis is logarithmic."""
+    if len(values) == 0:
+        return np.array([0.0, 1.0]), False
+    wide = is_wide(values)
+    scaled = np.log10(values) if wide else values
+    if np.ptp(scaled) <= 1e-9 * np.abs(scaled).max():  # but for rounding, one value
+        scaled = scaled[:1]
+    low, high = scaled.min(), scaled.max()
+    if high - low <= _MOST_BINS and not wide and (scaled == np.round(scaled)).all():
+        return np.arange(low - 0.5, high + 1.0), False  # counts: a bin for each
+    edges = np.histogram_bin_edges(scaled, _bin_count(scaled))
+    if wide:
+        edges = 10**edges
+        edges[0], edges[-1] = values.min(), values.max()  # not rounded: many rows may lie there
+    return edges, wide
+
+
+def shares_in_bins(
+    element: Element, kept: Mask, edges: Floats, unit: Unit, part: Mask | None = None
+) -> Floats:
+    """Return the share of the rows kept that lies in each bin, or that a part of them has there."""
+    worth = np.ones(len(kept)) if element.weights is None else element.weights
+    own = kept if part is None else kept & part
+    found = np.histogram(element.values[own] / unit.size, edges, weights=worth[own])[0]
+    total = worth[kept].sum()
+    return np.asarray(found / total if total > 0 else found)
+
+
+def _bin_count(values: Floats) -> int:
+    """Return the number of bins: by Scott's rule, or Freedman's for a peak beside a long tail."""
+    middle = np.subtract(*np.quantile(values, (0.75, 0.25)))
+    widths = [width for width in (3.49 * values.std(), 2 * middle) if width > 0]
+    if not widths:
+        return 1
+    return int(min(np.ceil(np.ptp(values) * np.cbrt(len(values)) / min(widths)), _MOST_BINS))
+
+
+def occurring_regimes(rows: xr.Dataset) -> dict[str, tuple[int, str]]:
+    """Return code and colour of each regime that occurs, by its label, in the order of the model.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Rows of a result, of a model with regimes or not.
+
+    Returns
+    -------
+    dict of str to tuple
+        A regime has the same colour in all figures, whichever others occur.
+    """
+    if "regime" not in rows:
+        return {}
+    there = set(np.unique(rows["regime"].values).tolist())
+    known = [(name, code) for code, name in flags(rows["regime"]) if code >= 0]
+    coloured = zip(known, cycle(COLOURS))
+    return {literal(name): (code, colour) for (name, code), colour in coloured if code in there}

@@ -1,0 +1,68 @@
+"""The figure of the probability of an event over the input that decides it."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.assess.answer.answer import answer
+from uq.assess.answer.parts import Event
+from uq.assess.answer.wording import called
+from uq.errors import InputError
+from uq.render.figures.index_plot import output_of
+from uq.render.figures.panel import column, finish, title
+from uq.render.figures.style import INK, styled
+from uq.render.figures.words import as_label, symbol_of
+
+
+@styled
+def event_probability(
+    ds: xr.Dataset, output: str, *, event: Event | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw the probability of an event in parts of the input that decides it, with 95 % intervals.
+
+    The dashed line is the probability over all rows.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        The event, such as ``P(life<86400.0)`` or ``P(regime=periodic)``.
+    event : Event, optional
+        What is known of it, if already computed.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When the study asks for no such event, or no input is known to decide it.
+    """
+    event = event or next((one for one in answer(ds).events if one.name == output), None)
+    if event is None or event.curve is None:
+        raise InputError(f"'{output}': no input is known to decide it, or the study does not ask")
+    curve, colour = event.curve, INK
+    edges = curve.edges / event.over_unit.per
+    value, low, high = np.array([one.numbers for one in curve.shares]).T
+    what = f"rows that {event.clause}"
+    (panel,) = column(axes, 2.1)
+    band = (_ended(low), _ended(high))
+    panel.stairs(value, edges, baseline=None, color=colour, lw=1.4, label="in parts of the input")
+    words = "95 % intervals, pointwise"
+    panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0, label=words)
+    panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9, label="of all rows")
+    panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
+    title(panel, *(as_label(one, width=46) for one in (output_of(ds, event.name), what)))
+    over = called(event.over)  # as the sentence beside the figure does
+    panel.set_xlabel(as_label(over, event.over_unit.name, symbol=symbol_of(ds[event.over])))
+    return finish(panel)
+
+
+def _ended(values: np.ndarray) -> np.ndarray:
+    """Return one number for each edge of the steps."""
+    return np.append(values, values[-1])

@@ -1,0 +1,122 @@
+"""A figure: its layout and its files."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
+
+from uq.files.interrupts import undone
+from uq.files.paths import file_behind
+from uq.render.figures.style import styled
+
+DOTS_PER_INCH = 200
+_DOTS_PER_INCH_SHOWN = 144
+
+
+class Drawing(Figure):
+    """A figure that notebooks display without pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        png = BytesIO()
+        self.savefig(png, format="png", dpi=_DOTS_PER_INCH_SHOWN)
+        return png.getvalue()
+
+
+@styled
+def lay_out(figure: Figure) -> None:
+    """Lay out a figure once for all its files."""
+    figure.set_dpi(DOTS_PER_INCH)
+    FigureCanvasAgg(figure)
+    if engine := figure.get_layout_engine():
+        before = _ticks(figure)
+        engine.execute(figure)
+        changed = _ticks(figure) != before  # those of the new size may call for longer numbers
+        _keep_ticks(figure)
+        if changed:
+            engine.execute(figure)
+        figure.set_layout_engine("none")  # or else each file would repeat it
+
+
+def _scales(figure: Figure) -> Iterator[Axis]:
+    """Yield both axes of each panel, and of each second scale beside one."""
+    for panel in figure.axes:
+        for axes in (panel, *panel.child_axes):
+            yield from (axes.xaxis, axes.yaxis)
+
+
+def _ticks(figure: Figure) -> list[list[float]]:
+    """Return the places of all ticks."""
+    return [list(axis.get_majorticklocs()) for axis in _scales(figure)]
+
+
+def _keep_ticks(figure: Figure) -> None:
+    """Fix the ticks: others at the next size would need other room."""
+    for axis in _scales(figure):
+        axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
+
+
+@contextmanager
+def _fonts_without_layout() -> Iterator[None]:
+    """Embed fonts without their tables of ligatures and kerning.
+
+    matplotlib has placed each letter; to cut these tables down takes most of the time of a PDF.
+    """
+    from fontTools.subset import Options
+
+    before = Options._drop_tables_default
+    Options._drop_tables_default = [*before, "GDEF", "GPOS", "GSUB", "kern"]
+    try:
+        yield
+    finally:
+        Options._drop_tables_default = before
+
+
+@styled
+def write(figure: Figure, path: Path) -> list[Path]:
+    """Write a figure as PNG, SVG and PDF, with reproducible bytes, and return their paths.
+
+    Parameters
+    ----------
+    figure : Figure
+    path : Path
+        Without a suffix.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    InputError
+        When one of them exists and is not a file.
+    """
+    png, svg, pdf = files = [path.with_name(f"{path.name}.{end}") for end in ("png", "svg", "pdf")]
+    for file in files:
+        file_behind(file)
+    lay_out(figure)
+    with replaced(png) as part:
+        FigureCanvasAgg(figure).print_png(part, metadata={"Software": None})
+    with replaced(svg) as part:
+        FigureCanvasSVG(figure).print_svg(part, metadata={"Date": None, "Creator": None})
+    no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
+    with _fonts_without_layout(), replaced(pdf) as part:
+        FigureCanvasPdf(figure).print_pdf(part, metadata=no_metadata)
+    return files
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Yield a temporary name; the figure written under it takes the place of `path` if complete."""
+    file = file_behind(path)
+    part = file.with_name(f".{file.stem}.{os.getpid()}{path.suffix}")  # matplotlib reads the ending
+    with undone(lambda: part.unlink(missing_ok=True)):
+        yield part
+        os.replace(part, file)

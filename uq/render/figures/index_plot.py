@@ -1,0 +1,150 @@
+"""The figure of sensitivity indices."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.assess.ranked_indices import size
+from uq.assess.sensitivities import TargetIndices, sensitivities
+from uq.assess.targets import FORMS, split_name
+from uq.errors import InputError
+from uq.indices.index import BY_CORRELATION
+from uq.render.figures.panel import arrows, column, finish, heading, roomy
+from uq.render.figures.style import BARS, INK, styled
+from uq.render.figures.words import as_label, element_in_words, labelled
+from uq.result.elements import analysis_of, named_elements
+from uq.result.variables import is_category
+from uq.text.numbers import threshold
+
+
+@styled
+def index_bars(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    method: str | None = None,
+    found: TargetIndices | None = None,
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        A name that `uq.sensitivity` returns.
+    method : str, optional
+        By default the first that the study asks for.
+    found : TargetIndices, optional
+        The indices, if already computed.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When there is no such output, the name is ambiguous, or there are no indices.
+    """
+    found = found or _only(ds, output, method)
+    name, every = found.name, found.kinds().items()
+    kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
+    last = list(kinds.values())[-1]
+    parameters = sorted(last, key=lambda parameter: size(last[parameter]))
+    labels = [
+        labelled(ds[parameter], width=30)
+        + f"\n({BY_CORRELATION})" * (parameter in found.indices.by_correlation)
+        for parameter in parameters
+    ]
+    lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
+    said = as_label(subject(ds, name), width=56)
+    (panel,) = column(axes, 0.8 + 0.13 * (lines.sum() + said.count("\n")))
+    middle = np.cumsum(lines) - lines / 2
+    thickness, ends = 0.8 * lines.min() / len(kinds), []
+    for i, (kind, values) in enumerate(kinds.items()):
+        y = middle + thickness * (len(kinds) / 2 - i - 0.5)
+        value, low, high = np.array([values[parameter].numbers for parameter in parameters]).T
+        panel.barh(y, value, thickness, color=BARS[i % len(BARS)], label=kind.words)
+        panel.hlines(y, low, high, color=INK, lw=0.8)
+        ends.append((y, low, high))
+    for kind, null in found.indices.nulls.items():
+        colour = BARS[list(kinds).index(kind) % len(BARS)] if len(kinds) > 1 else INK
+        one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
+        largest = "95 % limit for the largest of them"
+        limits = {one: null.one, largest: null.largest}
+        if null.largest == null.one:
+            limits = {f"{one}, or several": null.one}
+        for line, (label, limit) in zip(("--", ":"), limits.items(), strict=False):
+            if np.isfinite(limit):
+                named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
+                panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)
+    panel.axvline(0, color=INK, lw=0.6)
+    shares = all(kind.unit != "output" for kind in kinds)
+    if shares:
+        panel.set_xlim(range_of_indices(panel.get_xlim()))
+    for y, low, high in ends:
+        arrows(panel, y, low, high, "x", color=INK)
+    panel.set_yticks(middle, labels)
+    panel.set_ylim(0, lines.sum())
+    roomy(panel, ticks=3)  # the labels take most of the width
+    known = any(np.isfinite(one.low) for values in kinds.values() for one in values.values())
+    form, *_ = split_name(name)
+    unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
+    axis = "Sensitivity index" if shares else unit
+    panel.set_xlabel(axis + known * ",\nwith 95 % interval")
+    heading(panel, said)
+    return finish(panel)
+
+
+def range_of_indices(ends: tuple[float, float]) -> tuple[float, float]:
+    """Return the range of an axis of indices: intervals far outside must not squeeze the bars."""
+    return max(ends[0], -0.25), min(ends[1], 1.25)
+
+
+def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
+    """Return the indices of the only target of a name."""
+    found = sensitivities(ds, method, output).targets
+    if len(found) > 1:
+        raise InputError(f"'{output}' is ambiguous; name one of: {', '.join(found)}")
+    ((name, one),) = found.items()
+    if one.refused:
+        raise InputError(f"{name}: {one.refused}")
+    return one
+
+
+def subject(ds: xr.Dataset, name: str) -> str:
+    """Describe a target of `uq.assess.sensitivities`."""
+    form, inside, at = split_name(name)
+    category, _, label = inside.rpartition("=")
+    words = output_of(ds, name)
+    if is_category(ds, category.partition("[")[0]):
+        return f"whether the {words.removeprefix('the ')}{',' * ('[' in category)} is {label}"
+    element, *_ = named_elements(ds, inside)
+    if at:
+        asked = analysis_of(ds).thresholds.get(element.output, ())
+        at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)
+        side = "below" if "<" in name else "above"
+        size = "magnitude of the " * element.is_angle
+        what = f"{size}{words.removeprefix('the ')}{',' * (',' in words)}"
+        words = f"whether the {what} is {side} {at}"
+    elif form:
+        words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
+    return words
+
+
+def output_of(ds: xr.Dataset, name: str) -> str:
+    """Describe the output that a target of `uq.assess.sensitivities` is of, with its place."""
+    _, inside, _ = split_name(name)
+    category = inside.rpartition("=")[0]
+    output, _, place = category.partition("[")
+    if is_category(ds, output):
+        return ", ".join(filter(None, (ds[output].attrs["long_name"], place.removesuffix("]"))))
+    element, *others = named_elements(ds, inside)
+    if others:
+        return f"{element.meaning}, all {1 + len(others)} elements together"
+    return element_in_words(ds, element)

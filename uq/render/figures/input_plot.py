@@ -1,0 +1,94 @@
+"""The figure of the inputs: the stated law of each, and its sampled values."""
+
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.assess.sampled_inputs import EVERYWHERE, laws_and_values, weights_of_samples
+from uq.errors import InputError, choices
+from uq.render.figures.elements_plot import bins, input_axis
+from uq.render.figures.panel import figure_of, grid, logarithmic, roomy
+from uq.render.figures.style import INK, ROWS, styled
+from uq.render.figures.words import as_label
+from uq.result.elements import Floats, independent_rows
+from uq.sampling.law import Law
+from uq.sampling.truncation import cdf_within
+from uq.text.numbers import grouped, printed
+
+_IN_ONE_COLUMN = 2  # inputs
+
+
+@styled
+def inputs(
+    ds: xr.Dataset, *, names: Sequence[str] | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw the distribution of each input, with its stated law.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    names : sequence of str, optional
+        Inputs; by default all.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its area. By default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When the rows do not follow the laws.
+    """
+    found, weights = laws_and_values(ds), weights_of_samples(ds)
+    if not found:
+        raise InputError(f"the rows of a '{ds.attrs['design']}' design do not follow the laws")
+    if unknown := [name for name in names or () if name not in found]:
+        raise InputError(f"no such input '{unknown[0]}' (allowed: {choices(found)})")
+    found = {name: found[name] for name in names or found}
+    columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
+    lines = -(-len(found) // columns)
+    panels = grid(axes, 0.3 + 1.4 * lines, lines, columns).ravel()
+    for panel in panels[len(found) :]:
+        panel.set_axis_off()
+    for panel, (name, (law, values)) in zip(panels, found.items(), strict=False):
+        width = 44 if columns == 1 else 20
+        per = 1.0
+        if law.times is None:
+            per = input_axis(panel, ds, name, width)
+        else:
+            factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
+            panel.set_xlabel(as_label(factor, width=width))
+        _panel(panel, law, values, weights, per, ticks=6 // columns)
+    count = len(next(iter(found.values()))[1])
+    rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
+    several = independent_rows(ds).sizes["sample"] > count
+    of = ", one of each sample" * several
+    said = f"Share of {rows} per bin{of}; line: stated law"
+    panels[0].set_title(textwrap.fill(printed(said), 50).replace("\u00a0", " "), loc="left")
+    return figure_of(panels[0])
+
+
+def _panel(
+    axes: Axes, law: Law, values: Floats, weights: Floats | None, per: float, ticks: int
+) -> None:
+    edges, wide = bins(values)
+    edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
+    worth = np.ones(len(values)) if weights is None else weights
+    rows = np.histogram(values, edges, weights=worth)[0] / worth.sum()
+    # As in the histogram: bins include their lower end, the last one also its upper end.
+    upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
+    lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
+    stated = np.diff(np.append(lower, upper))
+    axes.stairs(rows, edges / per, fill=True, color=ROWS)
+    axes.stairs(stated, edges / per, color=INK, lw=1.0)
+    axes.set_ylim(0, None)
+    roomy(axes, ticks)
+    if wide:
+        logarithmic(axes)

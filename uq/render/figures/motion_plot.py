@@ -1,0 +1,246 @@
+"""Figures of a machine's motion: time histories, phase portraits and Poincaré sections."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.errors import InputError
+from uq.render.figures.figure import Drawing
+from uq.render.figures.panel import above, column, figure_of, finish, roomy, whole_numbers
+from uq.render.figures.quantities import families, find, label_axes, pair, scale_of, with_quantities
+from uq.render.figures.style import (
+    COLOURS,
+    INK,
+    LIMIT,
+    LINES,
+    MARK,
+    PAGE,
+    are_many,
+    point_size,
+    styled,
+)
+from uq.render.figures.words import labelled, powers
+from uq.result.elements import Floats
+
+_LAST = 4  # periods of the drive
+_FINEST = 1e-5  # of the largest value, below which a change is one of rounding
+_ABOVE = 54  # width of a label above a panel of the left column [characters]
+_BESIDE = 32  # width of the label of the vertical axis [characters]
+
+
+@styled
+def history(
+    ds: xr.Dataset,
+    quantities: Sequence[str | Sequence[str]] | None = None,
+    *,
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw quantities against time, a panel for each.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.simulate`, with a ``trajectory``, or any Dataset with variables along ``time``.
+        Select a part of it by ``ds.sel(time=slice(3, 4))``.
+    quantities : sequence of str or of sequences of str, optional
+        In this order, by default all; quantities in an inner sequence share a panel, for instance
+        ``["disphasing_angle", ["speed_1", "speed_2"]]`` for a run-up.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its area. By default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist, or quantities in one panel have different units.
+    """
+    ds = with_quantities(ds)
+    if quantities is None:
+        quantities = [str(name) for name, one in ds.data_vars.items() if one.dims == ("time",)]
+    groups = [[one] if isinstance(one, str) else list(one) for one in quantities]
+    if not groups:
+        raise InputError("no variable varies along time")
+    found = [[find(ds, name) for name in group] for group in groups]
+    scales = [scale_of(group) for group in found]
+    clock = scale_of([find(ds, "time")])
+    time = ds["time"].values * clock.factor
+    panels = column(axes, 0.4 + 1.0 * len(groups), len(groups))
+    for panel, group, scale in zip(panels, found, scales, strict=True):
+        for i, one in enumerate(group):
+            colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
+            series, text = one.values * scale.factor, labelled(one)
+            panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
+        if len(group) > 1:
+            panel.set_ylabel(f"[{powers(scale.unit)}]")
+            panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
+        else:
+            above(panel, labelled(group[0], scale.unit))
+    panels[-1].set_xlabel(labelled(ds["time"], clock.unit))
+    return figure_of(panels[0])
+
+
+@styled
+def motion(ds: xr.Dataset) -> Figure:
+    """Draw a simulated motion: the whole time history, and its last periods beside it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.simulate`, with a ``trajectory``.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each of at most six quantities. Dashed lines are stops; angles of turning parts
+        lie within half a turn to each side.
+    """
+    trajectory = ds["trajectory"]
+    order = trajectory["shown"].values
+    places = sorted(np.flatnonzero(order >= 0), key=lambda place: order[place])
+    series = with_quantities(ds)
+    period = float(trajectory.attrs["period"])
+    clock = scale_of([ds["time"]])
+    time = ds["time"].values
+    last = time >= time[-1] - _LAST * period
+    columns = 2 if 0 < last.sum() < len(time) / 2 else 1
+    figure = Drawing(figsize=(PAGE, 0.6 + 0.95 * len(places)), layout="constrained")
+    options: dict[str, Any] = {"width_ratios": (3, 2)} if columns == 2 else {}
+    panels = figure.subplots(len(places), columns, squeeze=False, sharex="col", **options)
+    for row, place in zip(panels, places, strict=True):
+        one = series[str(trajectory["quantity"].values[place])]
+        if trajectory["turns"].values[place]:
+            one = one.copy(data=_wrapped(one.values))
+            one.attrs["long_name"] = str(one.attrs["long_name"]).removesuffix(", turns included")
+        scale = scale_of([one])
+        stops = trajectory["lower_stop"].values[place], trajectory["upper_stop"].values[place]
+        for panel, part in zip(row, (slice(None), last), strict=False):
+            y = one.values[part] * scale.factor
+            panel.plot(time[part] * clock.factor, y, color=INK, lw=0.6)
+            for stop in filter(np.isfinite, stops):
+                panel.axhline(stop * scale.factor, color=LIMIT, ls="--", lw=0.8)
+            _widen(panel, _FINEST * np.nanmax(np.abs(one.values), initial=0.0) * scale.factor)
+        text = labelled(one, scale.unit, width=_ABOVE)
+        if count := int(np.isfinite(stops).sum()):
+            dashed = f"dashed: stop{'s' * (count > 1)}"
+            text += (", " if len(text) + len(dashed) < _ABOVE else "\n") + dashed
+        above(row[0], text)
+    for panel in panels[-1]:
+        panel.set_xlabel(labelled(ds["time"], clock.unit))
+        roomy(panel)
+    if columns == 2:
+        above(panels[0, 1], f"The last {_LAST} periods of the drive")
+    return figure
+
+
+def _widen(axes: Axes, least: float) -> None:
+    """Show at least a range of the vertical axis, and its numbers in full."""
+    low, high = axes.get_ylim()
+    if high - low < least:
+        axes.set_ylim((low + high - least) / 2, (low + high + least) / 2)
+    whole_numbers(axes.yaxis)
+
+
+def _wrapped(angle: Floats) -> Floats:
+    """Return an angle [rad] within half a turn to each side, NaN where it jumps from end to end."""
+    wrapped = (angle + np.pi) % (2 * np.pi) - np.pi
+    wrapped[1:][np.abs(np.diff(wrapped)) > np.pi] = np.nan
+    return wrapped
+
+
+@styled
+def phase_portrait(
+    ds: xr.Dataset,
+    output: str = "velocity",
+    *,
+    against: str = "displacement",
+    section: xr.Dataset | None = None,
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw one quantity of a motion against another, and the points of its Poincaré section.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.simulate`, or any Dataset with both quantities along time or phase, the last
+        dimension. A preceding dimension, if there is one, gives one curve for each coordinate.
+    output, against : str
+        The quantities on the vertical and on the horizontal axis.
+    section : xarray.Dataset, optional
+        The same quantities at the instants of a section.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    ds = with_quantities(ds)
+    across, up = pair(ds, against, output)
+    (axes,) = column(axes, 2.6)
+    scales = label_axes(axes, across, up, _BESIDE)
+    for xs, ys, style in families(across, up, scales):
+        thin = 0.7 if len(xs) < 5000 else 0.4
+        axes.plot(xs, ys, lw=thin, rasterized=are_many(len(xs) // 10), **style)
+    if section is not None:
+        for xs, ys, style in families(*pair(section, against, output), scales):
+            name = f"Poincaré section {style['label']}".strip()
+            axes.plot(xs, ys, "ko", ms=MARK, mew=0, label=name)
+    return finish(axes)
+
+
+@styled
+def section(
+    ds: xr.Dataset,
+    output: str = "velocity",
+    *,
+    against: str = "displacement",
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw the points of a Poincaré section.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Both quantities at the instants of the section, the last dimension. A preceding dimension,
+        if there is one, gives one colour for each coordinate.
+    output, against, axes
+        As in `phase_portrait`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    across, up = pair(ds, against, output)
+    (axes,) = column(axes, 2.6)
+    scales = label_axes(axes, across, up, _BESIDE)
+    for xs, ys, style in families(across, up, scales):
+        size, many = point_size("section", _places(xs, ys)), are_many(len(xs))
+        axes.plot(xs, ys, "o", ms=size, mew=0, rasterized=many, **style)
+    return finish(axes)
+
+
+def _places(xs: Floats, ys: Floats) -> int:
+    """Return how many different places points visit, to a hundredth of the figure."""
+    points = np.stack([xs, ys], axis=1)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        return 0
+    return len(np.unique(np.round(100 * points / np.ptp(points, axis=0).clip(1e-300)), axis=0))

@@ -1,0 +1,156 @@
+"""Quantities of a Dataset on axes: their labels, units and scales."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from uq.errors import InputError, nearest
+from uq.render.figures.style import COLOURS
+from uq.render.figures.words import in_words, labelled, literal
+from uq.result.elements import Floats
+from uq.text.units import unit_of
+
+
+class Scale(NamedTuple):
+    """The scale and unit of an axis.
+
+    Attributes
+    ----------
+    factor : float
+        Values are multiplied by it.
+    unit : str
+        Of the scaled values.
+    """
+
+    factor: float
+    unit: str
+
+
+def with_quantities(ds: xr.Dataset) -> xr.Dataset:
+    """Return a time history of `uq.simulate` as a Dataset with one variable per quantity.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Returned unchanged if it has no ``trajectory``.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    if "trajectory" not in ds:
+        return ds
+    trajectory = ds["trajectory"]
+    series = trajectory.reset_coords(drop=True).to_dataset("quantity")
+    for one in trajectory.transpose("quantity", "time"):
+        words = {"units": one["units"].item(), "long_name": one["meaning"].item()}
+        series[one["quantity"].item()].attrs = words
+    return series
+
+
+def find(ds: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a variable by its name.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    if name not in ds.variables:
+        names = [str(other) for other in ds.variables]
+        raise InputError(f"no such quantity '{name}'{nearest(name, names)}")
+    return ds[name]
+
+
+def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return two variables broadcast against each other, along one or two dimensions.
+
+    Raises
+    ------
+    InputError
+        When one does not exist, or they are not along one or two dimensions.
+    """
+    across, up = xr.broadcast(find(ds, x), find(ds, y))
+    if across.ndim not in (1, 2):
+        dims = ", ".join(map(str, across.dims)) or "nothing"
+        raise InputError(f"'{y}' and '{x}' vary along {dims}, not one or two dimensions")
+    return across, up
+
+
+def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
+    """Return a suitable scale for quantities that share an axis: 0.00025 m become 0.25 mm.
+
+    Parameters
+    ----------
+    variables : sequence of xarray.DataArray
+        Numeric.
+
+    Returns
+    -------
+    Scale
+
+    Raises
+    ------
+    InputError
+        When their units differ, or they are not numeric.
+    """
+    for one in variables:
+        if one.dtype.kind not in "fiub":
+            raise InputError(f"'{one.name}' is not numeric and cannot be drawn")
+    units = {str(one.attrs.get("units", "1")): one.name for one in variables}
+    if len(units) > 1:
+        unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
+        raise InputError(f"quantities of different units cannot share an axis: {unlike}")
+    (unit,) = units
+    shown = unit_of(unit, max(_largest(one) for one in variables))
+    return Scale(1 / shown.size, shown.name)
+
+
+def label_axes(
+    axes: Axes, across: xr.DataArray, up: xr.DataArray, width: int = 26
+) -> tuple[Scale, Scale]:
+    """Label both axes of a panel, and return their scales.
+
+    Parameters
+    ----------
+    axes : Axes
+    across, up : xarray.DataArray
+        The horizontal and the vertical quantity.
+    width : int
+        Of a line beside the vertical axis [characters].
+    """
+    scales = scale_of([across]), scale_of([up])
+    axes.set_xlabel(labelled(across, scales[0].unit))
+    axes.set_ylabel(labelled(up, scales[1].unit, width))
+    return scales
+
+
+def families(
+    across: xr.DataArray, up: xr.DataArray, scales: Sequence[Scale]
+) -> Iterator[tuple[Floats, Floats, dict[str, Any]]]:
+    """Yield the scaled coordinates of each curve along the last dimension, its colour and label."""
+    if across.ndim == 1:
+        across, up = (one.expand_dims("") for one in (across, up))
+    for i, (x, y) in enumerate(zip(across.values, up.values, strict=True)):
+        name = place_in(across, i) if len(across) > 1 else ""
+        style = {"color": COLOURS[i % len(COLOURS)], "label": name}
+        yield x * scales[0].factor, y * scales[1].factor, style
+
+
+def place_in(variable: xr.DataArray, i: int) -> str:
+    """Return the words for one place along the first dimension: ``left``, ``start 2``."""
+    dim = str(variable.dims[0])
+    if dim not in variable.coords:
+        return f"{dim} {i + 1}"
+    value = variable[dim].values[i]
+    if isinstance(value, str):
+        return literal(value)
+    return literal(f"{in_words(variable[dim])} {value:g}")
+
+
+def _largest(variable: xr.DataArray) -> float:
+    values = np.abs(np.asarray(variable.values, float))
+    return float(values[np.isfinite(values)].max(initial=0.0))

@@ -1,0 +1,210 @@
+"""Figures of a machine's response: curves, bifurcation diagrams and basins of attraction."""
+
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from uq.errors import InputError
+from uq.render.figures.panel import column, finish
+from uq.render.figures.quantities import families, find, label_axes, pair, scale_of
+from uq.render.figures.style import COLOURS, LINES, are_many, point_size, styled
+from uq.render.figures.words import as_label, literal, powers
+from uq.text.numbers import in_unit, minus, percent
+from uq.text.units import Unit
+
+_MOST_CHANGES = 12  # of regime that are marked along a curve
+_WIDE, _NARROW = 60, 36  # characters of a line of the legend, of a figure and of a panel
+_OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
+
+
+@styled
+def curve(
+    ds: xr.Dataset, output: str, *, against: str | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
+
+    Dotted lines mark changes of ``ds["regime"]``, if present, along the curve, unless there are so
+    many that they would cover it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    output : str
+        A variable along one dimension, and optionally a second one, for instance ``site``, with
+        one curve for each coordinate.
+    against : str, optional
+        A variable along the first dimension, and optionally the second; by default the first
+        dimension.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    across, up = pair(ds, against or _first_dimension(ds, output), output)
+    (axes,) = column(axes, 2.2)
+    scales = label_axes(axes, across, up)
+    along = across.dims[0]
+    across, up = across.transpose(..., along), up.transpose(..., along)
+    for i, (xs, ys, style) in enumerate(families(across, up, scales)):
+        axes.plot(xs, ys, ls=LINES[i % len(LINES)], **style)
+    if "regime" in ds and ds["regime"].dims == (along,):
+        kinds = ds["regime"].values
+        changed = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
+        changes = np.unique(across.values[..., changed]) * scales[0].factor
+        for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
+            text = "" if i else "change of regime"
+            axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
+    return finish(axes)
+
+
+@styled
+def bifurcation(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    against: str | None = None,
+    by: str | None = None,
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw the values that a quantity takes at each value of a parameter.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    output : str
+        A variable along the dimension of the parameter and others, NaN where it has no value.
+    against : str, optional
+        The parameter, a variable along one dimension; by default the first dimension of `output`.
+    by : str, optional
+        A variable of text along the same dimension, for instance ``regime``, that sets the colour.
+        If its attribute ``flag_meanings`` lists the regimes of a model, each has the colour that it
+        has in figures of results.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    up, across = find(ds, output), find(ds, against or _first_dimension(ds, output))
+    kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
+    known = str(kinds.attrs.get("flag_meanings", "")).split()
+    (axes,) = column(axes, 2.4)
+    scales = label_axes(axes, across, up)
+    up, across, kinds = xr.broadcast(up, across, kinds)
+    there = np.isfinite(up.values)
+    values, places = (one.values * s.factor for one, s in ((up, scales[1]), (across, scales[0])))
+    for word, colour in _coloured(kinds.values[there], known):
+        chosen = there & (kinds.values == word)
+        points = places[chosen], values[chosen]
+        size = point_size("diagram", there.sum())
+        many = are_many(int(chosen.sum()))
+        axes.plot(*points, "o", ms=size, mew=0, color=colour, label=literal(word), rasterized=many)
+    return finish(axes)
+
+
+def _coloured(words: NDArray[Any], known: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the words that occur, each with its colour: those known have their own."""
+    there = {str(word) for word in np.unique(words)}
+    order = [*known, *sorted(there - set(known))]
+    return [pair for pair in zip(order, cycle(COLOURS)) if pair[0] in there]
+
+
+@styled
+def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = None) -> Figure:
+    """Draw which points of a grid lead to which attractor.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.basins`, over two parameters.
+    outputs : sequence of str
+        The legend lists their values at the first point of each basin, besides the categories and
+        the share of the grid.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When there are not two parameters, or an output does not exist.
+    """
+    attractor = find(ds, "attractor")
+    if attractor.ndim != 2:
+        raise InputError(f"basins are drawn over two parameters, not {attractor.ndim}")
+    across, up = (ds[dim] for dim in attractor.dims)
+    width = _WIDE if axes is None else _NARROW
+    texts = [_basin(ds.isel(basin=i), outputs, width) for i in range(ds.sizes["basin"])]
+    (axes,) = column(axes, 2.6)
+    scales = label_axes(axes, across, up)
+    # If there are more attractors than colours, the rare ones share the last.
+    shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
+    shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
+    axes.pcolormesh(
+        across.values * scales[0].factor,
+        up.values * scales[1].factor,
+        shown.T,
+        cmap=ListedColormap([*COLOURS, _OTHERS, _FAILED]),
+        vmin=-0.5,
+        vmax=len(COLOURS) + 1.5,
+        rasterized=True,
+    )
+    entries = list(zip(COLOURS, texts, strict=False))
+    rare = float(ds["share"][len(COLOURS) :].sum())
+    if len(texts) > len(COLOURS):
+        entries.append((_OTHERS, f"{len(texts) - len(COLOURS)} others, {percent(rare)}"))
+    if (attractor.values < 0).any():
+        entries.append((_FAILED, f"failed, {percent(float((attractor < 0).mean()))}"))
+    for colour, text in entries:
+        axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
+    return finish(axes)
+
+
+def _first_dimension(ds: xr.Dataset, output: str) -> str:
+    return str(next(iter(find(ds, output).dims), output))
+
+
+def _basin(one: xr.Dataset, outputs: Sequence[str], width: int) -> str:
+    """Describe an attractor: its categories, the chosen outputs and its share of the grid.
+
+    Within a width [characters].
+    """
+    known = []
+    for name, value in one.data_vars.items():
+        output = str(name).removeprefix("representative_")
+        if output != name and value.dtype.kind in "UO" and not value.ndim:
+            text = str(value.item())
+            known.append(f"{output.replace('_', ' ')} {text}" if text.isdecimal() else text)
+    for name in outputs:
+        value = find(one, f"representative_{name}")
+        scale = scale_of([value])
+        rounded = float(f"{value.item():.3g}")
+        text = powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor)))
+        known.append(minus(text))
+    return as_label(", ".join([*known, percent(float(one["share"]))]), width=width)

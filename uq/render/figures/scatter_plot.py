@@ -1,0 +1,307 @@
+"""Scatter plots: an output against its most influential inputs, and inputs by regime."""
+
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from uq.assess.independent_inputs import independent_inputs
+from uq.errors import InputError
+from uq.indices.index import RefusedError
+from uq.indices.measures import ks_distances
+from uq.render.figures.elements_plot import (
+    display_unit,
+    input_axis,
+    mark_thresholds,
+    occurring_regimes,
+)
+from uq.render.figures.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
+from uq.render.figures.style import INK, PAGE, ROWS, SHADES, WIDTH, point_size, styled, thinned
+from uq.render.figures.words import as_label, label, labelled, rows_in_words
+from uq.result.elements import (
+    Element,
+    Floats,
+    Mask,
+    independent_rows,
+    named_elements,
+    replicates_of,
+)
+from uq.result.variables import input_unit
+from uq.result.weights import refuse_weights
+from uq.stats import intervals, order_statistics
+from uq.stats.tails import lacks_variance
+from uq.text.numbers import counted
+
+_MOST_INPUTS = 3
+_MOST_POINTS = 3000
+_IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
+_EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
+_RARELY = 3  # times the mean distance of neighbours, which chance leaves empty once in hundreds
+_TORN = 8  # times that distance, which chance hardly ever leaves empty within a median's interval
+_SHORTEST = 3  # slices that make a line
+_GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
+
+
+@styled
+def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+    """Draw an output against its most influential inputs, with conditional means.
+
+    Rows in several regimes have a line for each, which stops where an input has no such row.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        An output or one element of it; for an output with several elements, the first is drawn.
+        If lives never end or are censored, or values spread over decades, the line is the
+        conditional median.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its area. By default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    refuse_weights(ds, "a scatter plot")
+    rows = independent_rows(ds)
+    element = named_elements(rows, output)[0]
+    inputs = independent_inputs(rows)
+    first = leading(inputs, element)[:_MOST_INPUTS]
+    alone = len(first) < 2
+    width = WIDTH if alone else PAGE
+    panels = grid(axes, 2.4, 1, len(first), width, sharey=True)[0]
+    unit = display_unit(element.units, element.values)
+    shown = replace(
+        element,
+        values=element.values / unit.size,
+    )
+    wide = is_wide(shown.values[np.isfinite(shown.values)])
+    parts = _parts(rows, len(element.values))
+    medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
+    for panel, name in zip(panels, first, strict=True):
+        per = input_axis(panel, ds, name, width=46 if alone else 30)
+        x = inputs[name] / per
+        across = is_wide(x)
+        if across:
+            logarithmic(panel)
+        _points(panel, x, shown)
+        for words, (own, colour) in parts.items():
+            _conditional(panel, x, shown, own, colour, words, medians, replicates_of(rows) is None)
+        if not across:
+            roomy(panel, 6 if alone else 4)
+        whole_numbers(panel.yaxis)
+        if wide:
+            logarithmic(panel, vertical=True)
+        if not np.isfinite(shown.values).any():
+            panel.set_yticks([])
+        mark_thresholds(panel, ds, element, unit, vertical=True)
+    above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(ds, element)]
+    what = "median" if medians else "mean"
+    of_each = f"lines: {what} in slices of a regime's rows" if len(parts) > 1 else ""
+    said = [rows_in_words([element]), of_each]
+    if not alone:
+        above, said = [", ".join(filter(None, above))], ["; ".join(filter(None, said))]
+    title(panels[0], *above, *said)
+    return finish(panels[0])
+
+
+def _parts(rows: xr.Dataset, count: int) -> dict[str, tuple[Mask, str]]:
+    """Return which rows a line describes, and its colour: of each regime, or of all rows."""
+    regimes = occurring_regimes(rows)
+    if len(regimes) < 2:
+        return {"": (np.ones(count, dtype=bool), INK)}
+    codes = rows["regime"].values
+    return {name: (codes == code, colour) for name, (code, colour) in regimes.items()}
+
+
+def _points(axes: Axes, x: Floats, element: Element) -> None:
+    y, shown = element.values, np.zeros(len(x), dtype=bool)
+    shown[thinned(len(x), _MOST_POINTS)] = True
+    ended = shown & np.isfinite(y) & ~element.censored
+    size = point_size("cloud", shown.sum())
+    style: Any = {"ls": "", "rasterized": True, "color": ROWS, "mew": 0}
+    axes.plot(x[ended], y[ended], ".", ms=size, alpha=0.7, **style)
+    if (going := shown & element.censored & np.isfinite(y)).any():
+        axes.plot(x[going], y[going], "^", ms=size, label="censored at the horizon", **style)
+    if (never := shown & element.never).any():
+        edge: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "rasterized": True}
+        words, top = "never (at the top edge)", np.ones(never.sum())
+        axes.plot(x[never], top, "|", ms=5, color=SHADES[2], label=words, **edge)
+
+
+def _needs_median(element: Element, own: Mask) -> bool:
+    """Whether the mean of some rows is infinite or without information."""
+    values = element.at_most[own[element.present]]
+    return not np.isfinite(values).all() or lacks_variance(values)
+
+
+def _conditional(
+    axes: Axes,
+    x: Floats,
+    element: Element,
+    own: Mask,
+    colour: str,
+    regime: str,
+    medians: bool,
+    independent: bool,
+) -> None:
+    """Draw the mean (or median) of some rows within slices of the input, with its 95 % band."""
+    there = own[element.present]
+    values, x = element.at_most[there], x[element.present][there]
+    count = min(_MOST_BINS, len(x) // _IN_BIN)
+    if count < 2:
+        return
+    slices = np.array_split(np.argsort(x, kind="stable"), count)
+    middle = np.array([x[rows].mean() for rows in slices])
+    if medians:
+        line = np.array([order_statistics.quantile(values[rows], 0.5) for rows in slices])
+        ends = [order_statistics.quantile_interval(values[rows], 0.5) for rows in slices]
+    else:
+        line = np.array([values[rows].mean() for rows in slices])
+        ends = [intervals.mean_interval(values[rows]) for rows in slices]
+    empty = np.array(
+        [_is_empty(values[rows], at, axes) for rows, at in zip(slices, line, strict=True)]
+    )
+    if medians:
+        empty |= [
+            _is_torn(values[rows], *one, axes) for rows, one in zip(slices, ends, strict=True)
+        ]
+    empty |= _fragments(~empty)
+    seen = np.isfinite(line) & ~empty
+    line = np.where(seen & ~_fragments(seen), line, np.nan)
+    low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
+    # A gap between neighbouring rows interrupts the line: nothing is known in between.
+    inside = np.sort(x)
+    edges = np.array(axes.get_xlim())
+    along, width = (np.log, np.log(edges)) if axes.get_xscale() == "log" else (np.array, edges)
+    jumps = np.flatnonzero(np.diff(along(inside)) > _GAP * np.ptp(width))
+    gaps = np.searchsorted(middle, (inside[jumps] + inside[jumps + 1]) / 2)
+    middle, line, low, high = (np.insert(one, gaps, np.nan) for one in (middle, line, low, high))
+    what = f"{'median' if medians else 'mean'} in slices of {counted(len(x) // count, 'row')}"
+    if independent:
+        what += ", 95 % band"
+    if np.isfinite(line).any():
+        axes.plot(middle, line, color=colour, label=regime or what)
+    ended = values[np.isfinite(values)]
+    if independent and len(ended):
+        top = ended.max()  # an infinite end would hide all others
+        band: Any = {"facecolor": (colour, 0.25), "edgecolor": (colour, 0.8), "lw": 0.4}
+        axes.fill_between(middle, low, np.minimum(high, top), **band)
+
+
+def _is_empty(values: Floats, at: float, axes: Axes) -> bool:
+    """Whether the rows of a slice leave an empty space around their mean or median."""
+    if not np.isfinite(at):
+        return False
+    ended = values[np.isfinite(values)]
+    by_chance = _RARELY * np.ptp(ended) / len(ended)
+    away = np.min(np.abs(ended - at))
+    return bool(away > max(_EMPTY * np.ptp(axes.get_ylim()), by_chance))
+
+
+def _is_torn(values: Floats, low: float, high: float, axes: Axes) -> bool:
+    """Whether the interval of a median reaches over an empty space to other rows."""
+    ended = np.sort(values[np.isfinite(values)])
+    inside = ended[(low <= ended) & (ended <= high)]
+    by_chance = _TORN * np.ptp(ended) / len(ended) if len(ended) else 0.0
+    widest = np.diff(inside).max(initial=0.0)
+    return bool(widest > max(2 * _EMPTY * np.ptp(axes.get_ylim()), by_chance))
+
+
+def _fragments(there: Mask) -> Mask:
+    """Return which places belong to runs too short for a line."""
+    run = np.cumsum(np.diff(there, prepend=False))
+    return there & (np.bincount(run)[run] < _SHORTEST)
+
+
+def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
+    """Return the inputs in order of how much the mean rank of the output varies over slices."""
+    from scipy.stats import rankdata
+
+    present = element.present
+    ranks = rankdata(element.at_most)
+    count = max(1, min(_MOST_BINS, len(ranks) // _IN_BIN))
+
+    def between(x: Floats) -> float:
+        slices = np.array_split(ranks[np.argsort(x[present], kind="stable")], count)
+        means = np.array([part.mean() if len(part) else 0.0 for part in slices])
+        return -float(np.average((means - ranks.mean()) ** 2)) if len(ranks) else 0.0
+
+    return sorted(inputs, key=lambda name: between(inputs[name]))
+
+
+@styled
+def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
+    """Draw the inputs that best separate the regimes against each other, coloured by regime.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a model with regimes and at least two uncertain inputs.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its area. By default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When there are no regimes, or fewer than two inputs.
+    """
+    refuse_weights(ds, "pairs of inputs by regime")
+    rows = independent_rows(ds)
+    regimes = occurring_regimes(rows)
+    inputs = independent_inputs(rows)
+    if not regimes or len(inputs) < 2:
+        raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
+    codes = rows["regime"].values
+    leading = _deciding(inputs, codes)[:_MOST_INPUTS]
+    units = {name: input_unit(ds, name) for name in leading}
+    side = len(leading) - 1
+    alone = side == 1
+    height = 2.1 if alone else 1.45 * side
+    panels = grid(axes, 0.5 + height, side, side, sharex="col", sharey="row")
+    shown = thinned(len(codes), _MOST_POINTS)
+    size = point_size("cloud", len(shown))
+    points: Any = {"s": size**2, "lw": 0, "alpha": 0.7, "rasterized": True}
+    colour_of = dict(regimes.values())
+    # In the order of the rows: drawn one after the other, the last regime would cover the others.
+    seen = shown[np.isin(codes[shown], list(colour_of))]
+    colours = [colour_of[code] for code in codes[seen]]
+    for i, down in enumerate(leading[1:]):
+        for j, across in enumerate(leading[:-1]):
+            panel = panels[i, j]
+            if j > i:
+                panel.set_axis_off()
+                continue
+            x, y = (inputs[one][seen] / units[one].size for one in (across, down))
+            panel.scatter(x, y, marker=".", c=colours, **points)
+            panel.locator_params(axis="y", nbins=4)
+            whole_numbers(panel.yaxis)
+            roomy(panel, 6 if alone else 3)
+            if i == side - 1:
+                panel.set_xlabel(labelled(rows[across], units[across].name, 38 if alone else 17))
+            if j == 0:
+                panel.set_ylabel(labelled(rows[down], units[down].name, 30 if alone else 20))
+    for name, (_, colour) in regimes.items():
+        panels[0, 0].plot([], [], ".", ms=size, mew=0, color=colour, label=name)
+    panels[0, 0].set_title(f"{counted(len(codes), 'row')} by regime", loc="left")
+    return finish(panels[0, 0])
+
+
+def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
+    """Return the inputs in order of how well they separate one regime from the others."""
+    columns = np.column_stack(list(inputs.values()))
+    far = np.zeros(len(inputs))
+    for code in np.unique(codes[codes >= 0]):
+        with suppress(RefusedError):  # with few rows, a distance may be due to chance
+            far = np.maximum(far, ks_distances(columns, (codes == code).astype(float)))
+    return [list(inputs)[i] for i in np.argsort(-far, kind="stable")]

@@ -1,0 +1,71 @@
+"""The figure of the shares of a category."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.assess.summary import REGIME, category_shares
+from uq.errors import InputError
+from uq.render.figures.elements_plot import occurring_regimes
+from uq.render.figures.panel import column, finish, title
+from uq.render.figures.style import BARS, INK, styled
+from uq.render.figures.words import as_label, literal
+from uq.result.elements import category_codes, independent_rows, weights_of
+from uq.result.variables import is_category
+from uq.text.numbers import counted
+
+
+@styled
+def shares(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+    """Draw the share of the rows in each label of a category, with 95 % intervals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        A category, such as ``regime``, or one element of it.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When it is no category.
+    """
+    name = output.partition("[")[0]
+    if not is_category(ds, name):
+        raise InputError(f"'{output}' is no category of this result")
+    rows = independent_rows(ds)
+    weights = weights_of(rows)
+    found = {one: category_shares(rows, one, weights) for one in category_codes(rows, output)}
+    labels = [
+        label
+        for label in next(iter(found.values()))
+        if any(of[label].facts["count"] for of in found.values())
+    ]
+    regimes = occurring_regimes(rows) if name == REGIME else {}
+    (panel,) = column(axes, 0.9 + 0.22 * len(labels) * max(len(found), 1.5))
+    thickness = 0.8 / len(found)
+    for i, (element, of) in enumerate(found.items()):
+        y = np.arange(len(labels))[::-1] + thickness * ((len(found) - 1) / 2 - i)
+        numbers = [of[label].estimate.numbers for label in labels]
+        value, low, high = np.array(numbers, dtype=float).T
+        colours = [
+            regimes[literal(label)][1] if literal(label) in regimes else BARS[i % len(BARS)]
+            for label in labels
+        ]
+        place = element.partition("[")[2].removesuffix("]")
+        panel.barh(y, value, thickness, color=colours, label=place.replace(",", ", "))
+        panel.hlines(y, low, high, color=INK, lw=0.8)
+    panel.set_yticks(np.arange(len(labels))[::-1], list(map(literal, labels)))
+    known = any(of[label].estimate.has_interval for of in found.values() for label in labels)
+    panel.set(xlim=(0, 1), xlabel="Share of rows" + known * ", with 95 % interval")
+    meaning = as_label(str(ds[name].attrs["long_name"]), width=46)
+    title(panel, meaning, counted(rows.sizes["sample"], "row"))
+    return finish(panel)

@@ -1,0 +1,129 @@
+"""The subjects of figures, and the conditions under which a figure applies to them."""
+
+from collections.abc import Iterator
+
+from uq.assess.answer.answer import conclude
+from uq.assess.findings import Findings
+from uq.assess.independent_inputs import independent_inputs
+from uq.assess.sampled_inputs import laws_and_values
+from uq.assess.sensitivities import TargetIndices, methods
+from uq.assess.targets import split_name
+from uq.errors import InputError
+from uq.render.figures.catalogue import Subject
+from uq.render.figures.convergence_plot import followed, total_indices
+from uq.render.figures.elements_plot import occurring_regimes
+from uq.render.figures.index_curve_plot import dimension_of
+from uq.result.elements import analysis_of, shown_outputs
+from uq.result.variables import outputs_of
+from uq.result.weights import has_weights
+from uq.text.element_names import is_whole
+
+_MOST_INPUTS = 6
+
+
+def the_result(findings: Findings) -> Iterator[Subject]:
+    """Yield the result itself."""
+    yield Subject()
+
+
+def outputs(findings: Findings) -> Iterator[Subject]:
+    """Yield each output with numbers."""
+    if findings.rows.sizes["sample"]:
+        known, ds = outputs_of(findings.ds), findings.ds
+        shown = shown_outputs(ds, analysis_of(ds))
+        yield from (Subject(output) for output in shown if not known[output].is_category)
+
+
+def inputs(findings: Findings) -> Iterator[Subject]:
+    """Yield the inputs with laws, as many at a time as fit a quarter of a page."""
+    names = list(laws_and_values(findings.ds))
+    count = -(-len(names) // _MOST_INPUTS)
+    for i in range(count):
+        part = f"{i + 1} of {count}" if count > 1 else ""
+        own = names[i * len(names) // count : (i + 1) * len(names) // count]
+        yield Subject(part=part, keywords={"names": own})
+
+
+def categories(findings: Findings) -> Iterator[Subject]:
+    """Yield each category that occurs, the regime among them."""
+    if findings.rows.sizes["sample"]:
+        shares = findings.summary.shares.items()
+        occur = (name for name, of in shares if any(one.facts["count"] for one in of.values()))
+        yield from map(Subject, dict.fromkeys(name.partition("[")[0] for name in occur))
+
+
+def targets(findings: Findings) -> Iterator[Subject]:
+    """Yield each target of each sensitivity method."""
+    for method, found in _indices(findings):
+        yield Subject(found.name, method, {"method": method, "found": found})
+
+
+def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
+    """Yield each method with what it finds for each target."""
+    for method in methods(findings.ds):
+        try:
+            targets_of = findings.sensitivities(method).targets
+        except InputError:  # the report gives the reason
+            continue
+        for found in targets_of.values():
+            if not found.refused and found.kinds():
+                yield method, found
+
+
+def curves(findings: Findings) -> Iterator[Subject]:
+    """Yield each output with a dimension of three or more numbers, by each method."""
+    for method, found in _indices(findings):
+        inside = split_name(found.name)[1]
+        output = inside.partition("[")[0]
+        if is_whole(inside) and dimension_of(findings.ds, output):
+            yield Subject(output, method, {"method": method, "findings": findings})
+
+
+def decided_events(findings: Findings) -> Iterator[Subject]:
+    """Yield each event that an input is known to decide."""
+    for event in conclude(findings).events:
+        if event.curve is not None:
+            yield Subject(event.name, keywords={"event": event})
+
+
+def crossed_targets(findings: Findings) -> Iterator[Subject]:
+    """Yield each target whose total indices are known for fewer rows."""
+    if any(outputs(findings)):
+        names = findings.running["output"]
+        known = total_indices(findings.running)["output"]
+        yield from map(Subject, names[names.isin(known)].unique())
+
+
+def is_lifetime(findings: Findings, name: str) -> bool:
+    """Whether the output is a lifetime."""
+    return outputs_of(findings.ds)[name].is_lifetime
+
+
+def is_no_lifetime(findings: Findings, name: str) -> bool:
+    """Whether the output is not a lifetime."""
+    return not is_lifetime(findings, name)
+
+
+def in_regimes(findings: Findings, name: str) -> bool:
+    """Whether the rows are in several regimes."""
+    return len(occurring_regimes(findings.rows)) > 1
+
+
+def in_one_regime(findings: Findings, name: str) -> bool:
+    """Whether all rows are in one regime, or the model has none."""
+    return not in_regimes(findings, name)
+
+
+def has_plain_rows(findings: Findings, name: str) -> bool:
+    """Whether each row counts once."""
+    return not has_weights(findings.ds)
+
+
+def has_several_inputs(findings: Findings, name: str) -> bool:
+    """Whether at least two inputs vary independently."""
+    return len(independent_inputs(findings.rows)) > 1
+
+
+def has_running_estimate(findings: Findings, name: str) -> bool:
+    """Whether an estimate of the output is known for fewer rows."""
+    return bool(followed(findings.ds, name, findings.running)[0])

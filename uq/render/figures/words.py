@@ -1,0 +1,182 @@
+"""Words, units and symbols in figures and reports."""
+
+import re
+import textwrap
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import xarray as xr
+
+from uq.result.elements import Element
+from uq.text.literals import plain
+from uq.text.numbers import capitalized, counted, grouped, minus, percent, quantity
+from uq.text.symbols import IN_TEXT, LETTERS, WORD
+from uq.text.symbols import symbol as as_text
+from uq.text.units import powers as powers
+
+_WHOLE = re.compile(r"(?:[A-Za-z]+(?:_[A-Za-z0-9]+)?(?![A-Za-z_])|[\d ()+*/'.-])+")
+
+_SHORT = re.compile(rf"(?:[A-Za-z]|{'|'.join(LETTERS)})(?:\d+|_[A-Za-z0-9]+)?")
+
+
+def literal(text: str) -> str:
+    """Return text in which a dollar sign begins no formula."""
+    return text.replace("$", r"\$")
+
+
+def formula(symbol: str) -> str:
+    r"""Return a symbol as a formula: ``k_tra`` becomes ``$k_{\mathrm{tra}}$``.
+
+    Parameters
+    ----------
+    symbol : str
+        Of ASCII letters, digits and signs, each letter with one index at most; anything else is
+        returned as text.
+
+    Returns
+    -------
+    str
+    """
+    if not _WHOLE.fullmatch(symbol):
+        return literal(symbol)
+    text = symbol if "_" in symbol else re.sub(r"(?<=[A-Za-z])(\d+)\b", r"_\1", symbol)
+    text = re.sub(r"_([A-Za-z0-9]+)", _subscript, text.replace(" ", r"\,"))
+    return f"${WORD.sub(lambda found: chr(92) + found[0], text)}$"
+
+
+def is_short(symbol: str) -> bool:
+    """Whether a symbol is one letter with an index at most: ``x1``, ``omega``, ``k_c``."""
+    return _SHORT.fullmatch(symbol) is not None
+
+
+def _subscript(found: re.Match[str]) -> str:
+    upright = found[1].isalpha() and not WORD.fullmatch(found[1])
+    return rf"_{{\mathrm{{{found[1]}}}}}" if upright else f"_{{{found[1]}}}"
+
+
+def typeset(text: str) -> str:
+    """Return text with its symbols as formulas, its roots and minus signs as such."""
+    text = IN_TEXT.sub(lambda found: formula(found[0]), literal(minus(text)))
+    return text.replace("sqrt(", "√(").replace(" - ", " \N{MINUS SIGN} ")
+
+
+def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
+    """Return text for an axis or a panel: capitalised, with symbols and its unit, wrapped.
+
+    Text that is its own symbol is written once, as a formula unless it is a word: ``x1``, ``load``.
+    """
+    once = text == symbol
+    text = formula(text) if once and is_short(text) else typeset(plain(capitalized(text)))
+    if symbol and not once:
+        text += f" ({formula(plain(symbol))})"
+    if unit and unit != "1":
+        text += f"\u00a0[{unbroken(unit)}]"  # not alone on a line
+    return _wrapped(text, width).replace("\u00a0", " ")
+
+
+def _wrapped(text: str, width: int) -> str:
+    """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
+    text = re.sub(r" ([+−=]) ", "\u00a0\\1\u00a0", text)  # a difference is one word
+    text = re.sub(r"(?<=[a-z]) (?=\d+\b)", "\u00a0", text)  # as is "motor 1"
+    formulas = re.findall(_FORMULA, text)
+    letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
+    seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
+    masked = re.sub(_FORMULA, lambda _: _MASK * len(next(seen)), text)
+    whole = iter(formulas)
+    return re.sub(f"{_MASK}+", lambda _: next(whole), "\n".join(_lines(masked, width)))
+
+
+def _lines(text: str, width: int) -> list[str]:
+    """Return lines of about one length, and as few as the width allows.
+
+    Only a word that is longer than a line, such as a name, is broken, at its hyphens if it has any.
+    """
+    longest = max(map(len, text.split(" ")))
+    if longest > width:
+        return textwrap.wrap(text, width)
+    wrap = partial(textwrap.wrap, text, break_on_hyphens=False)
+    lines = wrap(width=width)
+    while width > max(longest, 1) and len(shorter := wrap(width=width - 1)) == len(lines):
+        lines, width = shorter, width - 1
+    return lines
+
+
+_FORMULA = r"(?<!\\)\$.+?(?<!\\)\$"
+_MASK = "\ue000"
+
+
+def unbroken(unit: str) -> str:
+    """Return a unit as in `powers`, with spaces at which no line breaks."""
+    return powers(unit).replace(" ", "\u00a0")
+
+
+def place_in_words(ds: xr.Dataset, element: Element) -> str:
+    """Return the place of an element within its output: ``left, 250 µm``."""
+    words, variable = [], ds[element.output]
+    for dim, value in element.place.items():
+        attrs: Mapping[str, Any] = variable[dim].attrs if dim in variable.coords else {}
+        if isinstance(value, str):
+            words.append(value)
+        elif attrs.get("units", "1") != "1":
+            words.append(powers(quantity(value, attrs["units"])))
+        else:
+            words.append(f"{dim.replace('_', ' ')} {value:g}")
+    return ", ".join(words)
+
+
+def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
+    """Return the label of a curve: its place, and the share of rows that never end."""
+    share = f"never: {percent(never)}" if never > 0 else ""
+    return literal(minus(", ".join(filter(None, (place_in_words(ds, element), share)))))
+
+
+def rows_in_words(chosen: Sequence[Element]) -> str:
+    """Return how many rows there are, and how many failed or have no value."""
+    counts = [counted(len(chosen[0].values), "row")]
+    for state in ("failed", "undefined", "censored"):
+        most = max(int(getattr(element, state).sum()) for element in chosen)
+        if most:
+            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{grouped(most)} {state}")
+    if chosen[0].weights is not None:
+        counts.append("weighted by inspections")
+    return ", ".join(counts)
+
+
+def element_in_words(ds: xr.Dataset, element: Element) -> str:
+    """Return the meaning of an element and its place: ``time to wear depth, left, 250 µm``."""
+    return ", ".join(filter(None, (element.meaning, place_in_words(ds, element))))
+
+
+def in_words(variable: xr.DataArray) -> str:
+    """Return the meaning of a variable, with its symbol (never broken) where it has one."""
+    return with_symbol(meaning_of(variable), variable)
+
+
+def with_symbol(words: str, variable: xr.DataArray) -> str:
+    """Return words for a variable with its symbol, unless they are its symbol."""
+    symbol = symbol_beside(words, variable)
+    return f"{words} ({symbol})" if symbol else words
+
+
+def symbol_beside(words: str, variable: xr.DataArray) -> str:
+    """Return the symbol of a variable as text (never broken), "" if the words are its symbol."""
+    symbol = as_text(symbol_of(variable)).replace(" ", "\u00a0")
+    return "" if symbol == as_text(words) else symbol
+
+
+def meaning_of(variable: xr.DataArray) -> str:
+    """Return the meaning of a variable."""
+    return str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
+
+
+def symbol_of(variable: xr.DataArray) -> str:
+    """Return the symbol of a variable, or "" where it is only its meaning in one word."""
+    symbol = str(variable.attrs.get("symbol", ""))
+    is_name = "_" in symbol and symbol.replace("_", " ") == meaning_of(variable)
+    return "" if is_name else symbol
+
+
+def labelled(variable: xr.DataArray, unit: str = "", width: int = 44) -> str:
+    """Return the label of a variable, with its symbol as a formula."""
+    return as_label(meaning_of(variable), unit, width, symbol_of(variable))

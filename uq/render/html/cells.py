@@ -1,0 +1,116 @@
+"""Tables of a report, in plain data that the template lays out."""
+
+from collections.abc import Mapping, Sequence
+from itertools import chain
+from math import inf, isfinite, nan
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from uq.assess.statistic import Statistic
+from uq.assess.targets import FORMS, split_name
+from uq.render.html.bars import bar
+from uq.stats import estimate_text
+
+SHARE = "share"
+"""The scale of shares: from 0 to 1."""
+
+
+class Cell(NamedTuple):
+    """One cell.
+
+    Attributes
+    ----------
+    text : str
+    more : str
+        In small print below: an interval, a meaning.
+    key : float or None
+        The number to sort by; a cell without one is text.
+    traced : str
+        The key of its number for ``uq trace``; "" if it has none.
+    scale : str
+        Numbers of a table with the same one have bars on a common scale; "" for no bar.
+    ends : tuple of float
+        Of the interval of its number; NaN where there is none.
+    """
+
+    text: str
+    more: str = ""
+    key: float | None = None
+    traced: str = ""
+    scale: str = ""
+    ends: tuple[float, float] = (nan, nan)
+
+    def bar(self, scales: Mapping[str, tuple[float, float]]) -> Markup:
+        """Return its number as a bar on one of the scales of its table."""
+        if self.key is None or not self.scale:
+            return Markup()
+        return bar(self.key, *self.ends, scales[self.scale])
+
+
+class Table(NamedTuple):
+    """A table; the first cell of each row names it.
+
+    Attributes
+    ----------
+    caption : str
+    header : tuple of str
+    rows : sequence of tuple of Cell
+    """
+
+    caption: str
+    header: tuple[str, ...]
+    rows: Sequence[tuple[Cell, ...]]
+
+    @property
+    def scales(self) -> dict[str, tuple[float, float]]:
+        """The ends of the scale of each kind of number: zero, and all numbers with intervals."""
+        found = {SHARE: (0.0, 1.0)}
+        for one in chain.from_iterable(self.rows):
+            if one.scale not in ("", SHARE):
+                low, high = found.get(one.scale, (0.0, 0.0))
+                known = [end for end in (one.key, *one.ends) if end is not None and isfinite(end)]
+                found[one.scale] = min(low, *known, 0.0), max(high, *known, 0.0)
+        return found
+
+    def has_numbers(self, column: int) -> bool:
+        """Whether a column is one of numbers, or of dashes in their place."""
+        return any(row[column].key is not None or row[column].text == "-" for row in self.rows)
+
+
+def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
+    """Return the cell of a statistic, its interval below.
+
+    Parameters
+    ----------
+    one : Statistic
+    per : float
+        Length of the unit that the cell is in.
+    scale : str, optional
+        Of its bar.
+
+    Returns
+    -------
+    Cell
+    """
+    estimate = one.estimate
+    form = FORMS.get(split_name(one.of)[0])
+    text = one.words(per) + (f", of the {form}" if form else "")
+    worst = estimate_text.failed_bounds_text(one.failed, per)
+    small = (
+        one.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
+        f"with failed rows {worst}" if worst else "",
+        one.more,
+    )
+    last = inf if estimate.value == inf and one.otherwise is None else None
+    key = estimate.value if isfinite(estimate.value) else last
+    ends = (estimate.low, estimate.high)
+    return Cell(text, "; ".join(filter(None, small)), key, scale=scale, ends=ends)
+
+
+def without_empty_columns(table: Table) -> Table:
+    """Return a table without its empty columns; the first column stays."""
+    first, *others = zip(table.header, *table.rows, strict=True)
+    filled = (one for one in others if any(cell.text not in ("", "-") for cell in one[1:]))
+    header, *rows = zip(first, *filled, strict=True)
+    return table._replace(header=header, rows=rows)

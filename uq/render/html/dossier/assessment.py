@@ -1,0 +1,132 @@
+"""What was assessed: context, quantities, software, models, inputs."""
+
+from collections.abc import Iterator
+from shlex import quote
+
+from uq.assess.findings import Findings
+from uq.render.html.cells import Cell, Table
+from uq.render.html.dossier.items import Item
+from uq.render.html.inputs import fixed_inputs, input_tables
+from uq.render.html.pictures import pictures
+from uq.render.html.references import references
+from uq.result.commands import model_option
+from uq.result.elements import analysis_of, shown_outputs, study_file_of
+from uq.result.nesting import is_nested
+from uq.result.variables import outputs_of
+from uq.result.weights import has_weights
+from uq.study.file import Tied
+from uq.study.provenance import provenance
+from uq.text.numbers import quantity
+
+
+def context(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what the assessment is for."""
+    study = study_file_of(findings.ds).study
+    yield Item("Purpose", text=[study.description] if study.description else [])
+    yield Item("Decision that it supports, and the rules that apply to it")
+
+
+def information(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what a reader needs to repeat the assessment."""
+    ds = findings.ds
+    name, model = study_file_of(ds).study.name, model_option(ds)
+    yield Item(
+        "Result",
+        facts=[
+            ("file", file),
+            ("rows", str(ds.sizes["sample"])),
+            ("SHA-256 of the study", str(ds.attrs["study_sha256"])),
+        ],
+    )
+    yield Item(
+        "Commands that repeat it",
+        text=[
+            "The study file is in the appendix. On the same processor and versions the numbers"
+            " are equal to the bit, on others up to rounding."
+        ],
+        code=f"uq run {name}.toml --samples {ds.attrs['samples']}{model}\n"
+        f"uq verify {quote(file)}{model}",
+    )
+    yield Item(
+        "Key of each number",
+        text=[
+            "Tables show the key of a number when the pointer rests on it;"
+            f" 'uq trace {quote(file)} KEY' prints its estimator, its rows and its origin, and"
+            " computes it again."
+        ],
+    )
+    yield Item("Reports of tests and measurements on which inputs or models rest")
+
+
+def quantities(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what is asked for."""
+    ds = findings.ds
+    asked, declared = analysis_of(ds), outputs_of(ds)
+    lines = [
+        (Cell(name), Cell(one.meaning), Cell(one.unit), Cell(one.kind), Cell(", ".join(one.dims)))
+        for name in shown_outputs(ds, asked)
+        for one in [declared[name]]
+    ]
+    header = ("output", "meaning", "unit", "kind", "one for each")
+    yield Item("Quantities of interest", tables=[Table("Outputs", header, lines)])
+    limits = [
+        (Cell(name), Cell(quantity(at, declared[name].unit), key=at))
+        for name, several in asked.thresholds.items()
+        for at in several
+    ]
+    stated = [Table("Thresholds", ("output", "threshold"), limits)] if limits else []
+    yield Item("Thresholds", tables=stated)
+    yield Item(
+        "Acceptance criteria", notes=["A study does not state which probability is allowed."]
+    )
+
+
+def software(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what is known of the software."""
+    attrs = findings.ds.attrs
+    here = [(name, str(attrs[name])) for name in provenance() if name in attrs]
+    yield Item("Versions and processor", facts=here)
+    yield Item("Quality assurance programme")
+    note = "The tests of vibrolife are part of its source, not of a result."
+    yield Item("Verification against known solutions", notes=[note])
+    command = f"uq verify {quote(file)}{model_option(findings.ds)}"
+    note = f"'{command}' computes rows again and compares them to the bit."
+    yield Item("Rows computed again", notes=[note])
+    yield Item("Validation against observations")
+
+
+def models(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what is known of the model."""
+    attrs = findings.ds.attrs
+    named = ("model", "model_version", "code")
+    facts = [(name.replace("_", " "), str(attrs[name])) for name in named if name in attrs]
+    yield Item("Model", facts=facts)
+    yield Item("Sources", text=references(findings.ds) or ())
+    settings = study_file_of(findings.ds).settings
+    given = [(name, str(value)) for name, value in settings.items()]
+    yield Item("Numerical settings", facts=given, text=[] if given else ["The model's defaults."])
+    yield Item("Uncertainty of the form of the model")
+
+
+def inputs(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield the laws of the inputs."""
+    ds = findings.ds
+    study = study_file_of(ds)
+    laws, *correlations = input_tables(ds)
+    yield Item("Laws and their sources", tables=[laws])
+    independent = [] if correlations else ["The laws are independent."]
+    if has_weights(ds):
+        independent.append("Given the inspections, the inputs need not be independent.")
+    yield Item("Dependence", text=independent, tables=correlations)
+    levels = [
+        (Cell(name), Cell(origin.level or ""))
+        for name, one in study.uncertain.items()
+        for origin in [study.uncertain[one.equals] if isinstance(one, Tied) else one]
+    ]
+    shared = [Table("Level of each input", ("input", "level"), levels)] if is_nested(ds) else []
+    yield Item("Variability between units, and what all units share", tables=shared)
+    learnt = str(ds.attrs.get("inspections", ""))
+    yield Item("Inspections from which the laws were learnt", code=learnt)
+    fixed = fixed_inputs(ds)
+    yield Item("Fixed inputs", tables=[] if fixed is None else [fixed])
+    yield Item("Inputs as drawn", pictures=list(pictures(findings, "inputs")))

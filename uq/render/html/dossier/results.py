@@ -1,0 +1,208 @@
+"""What was found: propagation, convergence, sensitivities, uncertainty, conclusions."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from uq.assess.answer.answer import conclude
+from uq.assess.answer.parts import Quantity
+from uq.assess.answer.tolerance_bound import Range
+from uq.assess.answer.verdict import verdict
+from uq.assess.findings import Findings
+from uq.assess.statistic import Reader
+from uq.assess.statistics.table import STATISTICS
+from uq.assess.summary import REGIME
+from uq.indices.methods import METHODS
+from uq.render.html.answer import fragment
+from uq.render.html.cells import Cell, Table
+from uq.render.html.convergence import convergence_of
+from uq.render.html.dossier.items import Item
+from uq.render.html.fleets import fleet_notes, fleet_table
+from uq.render.html.indices import of_output, output_of, sensitivity_of
+from uq.render.html.levels import levels_of
+from uq.render.html.outcomes import (
+    category_table,
+    outcomes,
+    regime_tables,
+    result_tables,
+    status_table,
+)
+from uq.render.html.pictures import pictures
+from uq.render.trace.citations import cited
+from uq.result.elements import analysis_of
+from uq.result.nesting import is_nested, nesting_of, size_in_words
+from uq.result.result_file import failed
+from uq.sampling.designs import DESIGNS
+from uq.text.keys import key_of
+
+COVERAGE = 0.9
+"""Of the interval between the quantiles that the answer holds, 5 and 95 %."""
+
+
+def propagation(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield how the laws were propagated, and how rows ended."""
+    ds, summary = findings.ds, findings.summary
+    attrs = ds.attrs
+    rows = [("rows", str(summary.samples)), ("independent rows", str(summary.rows_used))]
+    if is_nested(ds):
+        place = nesting_of(ds)
+        rows.append(("samples", size_in_words(place.samples, place.units, place.repeats)))
+    yield Item(
+        "Design",
+        facts=[
+            ("method", f"{attrs['design']}: {DESIGNS[attrs['design']].meaning}"),
+            ("replicates", str(attrs["replicates"])),
+            ("seed", str(attrs["seed"])),
+            *rows,
+        ],
+    )
+    lost, most = int(failed(ds).sum()), 100 * analysis_of(ds).max_failed
+    yield Item(
+        "Rows that could not be computed",
+        text=[
+            f"{lost} of {summary.samples} rows failed; the study allows {most:g} %. They are left"
+            " out of every statistic, and tolerance bounds count them as the worst value."
+        ],
+        tables=[status_table(ds, summary)],
+    )
+
+
+def convergence(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield whether the rows are enough."""
+    found = convergence_of(findings, outcomes(findings.ds, findings.summary))
+    yield Item("Verdict", text=verdict(findings))
+    refused = [found.refused] if found.refused else []
+    notes = [*found.warnings, *refused]
+    yield Item(
+        "Sampling error, and numerical error of the rows",
+        tables=[found.table] if found.table else [],
+        notes=notes,
+    )
+    yield Item("Estimates against the number of rows", pictures=found.pictures, notes=refused)
+
+
+def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield the indices of each output, by all methods."""
+    methods = sensitivity_of(findings)
+    yield Item(
+        "Methods",
+        facts=[
+            (one.name, f"{METHODS[one.name].question}; {one.refused or one.used}")
+            for one in methods
+        ],
+        notes=[] if methods else ["The design of this study supports no sensitivity method."],
+    )
+    subjects = [subject for one in methods for subject in one.subjects]
+    for name in dict.fromkeys(one.output for one in subjects):
+        yield Item(f"Indices of {name}", subjects=of_output(methods, name))
+
+
+def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what is known of the quantities of interest."""
+    found = outcomes(findings.ds, findings.summary)
+    of_jcgm = _coverage_intervals(findings)
+    yield Item(
+        "Estimate, standard uncertainty and coverage interval",
+        tables=[of_jcgm] if of_jcgm.rows else [],
+        notes=[
+            "What JCGM 101, 5.5 asks for: the intervals are probabilistically symmetric, from the 5"
+            " % to the 95 % quantile, and cover variability and lack of knowledge together."
+        ],
+    )
+    drawn = list(pictures(findings, "results", without=findings.absent))
+    for name in dict.fromkeys(one.output for one in found):
+        yield Item(
+            f"Statistics of {name}",
+            tables=list(result_tables([one for one in found if one.output == name])),
+            pictures=[one for one in drawn if name in (one.of.name, output_of(one.of.name))],
+        )
+    for name, shares in findings.summary.categories.items():
+        yield Item(f"Statistics of {name}", tables=[category_table(name, shares)])
+    if findings.summary.notes:
+        yield Item("What the rows cannot show", text=findings.summary.notes)
+    if findings.summary.regimes:
+        about = [one for one in drawn if output_of(one.of.name) == REGIME]
+        yield Item(
+            "Regimes",
+            tables=regime_tables(findings),
+            pictures=[*about, *pictures(findings, "rows")],
+        )
+    yield Item("Estimators and their sources", tables=_estimators(findings))
+    levels, fleets = levels_of(findings), fleet_table(findings)
+    yield Item(
+        "What is shared, own, or due to chance",
+        tables=[*([levels.table] if levels else []), *([fleets] if fleets else [])],
+        notes=levels.notes + fleet_notes(findings) if levels else ["Each sample has one row."],
+    )
+
+
+def _coverage_intervals(findings: Findings) -> Table:
+    header = (
+        "output",
+        "unit",
+        "estimate (mean)",
+        "standard uncertainty",
+        "coverage",
+        "from",
+        "to",
+    )
+    known = conclude(findings).quantities
+    rows = [_interval(findings, one, one.range) for one in known if one.range is not None]
+    return Table("Estimates and coverage intervals", header, rows)
+
+
+def _interval(findings: Findings, one: Quantity, likely: Range) -> tuple[Cell, ...]:
+    unit, described = likely.unit, findings.summary.outputs[one.name]
+
+    def cell(value: float, *key: str) -> Cell:
+        if value != value:
+            return Cell("-")
+        traced = key_of("outputs", one.name, *key) if described.find(*key) else ""
+        text = unit.number(value) if isfinite(value) else unit.text(value)
+        return Cell(text, key=value if isfinite(value) else None, traced=traced)
+
+    moments = (described.find(key) for key in ("mean", "sd"))
+    return (
+        Cell(one.name, one.words),
+        Cell(unit.name),
+        *(cell(found.estimate.value, *found.key) for found in moments if found),
+        Cell(f"{100 * COVERAGE:g} %"),
+        cell(likely.low.value, "quantiles", "0.05"),
+        cell(likely.high.value, "quantiles", "0.95"),
+    )
+
+
+def _estimators(findings: Findings) -> list[Table]:
+    """Return what computes the statistics of the tables, and whom each of these cites."""
+    shown = (
+        (name, one)
+        for described in findings.summary.outputs.values()
+        for name, several in described.parts.items()
+        for one in several
+        if one.is_read_by(Reader.REPORT)
+    )
+    functions = dict.fromkeys(
+        function for name, one in shown for function in one.by or (STATISTICS[name],)
+    )
+    rows = [
+        (Cell(one.does), Cell("; ".join(one.sources) or "a definition"), Cell(one.code))
+        for one in map(cited, functions)
+    ]
+    header = ("estimator", "source", "function")
+    return [Table("Estimators", header, rows)] if rows else []
+
+
+def studies(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what other assumptions would change."""
+    found = [one.text for one in conclude(findings).advice if one.tightened is not None]
+    yield Item("Less scatter of what matters most", text=found)
+    note = (
+        "'uq what-if' shows the same rows under other laws, 'uq compare' two studies; neither is"
+        " part of a result."
+    )
+    yield Item("Other laws, models and numerical settings", notes=[note])
+
+
+def conclusions(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield the answer."""
+    yield Item("The answer", html=fragment(conclude(findings)))
+    yield Item("Comparison with the acceptance criteria")

@@ -1,0 +1,50 @@
+"""What the scatter plot of a page shows first: what the answer is about, and what it depends on."""
+
+from collections.abc import Sequence
+
+from uq.assess.answer.parts import Quantity
+from uq.contract import Floats
+from uq.render.figures.scatter_plot import leading
+from uq.result.element import Element
+from uq.study.file import AnalysisTable
+
+
+def first_element(
+    elements: Sequence[Element], answered: Sequence[Quantity], analysis: AnalysisTable
+) -> int:
+    """Return the place of the element shown first.
+
+    Parameters
+    ----------
+    elements : sequence of Element
+    answered : sequence of Quantity
+        The one that the study is about first.
+    analysis : AnalysisTable
+
+    Returns
+    -------
+    int
+        Without an answer, of one that the study asks about, a life first.
+    """
+    about = answered[0].name if answered else ""
+    return max(
+        range(len(elements)),
+        key=lambda i: (
+            elements[i].name == about,
+            elements[i].output in analysis.thresholds,
+            elements[i].is_lifetime,
+            -i,
+        ),
+    )
+
+
+def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[Quantity]) -> str:
+    """Return the input that the answer names as contributing most to an element.
+
+    Where it names none, that over which the mean rank of the element varies most.
+    """
+    own = [one for one in answered if one.name == element.name]
+    rankings = [one.ranking for one in own] + [event.ranking for one in own for event in one.events]
+    leaders = [one.leader for one in rankings if one is not None]
+    named = [name for one in leaders if one is not None for name in one.inputs if name in inputs]
+    return (named or leading(inputs, element))[0]

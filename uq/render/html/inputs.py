@@ -1,0 +1,116 @@
+"""The inputs in a report: laws, sources, and how well each number is known."""
+
+from collections.abc import Iterator
+from math import floor, log10
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.answer.sources import mark
+from uq.assess.answer.wording import Unit, unit_of_input
+from uq.assess.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
+from uq.contract import Floats
+from uq.render.figures.words import meaning_of, symbol_of, unbroken
+from uq.render.html.cells import Cell, Table, without_empty_columns
+from uq.render.html.symbols import indexed
+from uq.result.elements import study_file_of
+from uq.result.variables import input_unit
+from uq.sampling.law import Law
+from uq.study.file import Tied
+from uq.text.keys import key_of
+from uq.text.numbers import law_in_unit
+from uq.text.symbols import readable, symbol
+from uq.text.units import PURE, beside, unit_of
+
+
+def input_tables(ds: xr.Dataset) -> Iterator[Table]:
+    """Yield the tables of uncertain inputs and of rank correlations.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Yields
+    ------
+    Table
+    """
+    yield _uncertain(ds)
+    study = study_file_of(ds)
+    if study.dependence is not None:
+        names, matrix = study.dependence.parameters, study.dependence.rank_correlation
+        rows = [
+            (Cell(f"{first}, {second}"), Cell(f"{matrix[i][j]:g}", key=matrix[i][j]))
+            for i, first in enumerate(names)
+            for j, second in enumerate(names[:i])
+        ]
+        source = study.dependence.source
+        caption = f"Rank correlations{': ' if source else ''}{source}"
+        yield Table(caption, ("pair", "stated"), rows)
+
+
+def fixed_inputs(ds: xr.Dataset) -> Table | None:
+    """Return the table of fixed inputs, None where there are none."""
+    fixed = [name for name in ds.data_vars if ds[name].attrs.get("role") == "fixed"]
+    by_study = study_file_of(ds).fixed
+    lines = [_fixed(ds, str(name), name in by_study) for name in fixed]
+    header = ("input", "value", "known", "source")
+    return Table("Fixed inputs", header, lines) if lines else None
+
+
+def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
+    value = ds[name].item()
+    # The source in the model is that of the nominal value alone.
+    source = (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(ds, name)
+    unit = unit_of(str(ds[name].attrs["units"]), value)
+    text = beside(f"{value / unit.size:.6g}", unbroken(unit.name)).replace(" ", "\u00a0")
+    return (_name(ds, name), Cell(text, key=value), *source)
+
+
+def _uncertain(ds: xr.Dataset) -> Table:
+    given, weights = laws_and_values(ds), weights_of_samples(ds)
+    rows = []
+    for name, entry in study_file_of(ds).uncertain.items():
+        quantiles = [Cell("")] * 3
+        if name in given:
+            law_of, _ = given[name]
+            found = compare(*given[name], weights).sampled
+            unit = unit_of_input(ds, name) if law_of.times is None else Unit()
+            quantiles = _quantiles(name, unit, found)
+        rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
+    header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
+    return without_empty_columns(Table("Uncertain inputs", header, rows))
+
+
+def _quantiles(name: str, unit: Unit, found: Floats) -> list[Cell]:
+    """Return quantiles to the digits that tell them apart."""
+    step = np.ptp(found) / unit.per / 30
+    places = max(0, -floor(log10(step))) if step > 0 else 0
+    texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
+    return [
+        Cell(
+            beside(text, unit.name).replace(" ", "\u00a0"),
+            key=float(one),
+            traced=key_of(name, "sampled", repr(p), verb="inputs"),
+        )
+        for text, one, p in zip(texts, found, PROBABILITIES, strict=True)
+    ]
+
+
+def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
+    if isinstance(entry, Tied):
+        return f"equals {entry.equals}"
+    if entry.times is not None:
+        return f"{entry.times} times {law_in_unit(entry, PURE)}"
+    return law_in_unit(entry, input_unit(ds, name))
+
+
+def _name(ds: xr.Dataset, name: str) -> Cell:
+    words = readable(meaning_of(ds[name]))
+    written = indexed(symbol(symbol_of(ds[name])))
+    return Cell(name, written + f": {words}" if written else words)
+
+
+def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:
+    source = str(ds[name].attrs["source"])
+    return Cell(mark(source)), Cell(source)

@@ -1,0 +1,86 @@
+"""All that a report says of one output."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from uq.assess.answer.facts import Answer
+from uq.assess.findings import Findings
+from uq.assess.summary import REGIME
+from uq.render.html.answer import sayings
+from uq.render.html.cells import Table
+from uq.render.html.indices import Method, Subject, of_output, output_of
+from uq.render.html.outcomes import Outcome, category_table, result_tables, words_used
+from uq.render.html.pictures import Picture
+from uq.result.elements import analysis_of, shown_outputs
+from uq.text.symbols import readable
+
+
+class Group(NamedTuple):
+    """What is known of an output.
+
+    Attributes
+    ----------
+    name, meaning : str
+    said : Markup
+        The answer, without what the head of the report says.
+    tables : list of Table
+    words : list of str
+        What the counts mean that occur.
+    pictures : list of Picture
+    indices : list of Subject
+    """
+
+    name: str
+    meaning: str
+    said: Markup
+    tables: list[Table]
+    words: list[str]
+    pictures: list[Picture]
+    indices: list[Subject]
+
+
+def groups(
+    findings: Findings,
+    answer: Answer,
+    found: Sequence[Outcome],
+    drawn: Sequence[Picture],
+    methods: Sequence[Method],
+) -> Iterator[Group]:
+    """Yield what is known of each output that the study asks for, the one it is about first.
+
+    Parameters
+    ----------
+    findings : Findings
+    answer : Answer
+    found : sequence of Outcome
+        The elements of all outputs.
+    drawn : sequence of Picture
+        Those that the head of the report does not show.
+    methods : sequence of Method
+    """
+    ds = findings.ds
+    shown = shown_outputs(ds, analysis_of(ds))
+    for name in dict.fromkeys((*(one.output for one in answer.quantities), *shown)):
+        if name == REGIME:  # it has its own section
+            continue
+        own = [one for one in found if one.output == name]
+        group = Group(
+            name,
+            readable(str(ds[name].attrs["long_name"])),
+            sayings([one for one in answer.quantities[1:] if one.output == name]),
+            [*_shares(findings, name), *result_tables(own)],
+            words_used(own),
+            [one for one in drawn if name in (one.of.name, output_of(one.of.name))],
+            of_output(methods, name),
+        )
+        if any(group[2:]):
+            yield group
+
+
+def _shares(findings: Findings, name: str) -> Iterator[Table]:
+    """Yield the shares of a category, of each element."""
+    for element, shares in findings.summary.categories.items():
+        if element.partition("[")[0] == name and shares:
+            yield category_table(element, shares)

@@ -1,0 +1,142 @@
+"""The numbers of the answer, and where they come from."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import xarray as xr
+
+from uq.assess.answer.answer import conclude, regimes_of, without_advice
+from uq.assess.answer.answer_json import answer_json
+from uq.assess.answer.facts import Answer
+from uq.assess.answer.limits import limit_of
+from uq.assess.answer.promised_bounds import piles
+from uq.assess.answer.quantities import LOW, quantities, with_bounds
+from uq.assess.answer.repeat_interval import found_again
+from uq.assess.answer.sample_size import unsettled
+from uq.assess.convergence import compared
+from uq.assess.earliest import inputs_apart
+from uq.assess.effects import effects
+from uq.assess.event_curve import event_curve
+from uq.assess.findings import Findings
+from uq.assess.joint_bounds import SIDES
+from uq.assess.population import Population
+from uq.assess.regime_boundary import compared_rows
+from uq.assess.regime_switching import switching
+from uq.assess.solver_error import error_share, off_by_error, stating_none
+from uq.assess.statistics.counts import accuracy, never_ending
+from uq.assess.summary import status_counts, summarise
+from uq.assess.targets import split_name
+from uq.assess.what_if import what_if
+from uq.render.trace.citations import Citation, cited
+from uq.render.trace.indices import estimator_of
+from uq.render.trace.origin import Origin
+from uq.render.trace.summary import functions_of, states_of
+from uq.result.elements import analysis_of, independent_rows, named_elements
+from uq.result.nesting import is_nested, one_of_each_sample
+from uq.result.result_file import failed
+from uq.result.weights import has_weights
+from uq.stats.intervals import share_interval
+from uq.stats.uncertainty_exponent import uncertainty_exponent
+from uq.stats.variance_components import nested_shares
+from uq.text.keys import Json, Options, Path, value_at
+from uq.text.numbers import grouped
+
+_OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
+    "lower": (off_by_error,),
+    "upper": (off_by_error,),
+    "share_of_variance": (error_share,),
+    "accuracy": (accuracy,),
+    "rows_missing_it": (accuracy,),
+    "rows_stating_none": (stating_none,),
+}
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the answer: of the quantity or the part alone that a path names."""
+    findings = Findings(ds)
+    part, *names = path or ("",)
+    alone = not is_nested(ds)  # a level that decides changes what is said of the regimes
+    if part == "quantities" and names and alone:
+        known = tuple(quantities(findings, names[0]))
+        return answer_json(Answer("", 0, 0, known, (), ()))
+    if part == "regimes" and alone:
+        return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
+    if part in ("rows", "failed"):
+        return answer_json(Answer("", ds.sizes["sample"], int(failed(ds).sum()), (), (), ()))
+    whole = conclude if part in ("", "advice") else without_advice
+    return answer_json(whole(findings))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a number of the answer comes from."""
+    part, *names = path
+    if part in ("rows", "failed"):
+        return Origin((cited(status_counts),), ds)
+    if part == "intermingled":
+        return Origin((cited(uncertainty_exponent),), compared_rows(ds))
+    if part == "levels":
+        return Origin((cited(switching if "another_regime" in names else nested_shares),), ds)
+    if part == "enough":
+        if "error" in names[-1]:
+            return Origin((cited(compared),), independent_rows(ds))
+        return Origin((cited(found_again), cited(share_interval)), ds)
+    if part == "advice":
+        return Origin((cited(what_if if "tolerances" in names else unsettled),), ds)
+    if "ranking" in names:
+        ranking = value_at(said, path[: path.index("ranking") + 1])
+        index = estimator_of(ranking["method"], ranking["index"])
+        if "effects" in names:
+            return Origin((cited(effects),), ds)
+        return Origin((index,), ds, notes=tuple(_one_of_each(ds)))
+    if "earliest" in names:
+        return Origin((cited(inputs_apart),), ds)
+    if "limit" in names:
+        return Origin((cited(limit_of), cited(event_curve), cited(share_interval)), ds)
+    if "parts" in names or "decided_by" in names:
+        return Origin((cited(event_curve), cited(share_interval)), ds)
+    rows = independent_rows(ds)
+    if part == "regimes":
+        found = summarise(ds, analysis_of(ds)).regimes[names[0]]
+        return Origin(tuple(map(cited, found.by)), rows)
+    states = states_of(named_elements(rows, names[0])[0])
+    return Origin(
+        tuple(dict.fromkeys(_estimators(ds, said["quantities"][names[0]], *names))), rows, states
+    )
+
+
+def _one_of_each(ds: xr.Dataset) -> Iterator[str]:
+    """Yield that an index rests on fewer rows, where samples have several."""
+    if is_nested(ds):
+        used = one_of_each_sample(ds).sizes["sample"]
+        yield f"the index rests on {grouped(used)} of these rows, the first of each sample"
+
+
+def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
+    """Yield what computes a number of a promise, a range, an event, or of another seed."""
+    asked = with_bounds(analysis_of(ds, name.partition("[")[0]), Findings(ds))
+    found = summarise(ds, asked).outputs[name]
+    keys: list[Path] = [("quantiles", repr(LOW))]
+    if part == "another_seed":
+        yield cited(found_again)
+        promised = said["promise"]["sentence"] if "promise" in said else ""
+        part, rest = ("range", ()) if promised else ("events", tuple(said["events"]))
+    if part == "own_error":
+        yield from map(cited, _OF_ERROR.get("".join(rest), (off_by_error, error_share, accuracy)))
+        keys *= any(end in rest for end in ("lower", "upper"))
+        if keys and not said["promise"]["reason"]:
+            keys = [("tolerance", "lower")]
+    elif part == "range" and "".join(rest).startswith("never"):
+        yield from map(cited, (never_ending, Population if has_weights(ds) else share_interval))
+        keys = []
+    elif part == "promise" and "".join(rest).startswith("share_at"):
+        yield cited(piles)
+        keys = []
+    elif part == "promise":
+        joint = asked.joint_bounds.get(name.partition("[")[0])
+        bound = ("joint_bounds", SIDES[joint][0]) if joint else ("tolerance", "lower")
+        keys = [bound] * ("quantile" not in "".join(rest)) + keys
+    elif part == "events":
+        side = "below" if "<" in rest[0] else "above"
+        keys = [("thresholds", split_name(rest[0])[2], side)]
+    for key in keys:
+        yield from map(cited, functions_of(found, key))

@@ -1,0 +1,42 @@
+"""What a function estimates and whom it cites, from its docstring: each is stated once."""
+
+import inspect
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+
+class Citation(NamedTuple):
+    """An estimator.
+
+    Attributes
+    ----------
+    does : str
+        What it estimates, in one line.
+    code : str
+        The function that computes it: ``uq.stats.order_statistics.quantile``.
+    sources : tuple of str
+        What its docstring cites.
+    """
+
+    does: str
+    code: str = ""
+    sources: tuple[str, ...] = ()
+
+
+def cited(function: Callable[..., Any]) -> Citation:
+    """Return what a function estimates, and what its docstring cites."""
+    while isinstance(function, partial):
+        function = function.func
+    said = inspect.getdoc(function) or ""
+    first = _joined(said.split("\n\n")[0])
+    section = re.search(r"^References\n-+\n(.*?)(?=^\w+\n-+$|\Z)", said, re.DOTALL | re.MULTILINE)
+    entries = re.split(r"^\.\. (?=\[\d+\] )", section[1], flags=re.MULTILINE) if section else []
+    code = f"{function.__module__}.{getattr(function, '__qualname__', '')}"
+    return Citation(first.removesuffix("."), code, tuple(filter(None, map(_joined, entries))))
+
+
+def _joined(text: str) -> str:
+    """Return text on one line, with ``[1]`` for the mark ``[1]_``."""
+    return re.sub(r"(\[\d+\])_", r"\1", " ".join(text.split()))

@@ -1,0 +1,38 @@
+"""The numbers of `uq fleet`, and where they come from."""
+
+from typing import Any
+
+import xarray as xr
+
+from uq.assess.fleet import fleet, fleet_of, the_life
+from uq.assess.fleet_json import fleet_json
+from uq.assess.population import Population
+from uq.errors import InputError
+from uq.render.trace.citations import cited
+from uq.render.trace.origin import Origin
+from uq.render.trace.summary import states_of
+from uq.result.elements import independent_rows, named_elements
+from uq.text.keys import Json, Options, Path
+from uq.text.quantities import read_threshold
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of fleets of a size."""
+    try:
+        size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
+    except ValueError:
+        raise InputError(
+            "a key of a fleet begins with fleet[size=N], or with by=T, allow=K, output=LIFE as well"
+        ) from None
+    output, by = options.get("output"), list[float]()
+    if "by" in options:
+        units = the_life(independent_rows(ds), output).declared.unit
+        by = [read_threshold("by", options["by"], "a life", units)]
+    return fleet_json(fleet_of(ds, size, by, allow, output))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a number of a fleet comes from."""
+    rows = independent_rows(ds)
+    states = states_of(named_elements(rows, said["output"])[0])
+    return Origin((cited(fleet), cited(Population)), rows, states, tuple(said["notes"]))

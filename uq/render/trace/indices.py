@@ -1,0 +1,60 @@
+"""The numbers of `uq sensitivity`, and where they come from."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.assess.chosen_targets import chosen
+from uq.assess.design_sample import sample_of
+from uq.assess.sensitivities import sensitivities
+from uq.assess.sensitivity_json import sensitivity_json
+from uq.indices.methods import METHODS
+from uq.render.trace.citations import Citation, cited
+from uq.render.trace.origin import Origin
+from uq.result.nesting import one_of_each_sample
+from uq.result.ranked_rows import ranked_rows
+from uq.result.regimes import within_regime
+from uq.text.keys import Json, Options, Path
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the indices: of the target alone that a path names, if it names one."""
+    named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
+    found = sensitivities(ds, options.get("method"), named, options.get("regime"))
+    return sensitivity_json(found)
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where an index comes from."""
+    if regime := options.get("regime"):
+        ds = within_regime(ds, regime)
+    rows = one_of_each_sample(ranked_rows(ds))
+    by = (estimator_of(said["method"], *path[2:3]),)
+    if path[0] != "outputs":
+        return Origin(by, rows)
+    entry = said["outputs"][path[1]]
+    (target,) = chosen(rows, said["method"], [path[1]])
+    sample = replace(sample_of(rows), values=target.values)
+    states = {"in groups with a value in each row": len(np.unique(sample.groups[sample.whole]))}
+    dropped = len(np.unique(sample.groups[~sample.whole]))
+    states |= {"in groups that lack one, dropped": dropped} if dropped else {}
+    return Origin(by, rows, states, tuple(entry.get("notes", ())))
+
+
+def estimator_of(method: str, key: str = "") -> Citation:
+    """Return what a method estimates, and whose estimator it is.
+
+    Parameters
+    ----------
+    method : str
+    key : str
+        Of the kind of index; "" if not one of its own.
+    """
+    own = METHODS[method]
+    kinds = [f" ({kind.words})" for kind in own.kinds if kind.key == key]
+    code = f"uq.indices.methods.METHODS['{method}']"
+    said = [own.source, own.intervals and f"intervals: {own.intervals}"]
+    sources = (*filter(None, said), *cited(own.estimate).sources)
+    return Citation(f"{own.question}{''.join(kinds)}", code, sources)

@@ -1,0 +1,47 @@
+"""The numbers of `uq update`, and where they come from."""
+
+from collections.abc import Callable
+from typing import Any
+
+import xarray as xr
+
+from uq.assess.population import Population
+from uq.learning.answer import learnt, learnt_json
+from uq.learning.epistemic_band import over_shared
+from uq.learning.information_gain import taught
+from uq.learning.posterior import posterior
+from uq.learning.posterior_inputs import confounded, inputs_learnt, quantiles
+from uq.learning.prior_predictive import strangeness
+from uq.learning.remaining_life import read_times, remaining
+from uq.render.trace.citations import cited
+from uq.render.trace.origin import Origin
+from uq.result.elements import independent_rows
+from uq.stats.importance_weights import effective_rows, tail_shape
+from uq.stats.weighted_means import moments_of_rows
+from uq.text.keys import Json, Options, Path
+
+_PARTS: dict[str, Callable[..., Any]] = {
+    "effective_rows": effective_rows,
+    "pareto_k": tail_shape,
+    "confounded": confounded,
+    "taught": taught,
+    "strangeness": strangeness,
+}
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of what inspections say."""
+    texts = [options["by"]] if "by" in options else []
+    return learnt_json(learnt(ds, read_times("by", texts, ds)))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a number that inspections say comes from."""
+    by: list[Callable[..., Any]] = [posterior]
+    if path[0] == "inputs":
+        by += [inputs_learnt, quantiles if "quantiles" in path else moments_of_rows]
+    elif path[0] in ("units", "uninspected"):
+        by += [remaining, over_shared if "over_shared" in path else Population]
+    elif path[0] in _PARTS:
+        by.append(_PARTS[path[0]])
+    return Origin(tuple(map(cited, by)), independent_rows(ds), notes=tuple(said["notes"]))

@@ -1,0 +1,36 @@
+"""The numbers of `uq levels`, and where they come from."""
+
+from typing import Any
+
+import xarray as xr
+
+from uq.assess.chosen_targets import output_in
+from uq.assess.level_shares import by_level
+from uq.assess.regime_switching import switching
+from uq.assess.summary_json import levels_json
+from uq.assess.targets import split_name
+from uq.render.trace.citations import cited
+from uq.render.trace.origin import Origin
+from uq.render.trace.summary import states_of
+from uq.result.elements import independent_rows, named_elements
+from uq.result.nesting import nesting_of
+from uq.stats.variance_components import nested_shares
+from uq.text.keys import Json, Options, Path
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the shares: of the element alone that a path names, if it names one."""
+    named = output_in(split_name(path[1])[1]) if path[:1] == ("outputs",) and path[1:] else None
+    return levels_json(by_level(ds, named))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a share comes from."""
+    rows = independent_rows(ds)
+    if path[0] == "outputs":
+        inside = split_name(path[1])[1]
+        if output_in(inside) != inside:  # of a category
+            return Origin((cited(nested_shares),), rows)
+        (element,) = named_elements(rows, inside)
+        return Origin((cited(nested_shares),), rows, states_of(element))
+    return Origin((cited(switching if path[0] == "regime" else nesting_of),), rows)

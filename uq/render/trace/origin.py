@@ -1,0 +1,37 @@
+"""Where a number comes from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import xarray as xr
+
+from uq.render.trace.citations import Citation
+from uq.result.elements import independent_rows
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a number comes from.
+
+    Attributes
+    ----------
+    estimators : tuple of Citation
+        Of the number, and of its interval.
+    rows : xarray.Dataset
+        The rows of the result that it rests on: from them alone it can be computed again.
+    states : dict of str to int
+        How many of these have a value, failed, are censored and so on.
+    notes : tuple of str
+        Sentences on it.
+    """
+
+    estimators: tuple[Citation, ...]
+    rows: xr.Dataset
+    states: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def rows_behind(ds: xr.Dataset) -> xr.Dataset:
+    """Return the independent rows of a result; all of them where that none is says why."""
+    rows = independent_rows(ds)
+    return rows if rows.sizes["sample"] else ds

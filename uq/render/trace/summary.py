@@ -1,0 +1,133 @@
+"""The numbers of `uq summary`, and where they come from."""
+
+from collections.abc import Callable
+from typing import Any
+
+import xarray as xr
+
+from uq.assess.life_fit import fits_of
+from uq.assess.regime_boundary import BOUNDARY, boundary, boundary_json, compared_rows
+from uq.assess.statistic import Reader, Statistic
+from uq.assess.statistics.table import STATISTICS
+from uq.assess.summary import REGIME, Described, Summary, status_counts, summarise
+from uq.assess.summary_json import put, summary_json, written
+from uq.render.trace.citations import cited
+from uq.render.trace.origin import Origin, rows_behind
+from uq.result.elements import Element, analysis_of, independent_rows, named_elements, output_names
+from uq.result.regimes import within_regime
+from uq.stats.importance_weights import effective_rows, tail_shape
+from uq.stats.uncertainty_exponent import uncertainty_exponent
+from uq.text.keys import Json, Options, Path
+
+COUNTED = ("failed", "undefined", "censored", "never")
+
+WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
+"""What is said of weighted rows -> what computes it."""
+
+Functions = tuple[Callable[..., Any], ...]
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of a summary, with the statistics that only the report shows.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or the rows that a number rests on.
+    options : dict of str to str
+        ``regime``.
+    path : tuple of str
+        If it names an output, no others are described; laws are fitted if it asks for ``fits``.
+
+    Returns
+    -------
+    dict
+    """
+    found = _found(ds, options, path)
+    whole = summary_json(found)
+    if path[:1] == (BOUNDARY,):
+        whole |= boundary_json(boundary(ds))
+    for name, one in found.outputs.items():
+        others = [each for each in one.statistics if not each.is_read_by(Reader.JSON)]
+        for parent, _, entry in written(others):
+            put(whole["outputs"][name], parent, entry)
+    return whole
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a number of a summary comes from."""
+    if regime := options.get("regime"):
+        ds = within_regime(ds, regime)
+    if path[0] in ("samples", "status"):
+        return Origin((cited(status_counts),), ds)
+    rows = rows_behind(ds)
+    if path[0] == "rows_used":
+        return Origin((cited(independent_rows),), rows)
+    if path[0] == BOUNDARY:
+        return Origin((cited(uncertainty_exponent),), compared_rows(ds))
+    if path[0] in WEIGHTS:
+        return Origin((cited(WEIGHTS[path[0]]),), rows)
+    return in_summary(_found(ds, {}, path), rows, path)
+
+
+def in_summary(found: Summary, rows: xr.Dataset, path: Path) -> Origin:
+    """Return where a share of a category or a number of an output comes from.
+
+    Parameters
+    ----------
+    found : Summary
+    rows : xarray.Dataset
+        Those that it describes.
+    path : tuple of str
+    """
+    if path[0] in ("regime", "categories"):
+        name, label = (REGIME, path[1]) if path[0] == REGIME else path[1:3]
+        return Origin(tuple(map(cited, found.shares[name][label].by)), rows)
+    states = states_of(named_elements(rows, path[1])[0])
+    by = (fits_of,) if path[2] == "fits" else functions_of(found.outputs[path[1]], path[2:])
+    notes = () if found.rows_used else tuple(found.notes)  # why no row is used
+    return Origin(tuple(map(cited, by)), rows, states, notes)
+
+
+def states_of(element: Element) -> dict[str, int]:
+    """Return how many rows of an element have a value, failed, are censored and so on."""
+    counts = {name: int(getattr(element, name).sum()) for name in COUNTED}
+    some = {name: count for name, count in counts.items() if count}
+    return {"with a value": int(element.present.sum())} | some
+
+
+def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
+    known, output = output_names(ds), _output(path)
+    if path[:1] == ("categories",):
+        output = path[1].partition("[")[0] if path[1:] else ""
+    elif path and path[0] != "outputs":
+        output = next(iter(known))  # counts and regimes need no output
+    analysis = analysis_of(ds, output if output in known else None)
+    return summarise(ds, analysis, regime=options.get("regime"), fits="fits" in path)
+
+
+def functions_of(described: Described, path: Path) -> Functions:
+    """Return the functions that compute what stands at a path of the JSON of an element."""
+    for name, statistics in described.parts.items():
+        for parent, members, entry in written(statistics):
+            rest = path[len(parent) :]
+            if path[: len(parent)] == parent and (not rest or rest[0] in entry):
+                meant = [one for one in members if _means(one, rest)] or members
+                chosen = [_under_assumption(one, rest) for one in meant]
+                by = [function for one in chosen for function in one.by or (STATISTICS[name],)]
+                return tuple(dict.fromkeys(by))
+    return (STATISTICS[path[0]],)  # the study does not ask for it
+
+
+def _means(one: Statistic, rest: Path) -> bool:
+    last = one.key[-1]
+    return any(part == last or part.startswith(f"{last}_") for part in rest)
+
+
+def _under_assumption(one: Statistic, rest: Path) -> Statistic:
+    return one.otherwise if one.otherwise is not None and "kaplan_meier" in rest else one
+
+
+def _output(path: Path) -> str:
+    """Return the output whose element a path names, or ""."""
+    return path[1].partition("[")[0] if path[:1] == ("outputs",) and path[1:] else ""

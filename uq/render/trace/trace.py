@@ -1,0 +1,171 @@
+"""One number of a result: where it comes from, and the same computed again."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path as File
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from uq.errors import InputError
+from uq.render.trace.citations import Citation
+from uq.render.trace.row_sets import Run, in_words, runs_of
+from uq.render.trace.verbs import VERBS
+from uq.result.result_file import open_result
+from uq.study.provenance import provenance
+from uq.text.keys import key_of, no_such_key, numbers_in, taken_apart, value_at
+
+RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256", "study_identity")
+"""Attributes of a result that say how its rows were drawn."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Where a number comes from.
+
+    Attributes
+    ----------
+    key : str
+    numbers, again : dict
+        The number, or value, low and high of an estimate, and the same from the rows alone; null is
+        None.
+    estimators : tuple of Citation
+    rows_used, rows : int
+        Number of the rows that it rests on, and of all.
+    runs : list of Run
+        Which.
+    states : dict of str to int
+        How many of them have a value, failed and so on.
+    notes : tuple of str
+    recorded : dict
+        How the rows were drawn.
+    versions : dict of str to str
+        The code of the model, and the versions that computed the rows.
+    versions_here : dict of str to str
+        Those that differ here, where the number is computed.
+    """
+
+    key: str
+    numbers: Mapping[str, Any]
+    again: Mapping[str, Any]
+    estimators: tuple[Citation, ...]
+    rows_used: int
+    rows: int
+    runs: list[Run]
+    states: Mapping[str, int]
+    notes: tuple[str, ...]
+    recorded: Mapping[str, Any]
+    versions: Mapping[str, str]
+    versions_here: Mapping[str, str]
+
+    @property
+    def equal(self) -> bool:
+        """Whether both are equal to the bit."""
+        return json.dumps(self.numbers) == json.dumps(self.again)  # full precision
+
+    @property
+    def which(self) -> str:
+        """The rows in words."""
+        return in_words(self.runs)
+
+
+def trace(result: xr.Dataset | str | File, key: str, model: str | None = None) -> pd.Series:
+    """Say where a number of a result comes from, and compute it again.
+
+    Parameters
+    ----------
+    result : xarray.Dataset or path-like
+        A result, or its file.
+    key : str
+        Its path in the JSON of its verb, such as ``outputs/life/quantiles/0.05`` of ``uq summary``
+        or ``sensitivity/outputs/y/S1/x1``.
+    model : str, optional
+        Where a model that is not installed lives; only for numbers of ``uq twin``.
+
+    Returns
+    -------
+    pandas.Series
+        The number, ``value``, with ``low`` and ``high`` where it has an interval; ``equal``,
+        whether the same number follows from the rows that it names alone; estimator, source, rows,
+        seed, code, versions.
+
+    Raises
+    ------
+    InputError
+        When there is no such key: the line names the nearest one.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")
+    >>> found = uq.trace(ds, "outputs/y/quantiles/0.5")
+    >>> bool(found["value"] == uq.summary(ds).loc["y", "q0.5"]), found["equal"]
+    (True, True)
+    """
+    ds = result if isinstance(result, xr.Dataset) else open_result(result)
+    found = trace_json(traced(ds, key, model))
+    return pd.Series(found, dtype=object, name=found.pop("key"))
+
+
+def traced(ds: xr.Dataset, key: str, model: str | None = None) -> Trace:
+    """Return where a number of a result comes from; see `trace`."""
+    parts = taken_apart(key.strip(), {name: verb.options for name, verb in VERBS.items()})
+    verb, path = VERBS[parts.verb], parts.path
+    options = parts.options | ({"model": model} if model else {})
+    said, numbers = {}, {}
+    try:
+        said = verb.says(ds, options, path)
+        numbers = numbers_in(value_at(said, path))
+    except (KeyError, InputError):  # no such output
+        pass
+    if not path or not numbers:
+        raise no_such_key(parts, verb.says(ds, options, ()), VERBS)
+    origin = verb.origin(ds, options, path, said)
+    here = {name: now for name, now in provenance().items() if ds.attrs.get(name) != now}
+    names = ("code", *provenance())
+    return Trace(
+        key_of(*path, verb=parts.verb, options=parts.options),
+        numbers,
+        numbers_in(verb.again(verb, origin, options, path)),
+        origin.estimators,
+        origin.rows.sizes["sample"],
+        ds.sizes["sample"],
+        runs_of(origin.rows),
+        origin.states,
+        origin.notes,
+        {name: _plain(ds.attrs[name]) for name in RECORDED if name in ds.attrs},
+        {name: str(ds.attrs[name]) for name in names if name in ds.attrs},
+        here,
+    )
+
+
+def trace_json(one: Trace) -> dict[str, Any]:
+    """Return a trace in plain data.
+
+    Returns
+    -------
+    dict
+        ``key``; the number, ``value``, or what its estimate consists of; ``equal`` and ``again``;
+        ``estimators``, each what it ``does``, its ``code`` and ``sources``; ``rows``: ``used``,
+        ``of``, ``which`` (runs), and how many have a value, failed and so on; ``notes``; how the
+        rows were drawn (``seed`` and more); ``versions``, and ``versions_here`` that differ.
+    """
+    which = [run._asdict() for run in one.runs]
+    return {
+        "key": one.key,
+        **one.numbers,
+        "equal": one.equal,
+        "again": dict(one.again),
+        "estimators": [each._asdict() for each in one.estimators],
+        "rows": {"used": one.rows_used, "of": one.rows, "which": which, "states": dict(one.states)},
+        "notes": list(one.notes),
+        **one.recorded,
+        "code": one.versions.get("code"),
+        "versions": {name: made for name, made in one.versions.items() if name != "code"},
+        "versions_here": dict(one.versions_here),
+    }
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if hasattr(value, "item") else value

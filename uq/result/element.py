@@ -1,0 +1,210 @@
+"""One element of an output: one plain array, with the outcome of every row."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
+from typing import Any, Protocol
+
+import numpy as np
+
+from uq.contract import Floats, Mask, Output
+from uq.text.element_names import Place
+from uq.text.element_names import places as places
+
+
+class RowLaw(Protocol):
+    """The law of a life in each row, given all that does not scale it."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What it integrates."""
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the logarithms of lives that this causes."""
+
+    def below(self, lives: Floats, time: float) -> Floats:
+        """Return P(T < time) of each row, shape (n,), from its life; 0 where that is NaN."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """One number per row: an output, or one element of an output that has dimensions.
+
+    Attributes
+    ----------
+    name : str
+        ``work_rate[site=left]``.
+    output : str
+        ``work_rate``.
+    declared : Output
+        The declaration of the output; not a category.
+    place : dict of str to object
+        Dimension -> coordinate; empty for an output without dimensions.
+    values : ndarray, shape (n,)
+        NaN where there is no value; +inf for a life that never ends.
+    censored : ndarray of bool, shape (n,)
+        Where the value is only a lower bound.
+    failed : ndarray of bool, shape (n,)
+        Where the value is missing because the row failed.
+    law : RowLaw, optional
+        Of what scales a life, given all that does not: each row then is the law of a life.
+    weights : ndarray, shape (n,), optional
+        Of the rows, where they stand for another study or for what inspections left of theirs.
+    most : float
+        The largest weight that a row can have.
+    """
+
+    name: str
+    output: str
+    declared: Output
+    place: dict[str, Any]
+    values: Floats
+    censored: Mask
+    failed: Mask
+    law: RowLaw | None = None
+    weights: Floats | None = None
+    most: float = inf
+
+    @property
+    def units(self) -> str:
+        """CF unit string."""
+        return self.declared.unit
+
+    @property
+    def meaning(self) -> str:
+        """One line that describes the output."""
+        return self.declared.meaning
+
+    @property
+    def is_lifetime(self) -> bool:
+        """Whether it is the time until an event."""
+        return self.declared.is_lifetime
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether its sign is a direction."""
+        return self.declared.is_angle
+
+    @property
+    def for_thresholds(self) -> Floats:
+        """The values, or of an angle their magnitudes, shape (n,)."""
+        return self.declared.for_thresholds(self.values)
+
+    @property
+    def undefined(self) -> Mask:
+        """Where the row is sound but the value is undefined."""
+        return np.isnan(self.values) & ~self.failed
+
+    @property
+    def never(self) -> Mask:
+        """Where a life is known never to end."""
+        return np.isposinf(self.values) & ~self.censored
+
+    @cached_property
+    def present(self) -> Mask:
+        """Where there is a value."""
+        return ~np.isnan(self.values)
+
+    def unknown_sides(self, threshold: float) -> Mask:
+        """Return where rows were censored below a threshold, so that their side is unknown."""
+        return self.censored & (self.values < threshold)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether each row counts once, with a life known to the digit."""
+        return self.law is None and self.weights is None
+
+    @property
+    def plain(self) -> "Element":
+        """The same rows with the lives that were computed."""
+        return replace(self, law=None)
+
+    def below(self, threshold: float) -> Floats:
+        """Return the probability that each row lies below a threshold, shape (n,)."""
+        if self.law is not None:
+            return self.law.below(self.values, threshold)
+        with np.errstate(invalid="ignore"):
+            return ((self.for_thresholds < threshold) & ~self.censored).astype(float)
+
+    def above(self, threshold: float) -> Floats:
+        """Return the probability that each row lies above a threshold, shape (n,)."""
+        if self.law is not None:
+            return np.where(self.present, 1 - self.law.below(self.values, threshold), 0.0)
+        values = self.for_thresholds
+        with np.errstate(invalid="ignore"):
+            return ((values > threshold) | (self.censored & (values == threshold))).astype(float)
+
+    @cached_property
+    def at_least(self) -> Floats:
+        """The values, shape (present,), with censored ones at their lower bound."""
+        return self.values[self.present]
+
+    @cached_property
+    def ascending(self) -> Floats:
+        """The values in order, shape (present,), sorted once for all quantiles."""
+        return np.sort(self.at_least)
+
+    @property
+    def at_most(self) -> Floats:
+        """The values, shape (present,), with censored ones at infinity."""
+        return np.where(self.censored, np.inf, self.values)[self.present]
+
+
+def elements_in(
+    name: str,
+    declared: Output,
+    values: Any,
+    censored: Any,
+    coordinates: Mapping[str, Any],
+    failed: Mask,
+    weights: Floats | None = None,
+    most: float = inf,
+    where: Iterable[Place] | None = None,
+) -> Iterator[Element]:
+    """Yield the elements of one output, in order.
+
+    Parameters
+    ----------
+    name : str
+    declared : Output
+        Not a category.
+    values : array, shape (n, *dims)
+        Read one element at a time.
+    censored : array of bool or int, shape (n, *dims), or None
+        None if no life can be censored.
+    coordinates : dict of str to array
+        Of each dimension.
+    failed : ndarray of bool, shape (n,)
+        The rows that failed.
+    weights : ndarray, shape (n,), optional
+        Of the rows.
+    most : float
+        The largest weight that a row can have.
+    where : iterable of Place, optional
+        Which elements; by default all.
+
+    Yields
+    ------
+    Element
+    """
+    if where is None:
+        where = places(name, {dim: coordinates[dim] for dim in declared.dims})
+    for label, index, place in where:
+        column = np.asarray(values[(slice(None), *index)])
+        absent = declared.is_absent(column)
+        cut = np.zeros(len(column), dtype=bool)
+        if censored is not None:
+            cut = np.asarray(censored[(slice(None), *index)]).astype(bool) & ~absent
+        yield Element(
+            label,
+            name,
+            declared,
+            place,
+            np.where(absent, np.nan, column),
+            cut,
+            absent & failed,
+            weights=weights,
+            most=most,
+        )

@@ -1,0 +1,332 @@
+"""The elements of a result's outputs, and what the result says of its rows."""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from math import inf, prod
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Floats as Floats
+from uq.contract import Mask as Mask
+from uq.contract import censored_name
+from uq.errors import InputError, choices, nearest
+from uq.result.element import Element as Element
+from uq.result.element import elements_in, places
+from uq.result.nesting import is_nested, nesting_of
+from uq.result.result_file import failed, refuse_empty
+from uq.result.variables import outputs_of
+from uq.result.weights import LAW_FOLLOWS, LAW_PULLS, ROWS, has_rounds, largest_weight, row_weights
+from uq.sampling.designs import DESIGNS
+from uq.sampling.layouts import CURVES, NOISE
+from uq.stats.clusters import Clusters, LearntTogether
+from uq.stats.importance_weights import (
+    Smoothed,
+    carries_little,
+    effective_rows,
+    per_sample,
+    tail_shape,
+)
+from uq.stats.intervals import Replicates
+from uq.stats.jumps import EvenReplicates
+from uq.study.file import AnalysisTable, StudyFile
+from uq.study.reading import study_of_result
+from uq.text.element_names import MOST_PLACES, Place, is_whole, place_of, whole_name
+
+
+def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
+    """Return the [analysis] of the study in a result, only that of one output if it is named."""
+    found = study_file_of(ds).analysis
+    if output is None:
+        return found
+    thresholds = {name: at for name, at in found.thresholds.items() if name == output}
+    return found.model_copy(update={"outputs": (output,), "thresholds": thresholds})
+
+
+def study_file_of(ds: xr.Dataset) -> StudyFile:
+    """Return the study in a result."""
+    return study_of_result(ds.attrs["study"])
+
+
+def independent_rows(ds: xr.Dataset) -> xr.Dataset:
+    """Return the rows for plain statistics: blocks A and B of a crossed design, all rows of others.
+
+    The other blocks repeat the values of A and B. No row is returned where `why_no_statistics`.
+
+    Raises
+    ------
+    InputError
+        When the result has no rows at all.
+    """
+    refuse_empty(ds)
+    labels = [] if why_no_statistics(ds) else flags(ds["block"])
+    plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
+    chosen = np.isin(ds["block"].values, plain)
+    return ds if chosen.all() else ds.isel(sample=chosen)
+
+
+def why_no_statistics(ds: xr.Dataset) -> str:
+    """Return why the rows of a result do not support plain statistics (a predicate), or ""."""
+    design = DESIGNS[ds.attrs["design"]]
+    if not design.follows_laws:
+        return "do not follow the laws of the inputs"
+    if ds.attrs.get("random") and design.layout is CURVES:
+        return "share seeds along a curve, as the model is random"
+    return ""
+
+
+def replicates_of(rows: xr.Dataset) -> Replicates:
+    """Return the replicate of each row, or None if the rows are independent.
+
+    Where samples have several rows, `Clusters`: of independent samples, the sample of each row.
+    Also where inspections of all rows together have weighted them.
+    """
+    together = LAW_PULLS in rows.variables
+    if not is_nested(rows) and not together:
+        if are_independent(rows):
+            return None
+        return EvenReplicates(rows["replicate"].values, inputs_of(rows))
+    place = nesting_of(rows)
+    are_samples = has_independent_samples(rows)
+    of = place.sample if are_samples else rows["replicate"].values
+    return Clusters(of, place.samples, are_samples, _learnt(rows, of) if together else None)
+
+
+def inputs_of(rows: xr.Dataset) -> Floats:
+    """Return the values of the uncertain inputs, shape (n, d)."""
+    columns = [v.values for v in rows.variables.values() if v.attrs.get("role") == "input"]
+    return np.column_stack(columns) if columns else np.empty((rows.sizes["sample"], 0))
+
+
+def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> LearntTogether:
+    """Return what rows with weights have learnt of the law of an input that all units share."""
+    pulls = rows[LAW_PULLS]
+    some = pulls.values * (len(part) / pulls.attrs[ROWS])
+    return LearntTogether(some, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
+
+
+def are_independent(ds: xr.Dataset) -> bool:
+    """Whether the rows of a result (blocks A and B of a crossed design) are independent."""
+    return has_independent_samples(ds) and not is_nested(ds)
+
+
+def has_independent_samples(ds: xr.Dataset) -> bool:
+    """Whether samples are independent, however many rows each has."""
+    if has_rounds(ds):
+        return False
+    design = DESIGNS[ds.attrs["design"]]
+    return design.independent or (design.imported and study_file_of(ds).design.independent)
+
+
+def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
+    """Return the codes of a CF flag variable with their labels."""
+    codes = np.atleast_1d(variable.attrs["flag_values"]).tolist()
+    return list(zip(codes, variable.attrs["flag_meanings"].split(), strict=True))
+
+
+def labels(variable: xr.DataArray) -> xr.DataArray:
+    """Return the labels of the codes of a variable.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        The ``status``, the ``regime`` or another category of a result, or some rows of it.
+
+    Returns
+    -------
+    xarray.DataArray
+        Of the same shape, for instance to colour a figure or to group by.
+
+    Raises
+    ------
+    InputError
+        When the variable is not a category.
+    """
+    if "flag_values" not in variable.attrs:
+        raise InputError(f"'{variable.name}' is not a category and has no labels")
+    codes, words = zip(*flags(variable), strict=True)
+    order = np.argsort(codes)
+    places = np.searchsorted(codes, variable.values, sorter=order)
+    found = variable.copy(data=np.array(words)[order][places])
+    known = " ".join(word for code, word in flags(variable) if code >= 0)
+    found.attrs = {"long_name": variable.attrs["long_name"], "flag_meanings": known}
+    return found
+
+
+def category_codes(ds: xr.Dataset, name: str) -> dict[str, NDArray[np.int8]]:
+    """Return the codes of a category, by the name of its element.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    name : str
+        ``period`` for all elements, ``period[site=left]`` for one.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        When it has no such element.
+    """
+    output = name.partition("[")[0]
+    axes = {str(dim): ds[dim].values for dim in ds[output].dims[1:]}
+    values: Any = ds[output].values
+    chosen = list(places(output, axes)) if name == output else place_of(name, axes)
+    if not chosen:
+        raise _no_such_element(name, [label for label, *_ in places(output, axes)])
+    return {label: values[(slice(None), *index)] for label, index, _ in chosen}
+
+
+def _no_such_element(name: str, known: Collection[str]) -> InputError:
+    return InputError(f"no such element '{name}'{nearest(name, known)} (allowed: {choices(known)})")
+
+
+def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
+    """Return the outputs that a study names, or all if it names none."""
+    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)))
+    return named if analysis.outputs else output_names(ds)
+
+
+def output_names(ds: xr.Dataset) -> tuple[str, ...]:
+    """Return the names of all outputs of a result."""
+    return tuple(outputs_of(ds))
+
+
+def thinned_outputs(ds: xr.Dataset) -> dict[str, int]:
+    """Return the number of elements of outputs of which only some are described.
+
+    Those have more than `MOST_PLACES`, and the study does not name them.
+    """
+    sizes = {
+        name: prod(ds.sizes[dim] for dim in output.dims) for name, output in outputs_of(ds).items()
+    }
+    huge = {name: size for name, size in sizes.items() if size > MOST_PLACES}
+    named = analysis_of(ds).outputs if huge else ()
+    return {name: size for name, size in huge.items() if name not in named}
+
+
+def notes_on_places(ds: xr.Dataset) -> list[str]:
+    """Return a sentence on each of `thinned_outputs`."""
+    return [
+        f"{name}: shown at evenly spread places, as it has {size} elements; name it in [analysis]"
+        " outputs for all of them"
+        for name, size in thinned_outputs(ds).items()
+    ]
+
+
+def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
+    """Yield the elements of some outputs in order, skipping categories.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    outputs : sequence of str
+        Names of outputs.
+    every : bool
+        Whether also those of `thinned_outputs`.
+
+    Yields
+    ------
+    Element
+
+    Raises
+    ------
+    InputError
+        When the result has no such output.
+    """
+    thinned = () if every else thinned_outputs(ds)
+    for output in outputs:
+        most = MOST_PLACES if output in thinned else inf
+        yield from _elements_at(ds, output, partial(places, output, most=most))
+
+
+def _elements_at(
+    ds: xr.Dataset, output: str, where: Callable[[Mapping[str, Any]], Iterable[Place]]
+) -> Iterator[Element]:
+    """Yield elements of an output, unless it is a category; `where` picks their places on axes."""
+    known, flag = outputs_of(ds), censored_name(output)
+    if output not in known:
+        raise InputError(
+            f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
+        )
+    declared = known[output]
+    if not declared.is_category:
+        axes = {dim: ds[dim].values for dim in declared.dims}
+        censored = ds.variables[flag] if flag in ds else None
+        rows = failed(ds), row_weights(ds), largest_weight(ds)
+        values = ds.variables[output]
+        yield from elements_in(output, declared, values, censored, axes, *rows, where(axes))
+
+
+def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements of the output, or the one element, that a name refers to.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    name : str
+        ``time_to_depth`` or ``time_to_depth[:]`` for all its elements,
+        ``time_to_depth[site=left,depth=0.00025]`` for one.
+
+    Returns
+    -------
+    list of Element
+
+    Raises
+    ------
+    InputError
+        When there is no such output or element, or it is a category.
+    """
+    output = name.partition("[")[0]
+    whole = name == output or is_whole(name)
+    one = [] if whole else list(_elements_at(ds, output, partial(place_of, name)))
+    if one:
+        return one
+    found = list(elements_of(ds, [output], every=True))
+    if not found:
+        raise InputError(
+            f"'{output}' is a category, not a number; 'uq summary' shows the shares of its labels,"
+            f" and 'uq sensitivity --output {output}' what determines them"
+        )
+    if name == output or (name == whole_name(output) and len(found) > 1):
+        return found
+    raise _no_such_element(name, [element.name for element in found])
+
+
+def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements of a lifetime that a name refers to; see `named_elements`.
+
+    Raises
+    ------
+    InputError
+        Also when the output is not a lifetime.
+    """
+    found = named_elements(ds, name)
+    if not found[0].is_lifetime:
+        lives = [one for one, output in outputs_of(ds).items() if output.is_lifetime]
+        raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
+    return found
+
+
+def weights_of(rows: xr.Dataset) -> Smoothed | None:
+    """Return the weights that inspections have given the rows of a result, None if none have.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    """
+    weights = row_weights(rows)
+    if weights is None:
+        return None
+    of_samples = per_sample(weights, replicates_of(rows))
+    k, most = tail_shape(of_samples), largest_weight(rows)
+    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
+    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)

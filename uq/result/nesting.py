@@ -1,0 +1,156 @@
+"""Samples, units and repeats: which rows of a result belong together.
+
+Of a study with ``units`` or ``repeats`` each sample is a world: units that share its ``shared``
+inputs, each with ``own`` inputs of its own, each computed in several repeats that differ by chance.
+Samples are independent, their rows are not.
+"""
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from uq.contract import Floats
+from uq.sampling.levels import CHANCE, LEVELS
+from uq.study.file import Tied
+from uq.study.reading import study_of_result
+from uq.text.numbers import counted
+
+
+class Nesting(NamedTuple):
+    """The places of rows in samples, units and repeats; each row of a plain design is a sample.
+
+    Attributes
+    ----------
+    samples : int
+        Number of samples that have rows here, those of all replicates.
+    units, repeats : int
+        Of each sample, of each unit.
+    sample : ndarray of int, shape (n,)
+        The sample of each row, from 0 to ``samples - 1``.
+    unit, repeat : ndarray of int, shape (n,)
+        From 0.
+    replicate : ndarray of int, shape (samples,)
+        The replicate of each sample.
+    """
+
+    samples: int
+    units: int
+    repeats: int
+    sample: NDArray[np.intp]
+    unit: NDArray[np.int64]
+    repeat: NDArray[np.int64]
+    replicate: NDArray[np.int64]
+
+    def table(self, values: ArrayLike) -> Floats:
+        """Return one number per row as shape (samples, units, repeats), NaN for missing rows."""
+        found = np.full((self.samples, self.units, self.repeats), np.nan)
+        found[self.sample, self.unit, self.repeat] = values
+        return found
+
+    def means(self, values: ArrayLike, weights: ArrayLike | None = None) -> Floats:
+        """Return the mean of each sample, shape (samples,), NaN where no row has a value.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n,)
+            NaN for rows that do not take part.
+        weights : ndarray, shape (n,), optional
+            Of each row.
+        """
+        values = np.asarray(values, dtype=float)
+        known = np.isfinite(values)
+        worth = np.where(known, 1.0 if weights is None else np.asarray(weights, float), 0.0)
+        total = np.bincount(self.sample, worth, self.samples)
+        sums = np.bincount(self.sample, worth * np.where(known, values, 0.0), self.samples)
+        return np.divide(sums, total, out=np.full(self.samples, np.nan), where=total > 0)
+
+
+def nesting_of(ds: xr.Dataset) -> Nesting:
+    """Return the places of the rows of a result in samples, units and repeats.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+
+    Returns
+    -------
+    Nesting
+    """
+    n = ds.sizes["sample"]
+    if not is_nested(ds):
+        nothing = np.zeros(n, np.int64)
+        return Nesting(n, 1, 1, np.arange(n), nothing, nothing, ds["replicate"].values)
+    worlds, first, sample = np.unique(ds["world"].values, return_index=True, return_inverse=True)
+    return Nesting(
+        len(worlds),
+        int(ds.attrs["units"]),
+        int(ds.attrs["repeats"]),
+        sample,
+        ds["unit"].values,
+        ds["repeat"].values,
+        ds["replicate"].values[first],
+    )
+
+
+def size_in_words(samples: int, units: int, repeats: int) -> str:
+    """Return the size of a design: ``20 samples of 3 units, 2 repeats of each``."""
+    if units == 1:
+        return counted(samples, "sample") + f" of {repeats} repeats" * (repeats > 1)
+    several = f", {repeats} repeats of each" * (repeats > 1)
+    return f"{counted(samples, 'sample')} of {units} units{several}"
+
+
+def samples_have(count: int) -> str:
+    """Return the beginning of a sentence: ``1 sample has``, ``2 samples have``."""
+    return counted(count, "sample has", "samples have")
+
+
+def is_nested(ds: xr.Dataset) -> bool:
+    """Whether samples of a result have several rows."""
+    return "world" in ds.variables
+
+
+def one_of_each_sample(ds: xr.Dataset) -> xr.Dataset:
+    """Return the first repeat of the first unit of each sample: rows that follow a plain design."""
+    if not is_nested(ds):
+        return ds
+    return ds.isel(sample=(ds["unit"].values == 0) & (ds["repeat"].values == 0))
+
+
+def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
+    """Return the rows of the first samples of each replicate."""
+    chosen = ds["group"].values < samples
+    count = int(chosen.sum())
+    return ds.isel(sample=slice(count) if chosen[:count].all() else chosen)
+
+
+def levels_of(ds: xr.Dataset) -> dict[str, str]:
+    """Return the level of each input of a result, by name."""
+    return {name: level for name, (_, level) in _placed(ds).items()}
+
+
+def levels_that_vary(ds: xr.Dataset, without: Collection[str] = ()) -> Sequence[str]:
+    """Return the levels on which rows of a result differ; a random model differs by chance.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    without : collection of str
+        Inputs that do not count, nor those that equal them.
+    """
+    found = {level for law_of, level in _placed(ds).values() if law_of not in without}
+    if ds.attrs.get("random"):
+        found.add(CHANCE)
+    return [level for level in LEVELS if level in found]
+
+
+def _placed(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
+    """Return of each input the one that it equals (or itself), and the level."""
+    entries = study_of_result(ds.attrs["study"]).uncertain
+    leaders = {name: one.equals if isinstance(one, Tied) else name for name, one in entries.items()}
+    laws = {name: one for name, one in entries.items() if not isinstance(one, Tied)}
+    return {name: (leader, laws[leader].level) for name, leader in leaders.items()}

@@ -1,0 +1,151 @@
+"""Which row of a result: the one with the lowest value, or the one closest to a quantile."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.errors import InputError
+from uq.result.elements import Element, independent_rows, named_elements, why_no_statistics
+from uq.result.result_file import failed
+from uq.result.weights import refuse_weights
+from uq.stats.order_statistics import quantile, rows_to_reach
+from uq.text.numbers import counted
+
+_MANY = 10**9
+
+
+class Choice(NamedTuple):
+    """A chosen row.
+
+    Attributes
+    ----------
+    number : int
+    words : str
+        Why this one.
+    """
+
+    number: int
+    words: str
+
+
+def lowest_row(ds: xr.Dataset, name: str) -> Choice:
+    """Return the row in which an output, or one element of it, is lowest.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+        As `uq.result.elements.named_elements` takes it.
+
+    Returns
+    -------
+    Choice
+        The first such row; never one that failed or is undefined.
+
+    Raises
+    ------
+    InputError
+        When there is no such output, or no row has a value.
+    """
+    found = list(_ordered(ds, name))
+    # Of several elements the lowest value; which of two equal ones does not matter.
+    element, order = min(found, key=lambda one: _rank(one[0], one[1][0]))
+    place = order[0]
+    earlier = int((element.censored & (element.values < element.values[place])).sum())
+    words = f"the lowest {element.name}"
+    if earlier:
+        words += f"; {counted(earlier, 'row was', 'rows were')} censored earlier"
+    return Choice(int(ds["sample"].values[place]), words)
+
+
+def lowest_rows(ds: xr.Dataset, name: str, most: int) -> list[tuple[int, float]]:
+    """Return the rows in which one element is lowest, each with its value: those that ended only.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    name : str
+        Of an element.
+    most : int
+
+    Raises
+    ------
+    InputError
+        When there is no such element, or no row has a value.
+    """
+    element, order = next(_ordered(ds, name))
+    ended = [i for i in order[:most] if not (element.censored[i] or element.never[i])]
+    return [(int(ds["sample"].values[i]), float(element.values[i])) for i in ended]
+
+
+def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
+    """Return the row that is closest to a quantile of an output or of one element.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    probability : float
+    name : str
+        Of an output without dimensions, or of an element.
+
+    Returns
+    -------
+    Choice
+        One of the rows that the quantile in a summary rests on.
+
+    Raises
+    ------
+    InputError
+        When there is no such output or quantile.
+    """
+    if not 0 < probability < 1:
+        raise InputError(
+            f"--near-quantile {probability:g}: must lie between 0 and 1; write 0.05 for 5 %"
+        )
+    refuse_weights(ds, "--near-quantile")
+    if why := why_no_statistics(ds):
+        raise InputError(
+            f"no quantiles: the rows of a '{ds.attrs['design']}' design {why}; choose a row by its"
+            " number or with --lowest"
+        )
+    rows = independent_rows(ds)
+    (element, order), *others = _ordered(rows, name)
+    if others:
+        names = ", ".join(f"'{one.name}'" for one in (element, *(other for other, _ in others)))
+        raise InputError(f"'{name}' has several elements; choose one of {names}")
+    first, last = (quantile(one, probability) for one in (element.at_least, element.at_most))
+    if np.isnan(first):
+        needed = rows_to_reach(probability)
+        least = needed if needed < _MANY else f"more than {_MANY:g}"
+        raise InputError(f"{name}: a {100 * probability:g} % quantile needs {least} rows")
+    ended = order[~element.censored[order] & np.isfinite(element.values[order])]
+    if len(ended) and np.isfinite(first) and first == last:
+        place = ended[np.abs(element.values[ended] - first).argmin()]
+    else:  # it depends on censored rows, or is never
+        place = order[min(max(round(probability * len(order)), len(ended)), len(order) - 1)]
+    words = f"closest to the {100 * probability:g} % quantile of {element.name}"
+    return Choice(int(rows["sample"].values[place]), words)
+
+
+def _ordered(ds: xr.Dataset, name: str) -> Iterator[tuple[Element, NDArray[np.intp]]]:
+    """Yield elements, each with the places of its rows, lowest first: ended, censored, never."""
+    unsound = failed(ds)
+    found = False
+    for element in named_elements(ds, name):
+        known = np.flatnonzero(element.present & ~unsound)
+        if len(known):
+            found = True
+            state = element.censored + 2 * element.never
+            yield element, known[np.lexsort((element.values[known], state[known]))]
+    if not found:
+        raise InputError(f"no row has a value of '{name}'")
+
+
+def _rank(element: Element, place: int) -> tuple[bool, bool, float]:
+    return bool(element.never[place]), bool(element.censored[place]), float(element.values[place])

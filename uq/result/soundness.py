@@ -1,0 +1,228 @@
+"""Whether a Dataset is a sound result: it may be damaged or come from an untrusted file."""
+
+import json
+from collections.abc import Iterator
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Kind
+from uq.result.sound_values import value_faults
+from uq.result.sound_weights import weight_faults
+from uq.result.weights import has_rounds
+from uq.sampling.designs import DESIGNS
+from uq.study.provenance import provenance
+from uq.text.literals import read_toml, without_control
+
+_TEXTS = ("title", "source", "study", "study_identity", "design", "model", "model_version")
+_NUMBERS = ("samples", "replicates")
+_OPTIONAL_NUMBERS = ("seed", "second_order", "random")
+_OF_OUTPUTS = ("thresholds", "joint_bounds")  # tables of [analysis] whose keys are outputs
+_PLACES = ("replicate", "group", "block", "status")
+_ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
+
+
+def unsound(ds: xr.Dataset) -> str:
+    """Return the first fault of a Dataset as a result, or ""."""
+    return next(_faults(ds), "")
+
+
+def _faults(ds: xr.Dataset) -> Iterator[str]:
+    for name in ds.variables:
+        for text in ("role", "kind"):
+            if not isinstance(ds[name].attrs.get(text, ""), str):
+                yield f"attribute '{text}' of '{name}' is not text"
+    for text in _TEXTS:
+        if not isinstance(ds.attrs.get(text), str):
+            yield f"attribute '{text}' is not text"
+    for text in ("code", "study_sha256", *provenance()):
+        if not isinstance(ds.attrs.get(text, ""), str):
+            yield f"attribute '{text}' is not text"
+    for number in _NUMBERS:
+        if not isinstance(ds.attrs.get(number), int | np.integer) or ds.attrs[number] < 1:
+            yield f"attribute '{number}' is not a positive number"
+    for number in _OPTIONAL_NUMBERS:
+        if not isinstance(ds.attrs.get(number, 0), int | np.integer) or ds.attrs.get(number, 0) < 0:
+            yield f"attribute '{number}' is not a number"
+    for name in ds.variables:
+        if without_control(str(name)) != name:
+            yield f"the name of '{name}' has control characters"
+    if ds.attrs.get("design") not in DESIGNS:
+        yield "its design is unknown"
+    if not ds.sizes.get("sample", 0):
+        yield "it has no rows"
+    for place in _PLACES:
+        if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
+            yield f"'{place}' is not one integer per row"
+    yield from _place_faults(ds)
+    yield from _nesting_faults(ds)
+    if fault := _repeated_places(ds):
+        yield fault
+    yield from _study_faults(ds)
+    for flag in ("block", "status"):
+        if fault := _flag_fault(ds[flag]):
+            yield fault
+    if "rerun" in ds.variables:
+        yield from _rerun_faults(ds["rerun"])
+    for name, variable in ds.data_vars.items():
+        role = variable.attrs.get("role")
+        if role not in _ROLES:
+            continue
+        if role in ("input", "output", "censored") and variable.dims[:1] != ("sample",):
+            yield f"'{name}' has no row dimension"
+        if (role == "input" and variable.ndim != 1) or (role == "fixed" and variable.ndim):
+            yield f"'{name}' is not one number{' per row' * (role == 'input')}"
+        yield from _attribute_faults(str(name), variable)
+        if variable.dtype.kind not in "fiu":
+            yield f"'{name}' is not numeric"
+        texts = (
+            ("long_name",) if role in ("status", "censored", "rerun") else ("long_name", "units")
+        )
+        for attribute in texts:
+            if not isinstance(variable.attrs.get(attribute), str):
+                yield f"'{name}' lacks the attribute '{attribute}'"
+        if role == "output":
+            yield from _output_faults(str(name), variable)
+    yield from value_faults(ds)
+    yield from weight_faults(ds)
+
+
+def _place_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield what is wrong with the numbers of rows and their places in the design."""
+    numbers = ds["sample"].values
+    if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
+        yield "'sample' does not number the rows in order"
+    samples, replicates = int(ds.attrs["samples"]), int(ds.attrs["replicates"])
+    if samples * replicates > len(numbers):
+        yield f"its {len(numbers)} rows are fewer than its samples"
+    for place, most in (("replicate", replicates), ("group", 2**53)):
+        if ((ds[place].values < 0) | (ds[place].values >= most)).any():
+            yield f"'{place}' is out of range"
+
+
+def _repeated_places(ds: xr.Dataset) -> str:
+    """Return that rows share one place in the design, or ""; those of a sampler may."""
+    if has_rounds(ds):
+        return ""
+    place = np.zeros(ds.sizes["sample"], dtype=np.int64)
+    for name in ("group", "replicate", "block", "unit", "repeat"):
+        if name in ds.variables:
+            _, code = np.unique(ds[name].values, return_inverse=True)
+            place = np.unique(place * (int(code.max()) + 1) + code, return_inverse=True)[1]
+    return "" if place.max() == len(place) - 1 else "several rows have one place in the design"
+
+
+def _rerun_faults(variable: xr.DataArray) -> Iterator[str]:
+    """Yield what is wrong with the settings of rows that were computed again."""
+    if variable.dims != ("sample",) or variable.dtype.kind not in "iu":
+        yield "'rerun' is not one integer per row"
+    if fault := _flag_fault(variable):
+        yield fault
+    for name, text in variable.attrs.items():
+        if name.startswith("changed_") and not _is_table(text):
+            yield f"attribute '{name}' of 'rerun' is not a table"
+
+
+def _is_table(text: Any) -> bool:
+    try:
+        return isinstance(read_toml(f"settings = {text}")["settings"], dict)
+    except (ValueError, OverflowError, RecursionError):
+        return False
+
+
+def _study_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield which inputs and outputs of the study are not in the result."""
+    try:
+        study = read_toml(ds.attrs["study"])
+    except (ValueError, OverflowError, RecursionError):
+        return  # who needs the study says what is wrong with it
+    analysis = _table(study, "analysis")
+    shown = analysis.get("outputs", [])
+    named = (
+        [*_table(study, "uncertain")],
+        [
+            *(shown if isinstance(shown, list) else []),
+            *(name for key in _OF_OUTPUTS for name in _table(analysis, key)),
+        ],
+    )
+    for verb, role, names in zip(("varies", "asks for"), ("input", "output"), named, strict=True):
+        for name in map(str, names):
+            if name not in ds.data_vars or ds[name].attrs.get("role") != role:
+                yield f"its study {verb} '{name}', which it does not hold"
+
+
+def _table(tables: Any, key: str) -> dict[str, Any]:
+    table = tables.get(key, {})
+    return table if isinstance(table, dict) else {}
+
+
+def _attribute_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
+    """Yield which optional attributes of a variable are of a wrong type, shape or range."""
+    attrs = variable.attrs
+    admissible: Any = attrs.get("admissible", (-np.inf, np.inf))
+    if not _are_numbers(admissible, 2) or not admissible[0] <= admissible[1]:
+        yield f"attribute 'admissible' of '{name}' is not two numbers in order"
+    if not _are_numbers(attrs.get("accuracy", 1.0), 1):
+        yield f"attribute 'accuracy' of '{name}' is not a number"
+    for text in ("source", "symbol", "success", "level"):
+        if not isinstance(attrs.get(text, ""), str):
+            yield f"attribute '{text}' of '{name}' is not text"
+    if attrs.get("role") == "censored" and not np.isin(variable.values, (0, 1)).all():
+        yield f"'{name}' is neither 0 nor 1 throughout"
+    if "scales" in attrs and not _are_exponents(attrs["scales"]):
+        yield f"attribute 'scales' of '{name}' is not a table of exponents"
+
+
+def _are_numbers(value: Any, count: int) -> bool:
+    numbers = np.asarray(value)
+    return numbers.dtype.kind in "fiu" and numbers.size == count and not np.isnan(numbers).any()
+
+
+def _are_exponents(text: Any) -> bool:
+    try:
+        table = json.loads(text)
+    except (TypeError, ValueError, RecursionError):
+        return False
+    return isinstance(table, dict) and all(_are_numbers(power, 1) for power in table.values())
+
+
+def _nesting_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield what is wrong with samples of several rows."""
+    if "world" not in ds.variables:
+        return
+    for place, size in (("world", ""), ("unit", "units"), ("repeat", "repeats")):
+        if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
+            yield f"'{place}' is not one integer per row"
+            return
+        most = ds.attrs.get(size, np.iinfo(np.int64).max if not size else 0)
+        if not isinstance(most, int | np.integer) or not 1 <= most:
+            yield f"attribute '{size}' is not a positive number"
+        elif ((ds[place].values < 0) | (ds[place].values >= most)).any():
+            yield f"'{place}' is out of range"
+        elif size and most > ds.sizes["sample"]:
+            yield f"attribute '{size}' is larger than the number of rows"
+
+
+def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
+    if variable.attrs.get("kind") not in get_args(Kind):
+        yield f"'{name}' is of an unknown kind"
+    elif variable.attrs["kind"] == "category" and (fault := _flag_fault(variable)):
+        yield fault
+    if not isinstance(variable.attrs.get("may_be_undefined"), int | np.integer):
+        yield f"'{name}' lacks the attribute 'may_be_undefined'"
+    if not isinstance(variable.attrs.get("never_known_at_once", 0), int | np.integer):
+        yield f"attribute 'never_known_at_once' of '{name}' is not a number"
+    for dim in variable.dims[1:]:
+        if dim not in variable.coords:
+            yield f"'{name}' lacks the coordinate '{dim}'"
+
+
+def _flag_fault(variable: xr.DataArray) -> str:
+    codes: Any = variable.attrs.get("flag_values")
+    labels = variable.attrs.get("flag_meanings")
+    if codes is None or not isinstance(labels, str) or np.size(codes) != len(labels.split()):
+        return f"'{variable.name}' lacks the meaning of its numbers"
+    if np.asarray(codes).dtype.kind not in "iu" or not np.isin(variable.values, codes).all():
+        return f"'{variable.name}' has numbers without a meaning"
+    return ""

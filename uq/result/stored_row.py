@@ -1,0 +1,77 @@
+"""A row of a result as plain numbers, as the result describes it: no model is needed."""
+
+from collections import namedtuple
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+import xarray as xr
+
+from uq.contract import Model, censored_name
+from uq.errors import InputError
+from uq.result.one_row import Row
+from uq.result.result_file import refuse_empty
+from uq.result.variables import outputs_of
+
+
+def place_of(ds: xr.Dataset, number: int) -> int:
+    """Return the place in a result of the row with a number.
+
+    Raises
+    ------
+    InputError
+        When there is no such row.
+    """
+    refuse_empty(ds)
+    numbers = ds["sample"].values
+    found = (numbers == number).nonzero()[0]
+    if not len(found):
+        raise InputError(f"no such row: {number} (allowed: {numbers.min()} to {numbers.max()})")
+    return int(found[0])
+
+
+def stored_row(ds: xr.Dataset, place: int) -> Row:
+    """Return a row of a result.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    place : int
+        As from `place_of`.
+
+    Returns
+    -------
+    Row
+        Its model declares what the result says, and cannot compute; its seed is 0.
+    """
+    one = ds.isel(sample=[place]).load()
+    outputs = outputs_of(one)
+    columns = {name: one[name].values for name in outputs}
+    flags = [flag for name in outputs if (flag := censored_name(name)) in one]
+    columns |= {flag: one[flag].values.astype(bool) for flag in flags}
+    values = {
+        str(name): float(variable.values.reshape(-1)[0])
+        for name, variable in one.data_vars.items()
+        if variable.attrs.get("role") in ("input", "fixed")
+    }
+    axes = {dim: one[dim].values.tolist() for output in outputs.values() for dim in output.dims}
+    model = Model(
+        name=str(ds.attrs["model"]),
+        title=str(ds.attrs["title"]),
+        version=str(ds.attrs["model_version"]),
+        parameters=namedtuple("Parameters", values),
+        settings=_Nothing,
+        outputs=outputs,
+        batch=_refused,
+        coordinates=lambda settings: axes,
+    )
+    return Row(model, _Nothing(), values, 0, columns, one["status"].values, {})
+
+
+@dataclass(frozen=True)
+class _Nothing:
+    """No settings."""
+
+
+def _refused(*arguments: Any) -> NoReturn:
+    """Stand in for the batch function: rows of a result are shown, never computed."""
+    raise NotImplementedError("this model only describes a result")

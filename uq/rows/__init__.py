@@ -1,1 +1,0 @@
-"""Rows of a study: drawn, evaluated, laid out in a result."""

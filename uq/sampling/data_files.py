@@ -1,0 +1,219 @@
+"""Columns of numbers named by a study file: read from CSV or netCDF, kept in the study's text.
+
+A result contains the text of its study. With the numbers at its end that text is complete: it gives
+the same rows after the files have changed or are gone.
+"""
+
+import csv
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from math import isfinite
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.errors import nearest
+from uq.files.netcdf_files import refuse_tricks
+from uq.files.paths import node
+from uq.sampling.designs import IMPORTED
+from uq.sampling.input_faults import Fault
+from uq.text.literals import key
+from uq.text.numbers import counted
+
+MAX_NUMBERS = 1_000_000
+"""Most numbers in a column: they become part of every result."""
+
+Columns = dict[str, dict[str, str]]
+"""File -> column -> numbers, as text."""
+
+
+def columns_of_files(
+    tables: Mapping[str, Mapping[str, Any]], folder: Path | None
+) -> tuple[Columns, list[Fault]]:
+    """Return all columns that a study file names.
+
+    Parameters
+    ----------
+    tables : dict
+        The sound entries of a study file; files contained in its [data] are not read.
+    folder : Path or None
+        The folder to which names of files are relative; None if there is only [data].
+
+    Returns
+    -------
+    columns : dict
+    faults : list of Fault
+    """
+    columns: Columns = {}
+    faults = []
+    for path, file, column in _named(tables):
+        try:
+            if file in tables["data"]:
+                found = _kept(tables["data"][file], column)
+            else:
+                found = _as_text(_read(folder, file, column))
+        except ValueError as error:
+            fault = Fault(path, str(error), file)
+            if fault not in faults:  # one for all columns of a file that cannot be read
+                faults.append(fault)
+        else:
+            columns.setdefault(file, {})[column] = found
+    return columns, faults
+
+
+def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
+    """Return the text of a study file with the columns that it names at its end.
+
+    Parameters
+    ----------
+    text : str
+    columns : dict
+    kept : dict
+        Its [data].
+
+    Returns
+    -------
+    str
+        TOML; unchanged if there is nothing to add.
+    """
+    lines = [] if text.endswith("\n") else [""]
+    for file, table in columns.items():
+        if file not in kept:
+            lines += ["# Kept by uq, so that this text is complete.", f"[data.{key(file)}]"]
+            lines += [f"{key(column)} = '{numbers}'" for column, numbers in table.items()]
+    return "\n".join([text, *lines, ""]) if any(lines) else text
+
+
+@lru_cache(maxsize=128)
+def numbers(text: str) -> Floats:
+    """Return the numbers of a column, read-only."""
+    found = np.array(text.split(), dtype=float)
+    found.setflags(write=False)
+    return found
+
+
+def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    """Yield the place of each file name, the name, and each column needed from it."""
+    uncertain, design = tables["uncertain"], tables["design"]
+    for name, entry in uncertain.items():
+        if "file" in entry:
+            yield ("uncertain", name, "file"), entry["file"], entry["column"]
+    if design.get("method") in IMPORTED and "file" in design:
+        for name, entry in uncertain.items():
+            if "equals" not in entry:
+                yield ("design", "file"), design["file"], name
+
+
+def _kept(columns: Mapping[str, str], column: str) -> str:
+    if column not in columns:
+        raise ValueError(f"[data] has no column '{column}' of this file")
+    try:
+        _checked(numbers(columns[column]))
+    except ValueError:
+        raise ValueError(f"[data] is damaged: column '{column}' must be numbers") from None
+    return columns[column]
+
+
+def _as_text(values: Floats) -> str:
+    return " ".join(map(repr, values.tolist()))
+
+
+def _read(folder: Path | None, file: str, column: str) -> Floats:
+    """Read a column; a `ValueError` says what is wrong."""
+    if folder is None:
+        raise ValueError("the text of this study does not contain the file's numbers")
+    path = folder / file
+    if what := node(path):
+        raise ValueError(f"is {what}, not a file")
+    if not path.is_file():
+        names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
+        raise ValueError(f"no such file in {folder.absolute()}{nearest(path.name, names)}")
+    read = _read_netcdf if path.suffix == ".nc" else _read_csv
+    try:
+        return _checked(read(path, column))
+    except OSError as error:
+        raise ValueError(f"cannot be read: {error.strerror or error}") from None
+
+
+def _checked(values: Floats) -> Floats:
+    if not 1 <= len(values) <= MAX_NUMBERS:
+        raise ValueError(f"has {len(values)} rows (allowed: 1 to {MAX_NUMBERS})")
+    if not np.isfinite(values).all():
+        raise ValueError(f"row {int(np.argmin(np.isfinite(values))) + 1} is not finite")
+    return values
+
+
+def _read_csv(path: Path, column: str) -> Floats:
+    with path.open(newline="", encoding="utf-8-sig") as lines:
+        try:
+            for mark, name in ((";", "semicolons"), ("\t", "tabs")):
+                if column in _names(lines, mark):
+                    remedy = "write commas, and a decimal point in numbers"
+                    raise ValueError(f"has cells separated by {name}; {remedy}")
+            lines.seek(0)
+            rows = csv.reader(lines, skipinitialspace=True, strict=True)
+            names = [name.strip() for name in next(rows, [])]
+            if names.count(column) != 1:
+                raise ValueError(_no_column(column, names))
+            place = names.index(column)
+            return np.array([_number(row, names, place, rows.line_num) for row in rows if any(row)])
+        except csv.Error as error:
+            raise ValueError(f"not CSV: {error}") from None
+        except UnicodeDecodeError:
+            raise ValueError("not a text file in UTF-8") from None
+
+
+def _names(lines: TextIO, mark: str) -> list[str]:
+    """Return the names of the columns, if there are several with this separator."""
+    lines.seek(0)
+    names = next(csv.reader(lines, delimiter=mark, skipinitialspace=True), [])
+    return [name.strip() for name in names] if names[1:] else []
+
+
+def _number(row: list[str], names: list[str], place: int, line: int) -> float:
+    """Return the number in one cell of a row; a `ValueError` says what is wrong."""
+    if len(row) != len(names):
+        cells = counted(len(row), "cell")
+        raise ValueError(
+            f"line {line}: has {cells}, the first line {len(names)}; all rows must have as many, "
+            "and numbers a decimal point, not a comma"
+        )
+    cell = row[place].strip()
+    try:
+        value = float(cell)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        remedy = "; write it with a decimal point" if _DECIMAL_COMMA.fullmatch(cell) else ""
+        problem = f"column '{names[place]}' must be a finite number: '{cell}'{remedy}"
+        raise ValueError(f"line {line}: {problem}")
+    return value
+
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+
+
+def _read_netcdf(path: Path, column: str) -> Floats:
+    import xarray as xr
+
+    try:
+        refuse_tricks(path)
+        with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
+            wide = [str(name) for name in ds.variables if ds[name].ndim == 1]
+            if column not in wide:
+                raise ValueError(_no_column(column, wide))
+            if ds[column].size > MAX_NUMBERS:
+                raise ValueError(f"has {ds[column].size} rows (allowed: 1 to {MAX_NUMBERS})")
+            return np.asarray(ds[column].values, dtype=float)
+    except (OSError, RuntimeError, TypeError):
+        raise ValueError("not a netCDF file of numbers") from None
+
+
+def _no_column(column: str, names: list[str]) -> str:
+    known = ", ".join(names) or "none"
+    if column in names:
+        return f"has several columns '{column}'; give each its own name (its columns: {known})"
+    return f"has no column '{column}'{nearest(column, names)} (its columns: {known})"

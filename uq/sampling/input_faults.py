@@ -1,0 +1,97 @@
+"""One fault of a study file, and its line for the user."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple
+
+from uq.errors import nearest
+from uq.text.literals import key, shown
+
+MISSING = "is missing"
+
+_REASONS = {
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "dict_type": "must be a table",
+    "float_type": "must be a number",
+    "finite_number": "must be a finite number",
+    "int_type": "must be a whole number, without a decimal point",
+    "bool_type": "must be true or false",
+    "string_type": "must be a text in quotes",
+    "string_too_long": "must have at most {max_length} characters",
+    "string_pattern_mismatch": "must consist of letters, digits, '-' and '_'",
+    "tuple_type": "must be a list",
+    "too_short": "must have at least {min_length} entries",
+    "too_long": "must have at most {max_length} entries",
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le}",
+    "literal_error": "must be {expected}",
+    "value_error": "{error}",
+}
+
+
+class Fault(NamedTuple):
+    """Something wrong with one entry of a study file.
+
+    Attributes
+    ----------
+    path : tuple of str or int
+        Its place: table, key, index in a list. Of a part of the file: the place in that part.
+    problem : str
+        What is wrong, what is allowed, what to do.
+    value : object
+        The value in the file; None if it is not to be shown.
+    """
+
+    path: tuple[str | int, ...]
+    problem: str
+    value: Any = None
+
+    def within(self, *path: str) -> "Fault":
+        """Return the fault with its place in the whole file."""
+        return self._replace(path=(*path, *self.path))
+
+    @property
+    def line(self) -> str:
+        """The fault as ``[table] key = value: problem``."""
+        depth = 2 if self.path[0] == "uncertain" else 1
+        table, entry = _dotted(self.path[:depth]), _dotted(self.path[depth:])
+        equals = "" if self.value is None else f" = {shown(self.value)}"
+        if entry:
+            return f"[{table}] {entry}{equals}: {self.problem}"
+        if self.value is None or isinstance(self.value, dict):
+            return f"[{table}]: {self.problem}"
+        return f"{table}{equals}: {self.problem}"
+
+
+def _dotted(path: tuple[str | int, ...]) -> str:
+    parts = [f"[{part}]" if isinstance(part, int) else f".{key(part)}" for part in path]
+    return "".join(parts).removeprefix(".")
+
+
+def unknown(kind: str, name: str, known: Iterable[str]) -> str:
+    """Return what is wrong with a name that does not exist, with the nearest one and all others."""
+    return f"no such {kind}{nearest(name, known)} (allowed: {', '.join(known)})"
+
+
+def fault_of(
+    error: dict[str, Any], known: Callable[[Sequence[Any]], Iterable[str]] | None = None
+) -> Fault:
+    """Return an error of pydantic as a fault.
+
+    Parameters
+    ----------
+    error : dict
+        One of ``ValidationError.errors()``.
+    known : callable, optional
+        Place of an unknown key -> names that it may have.
+    """
+    path, kind = tuple(error["loc"]), error["type"]
+    if kind == "missing":
+        return Fault(path, MISSING)
+    if kind == "extra_forbidden" and known is not None:
+        table = "key" if len(path) > 1 else "table"
+        return Fault(path, unknown(table, str(path[-1]), list(known(path))), error["input"])
+    reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
+    return Fault(path, reason or error["msg"], error["input"])

@@ -1,0 +1,98 @@
+"""What all laws of an uncertain parameter share."""
+
+from abc import abstractmethod
+from math import inf
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from uq.errors import nearest
+from uq.sampling.levels import LEVELS, OWN
+
+Positive = Annotated[float, Field(gt=0)]
+
+LIST = Field(strict=False)
+"""Of a tuple, whose items stay strict: TOML has lists only."""
+
+STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+"""What every table of a study file asks of its keys and values."""
+
+
+def _known_level(level: str) -> str:
+    if level not in LEVELS:
+        raise ValueError(f"no such level{nearest(level, LEVELS)} (allowed: {', '.join(LEVELS)})")
+    return level
+
+
+Level = Annotated[str, AfterValidator(_known_level)]
+LEVEL_SCHEMA: dict[str, Any] = {"enum": list(LEVELS)}
+LEVEL_MEANING = ", ".join(f"{name}: {meaning}" for name, meaning in LEVELS.items())
+
+
+class Law(BaseModel):
+    """A law of one variable; arguments in the parameter's unit, unless they are `pure`."""
+
+    model_config = STRICT
+
+    _ascending: ClassVar[tuple[str, ...]] = ()
+    discrete: ClassVar[bool] = False
+    either: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """Sets of arguments, one of which is given."""
+    pure: ClassVar[tuple[str, ...]] = ()
+    """Arguments without a unit."""
+
+    source: str = Field("", description="where the numbers come from; shown in every result")
+    truncate: Annotated[tuple[float, float] | None, LIST] = Field(
+        None, description="[lower, upper]: the law given that the value lies between them"
+    )
+    times: str | None = Field(
+        None, description="another uncertain parameter; the law is that of its factor"
+    )
+    level: Level = Field(OWN, description=LEVEL_MEANING, json_schema_extra=LEVEL_SCHEMA)
+
+    @abstractmethod
+    def frozen(self) -> Any:
+        """Return the law, before `truncate`, as a frozen `scipy.stats` distribution."""
+
+    def functions(self) -> Any:
+        """Return the law, before `truncate`, with its `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
+        return self.frozen()
+
+    def parent(self) -> tuple[Any, float, float]:
+        """Return the functions of the law before any truncation, and the ends of the truncation.
+
+        Quantiles of a truncated law are best computed from those of its parent: that is faster,
+        and accurate in both tails.
+        """
+        return (self.functions(), *(self.truncate or (-inf, inf)))
+
+    def kinks(self) -> tuple[float, ...]:
+        """Return the places, ends apart, where the density is not smooth."""
+        return ()
+
+    @model_validator(mode="after")
+    def _check_order(self) -> Self:
+        names = self._ascending
+        values = [getattr(self, name) for name in names]
+        if values and (values != sorted(values) or values[0] == values[-1]):
+            wanted = (" <= " if len(names) > 2 else " < ").join(names)
+            given = ", ".join(f"{name} = {getattr(self, name)!r}" for name in names)
+            raise ValueError(f"must have {wanted}: {given}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_either(self) -> Self:
+        names = {name for some in self.either for name in some}
+        if names and names & self.model_fields_set not in map(set, self.either):
+            name = vars(self)["distribution"]
+            article = "an" if name[0] in "aeiou" else "a"
+            choice = ", or ".join(" and ".join(some) for some in self.either)
+            raise ValueError(f"{article} {name} law takes either {choice}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_truncation(self) -> Self:
+        if self.truncate and not self.truncate[0] < self.truncate[1]:
+            low, high = self.truncate
+            raise ValueError(f"truncate must have lower < upper: [{low!r}, {high!r}]")
+        return self

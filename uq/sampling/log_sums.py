@@ -1,0 +1,210 @@
+"""The law of a sum of independent terms, each a multiple of the logarithm of an input."""
+
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy import special
+
+from uq.contract import Floats
+from uq.sampling.law import Law
+from uq.sampling.truncation import cdf_within, ppf_within
+
+ACCURACY = 1e-10
+"""Largest error of the probability of a sum."""
+
+_FARTHEST = 8.2  # standard normal quantile beyond which a probability is negligible
+_NODES = 96
+_DEGREE = 24
+_DEEPEST = 12
+_HALVINGS = 50
+
+
+class Term(Protocol):
+    """A random number.
+
+    Attributes
+    ----------
+    breaks : ndarray, shape (k,)
+        Ascending; its ends, beyond which its probability is negligible, and the places between
+        them where its density is not smooth.
+    """
+
+    breaks: Floats
+
+    @property
+    def moments(self) -> tuple[float, float]:
+        """Its mean and variance."""
+
+    def below(self, value: Floats, /) -> Floats:
+        """Return the probability of less than each value."""
+
+    def at(self, z: Floats, /) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles."""
+
+
+class LogTerm:
+    """A multiple of the logarithm of an input.
+
+    Parameters
+    ----------
+    law : Law
+        Continuous, of a positive quantity.
+    bounds : tuple of float
+        On which the law is conditioned.
+    exponent : float
+        Not zero.
+    """
+
+    def __init__(self, law: Law, bounds: tuple[float, float], exponent: float):
+        self._law, self._bounds, self.exponent = law, bounds, exponent
+        ends = ppf_within(law, special.ndtr(np.array([-_FARTHEST, _FARTHEST])), bounds)
+        inner = [x for x in law.kinks() if ends[0] < x < ends[1]]
+        self.breaks = np.sort(exponent * np.log([ends[0], *inner, ends[1]]))
+
+    def below(self, value: Floats) -> Floats:
+        """Return the probability of less than each value."""
+        with np.errstate(over="ignore", under="ignore"):
+            share = cdf_within(self._law, np.exp(value / self.exponent), self._bounds)
+        return share if self.exponent > 0 else 1 - share
+
+    def at(self, z: Floats) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles."""
+        u = special.ndtr(np.sign(self.exponent) * z)
+        u = np.clip(u, 2.0**-54, 1 - 2.0**-53)
+        return self.exponent * np.log(ppf_within(self._law, u.ravel(), self._bounds)).reshape(
+            z.shape
+        )
+
+    @cached_property
+    def moments(self) -> tuple[float, float]:
+        """Its mean and variance."""
+        at, weight = normal_rule(special.ndtri(self.below(self.breaks)), _NODES)
+        values = self.at(at)
+        mean = np.average(values, weights=weight)
+        return float(mean), float(np.average((values - mean) ** 2, weights=weight))
+
+    @property
+    def spread(self) -> float:
+        """Its standard deviation."""
+        return float(np.sqrt(self.moments[1]))
+
+
+class Sum:
+    """The sum of a random number and a term independent of it.
+
+    The probability is an integral over the quantiles of the term, by Gauss and Legendre's rule
+    between the places where the integrand is not smooth. It is tabulated as Chebyshev polynomials.
+
+    Parameters
+    ----------
+    first : Term
+    second : LogTerm
+
+    Raises
+    ------
+    ArithmeticError
+        The probabilities are not accurate to `ACCURACY`.
+    """
+
+    def __init__(self, first: Term, second: LogTerm):
+        self._first, self._second = first, second
+        self.breaks = np.unique(np.add.outer(first.breaks, second.breaks))
+        coarse = self._pieces(_NODES)
+        self.ends = np.array([*(low for low, _, _ in coarse), coarse[-1][1]])
+        self.coefficients = np.array([c for _, _, c in coarse])
+        middle = (self.ends[1:] + self.ends[:-1]) / 2
+        if np.abs(self._exactly(middle, 3 * _NODES) - self.below(middle)).max() > ACCURACY:
+            raise ArithmeticError("the probability of the sum is not accurate enough")
+
+    @property
+    def moments(self) -> tuple[float, float]:
+        """Its mean and variance."""
+        pairs = zip(self._first.moments, self._second.moments, strict=True)
+        mean, variance = map(sum, pairs)
+        return mean, variance
+
+    def below(self, value: Floats) -> Floats:
+        """Return the probability of less than each value."""
+        value = np.asarray(value)
+        inside = np.clip(value, self.ends[0], self.ends[-1])
+        piece = np.clip(np.searchsorted(self.ends, inside) - 1, 0, len(self.ends) - 2)
+        low, high = self.ends[piece], self.ends[piece + 1]
+        x = (2 * inside - low - high) / (high - low)
+        coefficients = np.moveaxis(self.coefficients[piece], -1, 0)
+        found = chebyshev.chebval(x, coefficients, tensor=False)
+        found = np.where(value <= self.ends[0], 0.0, found)
+        return np.clip(np.where(value >= self.ends[-1], 1.0, found), 0.0, 1.0)
+
+    def at(self, z: Floats) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles, by bisection."""
+        low, high = (np.full(z.shape, end) for end in self.ends[[0, -1]])
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            above = self.below(middle) > special.ndtr(z)
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        return np.asarray((low + high) / 2)
+
+    def _pieces(self, nodes: int) -> list[tuple[float, float, Floats]]:
+        """Return ends and coefficients of polynomials, halved until each is accurate."""
+        found = []
+        waiting = [(low, high, 0) for low, high in zip(self.breaks, self.breaks[1:], strict=False)]
+        test = np.array([-0.97, -0.31, 0.44, 0.99])
+        while waiting:
+            low, high, depth = waiting.pop(0)
+
+            def value(x: Floats, low: float = low, high: float = high) -> Floats:
+                return self._exactly((low + high) / 2 + (high - low) / 2 * x, nodes)
+
+            c: Floats = chebyshev.chebinterpolate(value, _DEGREE)  # type: ignore[arg-type]
+            wrong = np.abs(chebyshev.chebval(test, c) - value(test)).max() > ACCURACY / 10
+            if wrong and depth < _DEEPEST:
+                middle = (low + high) / 2
+                waiting += [(low, middle, depth + 1), (middle, high, depth + 1)]
+            else:
+                found.append((low, high, c))
+        return sorted(found, key=lambda piece: piece[0])
+
+    def _exactly(self, value: Floats, nodes: int) -> Floats:
+        """Return the probability of less than each value, shape (k,), by quadrature."""
+        kinks = value[:, None] - self._first.breaks
+        own = self._second.breaks
+        places = np.sort(
+            np.hstack([np.clip(kinks, own[0], own[-1]), np.tile(own, (len(value), 1))]), axis=1
+        )
+        at, density = normal_rule(special.ndtri(self._second.below(places)), nodes)
+        inner = self._first.below(value[:, None, None] - self._second.at(at))
+        found: Floats = (density * inner).sum(axis=(1, 2))
+        return found
+
+
+def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
+    """Return nodes of Gauss and Legendre's rule for the mean over a standard normal variable.
+
+    Parameters
+    ----------
+    z : ndarray, shape (..., pieces + 1)
+        Ascending, the ends of pieces; the first and the last stand for infinity.
+    nodes : int
+        In each piece.
+
+    Returns
+    -------
+    nodes, weights : ndarray, shape (..., pieces, nodes)
+    """
+    z = np.clip(z, -_FARTHEST, _FARTHEST)
+    z[..., 0], z[..., -1] = -_FARTHEST, _FARTHEST
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    half, middle = np.diff(z)[..., None] / 2, ((z[..., 1:] + z[..., :-1]) / 2)[..., None]
+    at = middle + half * x
+    return at, np.exp(-(at**2) / 2) / np.sqrt(2 * np.pi) * half * weight
+
+
+def law_of_sum(terms: list[LogTerm]) -> Term:
+    """Return the law of a sum of independent terms, the widest of which is exact."""
+    widest, *others = sorted(terms, key=lambda term: -term.spread)
+    found: Term = widest
+    for term in others:
+        found = Sum(found, term)
+    return found

@@ -1,0 +1,50 @@
+"""Estimates as JSON: a number that is not finite is null, with the reason beside it."""
+
+from math import isfinite
+from typing import Any
+
+from uq.stats.estimate import Estimate
+
+
+def number(value: float) -> float | None:
+    """Return a number, None for one that is not finite."""
+    return float(value) if isfinite(value) else None
+
+
+def numbers(estimate: Estimate) -> dict[str, float | None]:
+    """Return value and interval."""
+    return {"value": number(estimate.value), **ends(estimate)}
+
+
+def ends(estimate: Estimate) -> dict[str, float | None]:
+    """Return the interval alone."""
+    return {"low": number(estimate.low), "high": number(estimate.high)}
+
+
+def whole(estimate: Estimate) -> dict[str, Any]:
+    """Return value and interval, why any of the three is null, and what they assume."""
+    found: dict[str, Any] = numbers(estimate)
+    for name in ("value", "low", "high"):
+        found |= flag("" if name == "value" else f"{name}_", estimate, name)
+    if estimate.reason:
+        found["reason"] = estimate.reason
+    if estimate.assumes:
+        found["assumes"] = estimate.assumes
+    return found
+
+
+def flag(prefix: str, estimate: Estimate, name: str) -> dict[str, bool]:
+    """Flag a life that never ends, or ends beyond the horizon."""
+    if getattr(estimate, name) != float("inf"):
+        return {}
+    return {f"{prefix}{'censored' if name in estimate.beyond else 'never'}": True}
+
+
+def failed(bounds: Estimate | None) -> dict[str, Any]:
+    """Return the ends of an interval with the failed rows at best and at worst."""
+    found: dict[str, Any] = {}
+    if bounds is not None:
+        for name in ("low", "high"):
+            found[f"failed_{name}"] = number(getattr(bounds, name))
+            found |= flag(f"failed_{name}_", bounds, name)
+    return found

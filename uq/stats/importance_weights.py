@@ -1,0 +1,257 @@
+"""Importance weights: smoothed, with a diagnosis of whether they can be trusted."""
+
+from math import ceil, inf
+from typing import NamedTuple
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.stats.clusters import Clusters
+from uq.stats.intervals import Replicates, is_constant
+from uq.stats.tails import DISTINCT, generalised_pareto, shrunk
+
+_FEWEST = 5  # values in a tail
+DOUBTFUL = 0.7
+"""Shape of the largest weights above which their mean cannot be trusted, however many rows."""
+
+_NEGLIGIBLE = 1e-3
+_LITTLE = 0.01
+_SAME = 1e-9  # relative difference of numbers that only rounding tells apart
+
+
+def effective_rows(numbers: Floats) -> float:
+    """Return the number of rows of equal weight that are worth as much [1]_.
+
+    References
+    ----------
+    .. [1] L. Kish, Survey Sampling, Wiley, New York, 1965.
+    """
+    largest = numbers.max(initial=0.0)
+    relative = numbers / largest if largest > 0 else numbers
+    return float(relative.sum() ** 2 / (relative**2).sum()) if largest > 0 else 0.0
+
+
+class Smoothed(NamedTuple):
+    """Weights of rows.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,)
+        Of mean 1.
+    k : float
+        Shape of the generalised Pareto law of the largest; -inf where all weights are equal.
+    rows : int
+        Number of independent rows, or of samples of several rows.
+    effective : float
+        Kish's number of equal ones that are worth as much.
+    most : float
+        The largest weight that a row can have.
+    impossible : str
+        Why there are none, or "".
+    """
+
+    weights: Floats
+    k: float
+    rows: int
+    effective: float
+    most: float = inf
+    impossible: str = ""
+
+    @property
+    def refusal(self) -> str:
+        """Why they cannot be trusted, or ""."""
+        return self.impossible or refusal(self.k, self.rows)
+
+
+def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
+    """Return Pareto-smoothed weights [1]_.
+
+    Weights that are known to be bounded, so that no row can carry more than a hundredth of all,
+    stay as they are: the variance of their mean is below a hundredth of its square, and their k not
+    above 0, whatever the largest look like. Where samples have several rows, that of all rows of a
+    sample is smoothed: samples are independent, and rows in proportion are as they were.
+
+    Parameters
+    ----------
+    log_weights : ndarray, shape (n,)
+        Not all -inf.
+    part : ndarray of int, shape (n,), optional
+        The independent part of each row (`uq.stats.intervals`).
+    most : float, optional
+        The largest weight that a row can have, of weights of mean 1.
+
+    Returns
+    -------
+    Smoothed
+
+    References
+    ----------
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
+    """
+    raw = np.exp(log_weights - log_weights.max())
+    of_samples = per_sample(raw, part)
+    alone = len(of_samples) == 1 and log_weights.any()
+    k = inf if alone else tail_shape(of_samples)
+    weights = raw
+    if carries_little(most, len(of_samples)):
+        k = min(k, 0.0)
+    elif np.isfinite(k):
+        smooth = _with_smooth_tail(of_samples)
+        if of_samples is raw:
+            weights = smooth
+        else:
+            with np.errstate(invalid="ignore"):  # samples without weight
+                weights = raw * _of_rows(smooth / of_samples, part)
+    effective = effective_rows(per_sample(weights, part))
+    return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
+
+
+def no_weights(rows: int, why: str) -> Smoothed:
+    """Return what stands for weights of rows that can have none."""
+    return Smoothed(np.ones(rows), inf, rows, 0.0, impossible=why)
+
+
+def carries_little(most: float, rows: int) -> bool:
+    """Whether no row of so many can carry more than a hundredth of what all carry."""
+    return rows_to_carry_little(most) <= rows
+
+
+def rows_to_carry_little(most: float) -> float:
+    """Return of how many rows none can carry more than a hundredth, given the largest weight."""
+    return most / _LITTLE
+
+
+def of_samples(weights: Floats) -> Smoothed:
+    """Return the weights of samples, as inspections left them."""
+    return Smoothed(weights, tail_shape(weights), len(weights), effective_rows(weights))
+
+
+def quality(weights: Smoothed | None) -> dict[str, float]:
+    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
+    return {} if weights is None else {"effective_rows": weights.effective, "pareto_k": weights.k}
+
+
+def worth_in_words(weights: Smoothed) -> str:
+    """Return of how many samples of equal weight they are worth."""
+    return f"{weights.rows} samples, worth {weights.effective:.0f} of equal weight"
+
+
+def tail_shape(numbers: Floats) -> float:
+    """Return the shape of the law of the largest of some numbers [1]_, not negative.
+
+    Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
+    where all others are equal, or the largest are a few values that many rows have, as under
+    listed values; infinite where there are too few. Rows that share the value at which the tail
+    begins are left out of it, as under a limit that is integrated on a grid.
+
+    References
+    ----------
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
+    """
+    ascending = np.sort(numbers)
+    counted = ascending[ascending > _NEGLIGIBLE * ascending[-1]]
+    if len(counted) == 0 or (len(counted) == len(ascending) and is_constant(counted)):
+        return -inf
+    count = _tail_size(len(numbers))
+    if len(counted) < _FEWEST:
+        return inf
+    if _are_few_values(counted, count):
+        return -inf
+    excess = counted
+    if len(counted) > count:
+        above = counted[-count:][counted[-count:] > counted[-count - 1]]
+        if 2 * len(above) > count:  # few would hide behind rows of one value
+            excess = above - counted[-count - 1]
+    if np.ptp(excess) == 0:
+        return -inf if len(excess) > 1 else inf
+    return shrunk(generalised_pareto(excess)[0], len(excess))
+
+
+def largest_shape(rows: int) -> float:
+    """Return the largest shape with which so many rows can be trusted."""
+    return min(DOUBTFUL, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
+
+
+HOPELESS = (
+    "too few rows lie where the other laws do; run them as a study of their own, or with many"
+    " times the rows"
+)
+
+
+def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
+    """Return why weights with this shape cannot be trusted, or ""."""
+    most = largest_shape(rows)
+    if k <= most or k == -inf:
+        return ""
+    if most == -inf:
+        parts = "part" if rows == 1 else "parts"
+        return f"weights rest on {rows} independent {parts}, and more than 10 are needed"
+    if k < DOUBTFUL:
+        needed = max(ceil(10 ** (1 / (1 - max(k, 0.0)))), rows + 1)
+        return (
+            f"this takes about {needed} samples instead of {rows}"
+            f" (Pareto k {k:.2f}, limit {most:.2f})"
+        )
+    if k == inf:
+        return (
+            f"fewer than {_FEWEST} samples have weight there: it takes {2 * rows} samples or more"
+            f" instead of {rows}"
+        )
+    return f"{hopeless} (Pareto k {k:.2f})"
+
+
+def largest_share(weights: Floats) -> float:
+    """Return the share of all weight that the heaviest has."""
+    return float(weights.max() / weights.sum())
+
+
+def too_large(share: float, rows: int) -> str:
+    """Return why a row may not carry this share of all weight, or ""."""
+    if share <= _LITTLE:
+        return ""
+    more = ceil(rows * (share / _LITTLE - 1))
+    return f"a single sample carries {share:.1%} of the weight, above {_LITTLE:.0%}: add {more}"
+
+
+def per_sample(numbers: Floats, part: Replicates) -> Floats:
+    """Return the sum of each independent sample of several rows, else the numbers themselves."""
+    if not (isinstance(part, Clusters) and part.are_samples):
+        return numbers
+    _, place = np.unique(np.asarray(part), return_inverse=True)
+    return np.bincount(place, weights=numbers).astype(float)
+
+
+def _of_rows(of_samples: Floats, part: Replicates) -> Floats:
+    """Return for each row what its sample has; nothing where that is not a number."""
+    _, place = np.unique(np.asarray(part), return_inverse=True)
+    return np.nan_to_num(of_samples)[place]
+
+
+def _are_few_values(ascending: Floats, count: int) -> bool:
+    """Whether the largest are fewer than ten values, each of which ten rows or more have."""
+    close = _SAME * ascending[-1]
+    largest = ascending[ascending >= ascending[-min(count, len(ascending))] - close]
+    sizes = np.diff(np.flatnonzero(np.r_[True, np.diff(largest) > close, True]))
+    return bool(len(sizes) < DISTINCT <= sizes.min())
+
+
+def _tail_size(rows: int) -> int:
+    return ceil(min(rows / 5, 3 * rows**0.5))
+
+
+def _with_smooth_tail(raw: Floats) -> Floats:
+    """Replace the largest weights by quantiles of the generalised Pareto law fitted to them."""
+    count = _tail_size(len(raw))
+    order = np.argsort(raw, kind="stable")
+    tail, cut = order[-count:], raw[order[-count - 1]]
+    excess = raw[tail] - cut
+    if not excess[0] > np.finfo(float).eps * raw.max():  # lost in rounding: no law of a tail
+        return raw
+    shape, scale = generalised_pareto(excess)
+    k = shrunk(shape, count)
+    p = (np.arange(count) + 0.5) / count
+    weights = raw.copy()
+    weights[tail] = np.minimum(cut + scale * np.expm1(-k * np.log1p(-p)) / k, raw.max())
+    return weights

@@ -1,0 +1,382 @@
+"""Intervals of 95 % for means and shares.
+
+Rows are either independent (``replicate`` is None) or belong to independent replicates of a
+design, given as the replicate's number for each row. Formulas for independent rows are wrong for
+the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less; there
+only the scatter between replicates shows the error. Where samples have several rows, samples stand
+for replicates (`uq.stats.clusters.Clusters`). Where there is no interval (one replicate, too
+few rows, replicates that agree to the last bit) it is ``(nan, nan)``, never one of zero width.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats, Mask
+from uq.stats.clusters import Clusters, linearised_means
+from uq.stats.jumps import beyond_jumps
+from uq.stats.quantile_functions import normal, student
+
+CONFIDENCE = 0.95
+ONE_ROW = "a single row does not show any scatter"
+ROUNDING = 64 * np.finfo(float).eps
+"""Values are equal but for rounding if they differ by less than this part of the largest."""
+
+Replicates = NDArray[np.integer] | None
+
+
+Ends = tuple[Any, Any]
+"""Lower and upper end of an interval, or of several (two arrays); NaN where unknown."""
+
+UNKNOWN: Ends = (np.nan, np.nan)
+
+
+def is_constant(values: Floats) -> bool:
+    """Whether finite values are equal but for rounding."""
+    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
+
+
+def sized(values: Floats) -> tuple[Floats, float]:
+    """Return values divided by a power of two near the largest, and this power.
+
+    Then neither squares nor fourth powers leave the range of numbers, and no digit is lost.
+    """
+    largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
+    size = 2.0 ** int(np.clip(np.frexp(largest)[1], -1000, 1000))
+    return values / size, size
+
+
+def scatter_interval(value: float, estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
+    """Return ``value`` +- t s / sqrt(R) from independent estimates of the same number.
+
+    Parameters
+    ----------
+    value : float
+        The estimate from all rows together.
+    estimates : ndarray, shape (R,)
+        One estimate per replicate.
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+    """
+    count = len(estimates)
+    if count < 2 or is_constant(estimates):
+        return UNKNOWN
+    estimates, size = sized(estimates)
+    error = size * (estimates.std(ddof=1) / count**0.5)
+    half = student(upper_probability(confidence), count - 1) * error
+    return float(value - half), float(value + half)
+
+
+def log_scatter_interval(estimates: Floats) -> Ends:
+    """Return the interval of a small probability from independent estimates of it.
+
+    Parameters
+    ----------
+    estimates : ndarray, shape (R,)
+        Not negative.
+
+    Returns
+    -------
+    low, high : float
+        Student's interval of the logarithms about the mean; if some estimates are zero, that of
+        the estimates themselves, not below zero.
+    """
+    mean = float(estimates.mean())
+    if (estimates > 0).all():
+        low, high = np.exp(scatter_interval(np.log(mean), np.log(estimates)))
+        return low, high
+    low, high = scatter_interval(mean, estimates)
+    return np.maximum(low, 0.0), high
+
+
+def mean_interval(
+    values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Ends:
+    """Return the interval of the mean.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite.
+    replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        Student's t [1]_ of the rows, or of the means of the replicates, with the error of jumps
+        that these do not show (`uq.stats.jumps`). Of independent rows or samples it allows for two
+        more outliers (`beyond_outliers`).
+
+    References
+    ----------
+    .. [1] Student, "The probable error of a mean", Biometrika 6, 1-25 (1908).
+    """
+    if len(values) < 2 or is_constant(values):
+        return UNKNOWN
+    mean = float(values.mean())
+    ends = interval_of_mean(mean, values, replicate, confidence)
+    if not parts_are_independent(replicate):
+        return ends
+    parts = values if replicate is None else by_replicate(values, replicate)
+    return beyond_outliers(mean, ends, parts)
+
+
+def parts_are_independent(replicate: Replicates) -> bool:
+    """Whether rows, or samples of several rows, are independent, not parts of an even design."""
+    return replicate is None or isinstance(replicate, Clusters) and replicate.are_samples
+
+
+def beyond_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
+    """Return an interval that allows for more estimates as far out as the farthest.
+
+    Parameters
+    ----------
+    value : float
+    ends : tuple of float
+        Student's interval of the estimates about the value.
+    estimates : ndarray, shape (n,)
+    more : int, optional
+        How many more.
+
+    Returns
+    -------
+    low, high : float
+        The end on the side of the farther outlier is moved: of skewed laws, samples without
+        outliers scatter too little, and their mean lies too far from that side.
+    """
+    move = outlier_shift(value, estimates, more)
+    return ends[0] + min(move, 0.0), ends[1] + max(move, 0.0)
+
+
+def outlier_shift(value: float, estimates: Floats, more: int = 2) -> float:
+    """Return by how much more estimates as far out as the farthest on one side move a mean."""
+    return float(more * ((estimates.max() - value) - (value - estimates.min())) / len(estimates))
+
+
+def interval_of_mean(
+    value: float, values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Ends:
+    """Return the interval of an estimate that is off by as much as the mean of some values.
+
+    Parameters
+    ----------
+    value : float
+    values : ndarray, shape (n,)
+        The rows, or the influence of each on the estimate, plus a constant.
+    replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        As in `mean_interval`.
+    """
+    if replicate is None:
+        return scatter_interval(value, values, confidence)
+    values, unit = sized(values)  # squares of jumps neither overflow nor vanish
+    ends = scatter_interval(value / unit, by_replicate(values, replicate), confidence)
+    low, high = beyond_jumps(value / unit, ends, values, replicate, confidence)
+    return unit * low, unit * high
+
+
+def share_interval(
+    hits: Mask, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Ends:
+    """Return the interval of a share of rows.
+
+    Parameters
+    ----------
+    hits : ndarray of bool, shape (n,)
+    replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        Wilson's score interval [1]_. For replicates, with the effective number of independent
+        rows and Student's t in place of the normal quantile [2]_. Where hits or misses are few, the
+        interval of Clopper and Pearson (`uq.stats.intervals`), which is conservative; replicates
+        then count for at most their rows, since few hits show little of their scatter.
+
+    References
+    ----------
+    .. [1] E. B. Wilson, "Probable inference, the law of succession, and statistical inference",
+       J. Am. Stat. Assoc. 22, 209-212 (1927).
+    .. [2] N. Dean, M. Pagano, "Evaluating confidence interval methods for binomial proportions in
+       clustered surveys", J. Surv. Stat. Methodol. 3, 484-503 (2015).
+    """
+    if len(hits) == 0:
+        return UNKNOWN
+    if replicate is None:
+        return binomial_interval(hits.mean(), len(hits), confidence)
+    return _floats(
+        scattered_share_interval(
+            hits.mean(),
+            by_replicate(hits, replicate),
+            confidence=confidence,
+            rows=len(hits),
+            samples=replicate.samples if isinstance(replicate, Clusters) else None,
+        )
+    )
+
+
+def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
+    """Return the interval of a share from an effective number of rows: exact where hits are few.
+
+    Parameters
+    ----------
+    share : float
+    rows : float
+        Effective number of independent rows.
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+    """
+    if are_few(share, rows):
+        return _floats(exact_interval(share, rows, confidence))
+    return wilson_interval(share, rows, confidence)
+
+
+def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
+    """Return Wilson's interval of a share from an effective number of independent rows."""
+    return _floats(_wilson(share, rows, normal(upper_probability(confidence))))
+
+
+def scattered_share_interval(
+    share: Floats | float,
+    estimates: Floats,
+    scatter_at: Floats | float | None = None,
+    confidence: float = CONFIDENCE,
+    rows: Floats | float | None = None,
+    samples: int | None = None,
+) -> Ends:
+    """Return the interval of a share, or of several, from the estimates of replicates.
+
+    Parameters
+    ----------
+    share : float or ndarray, shape (k,)
+        The estimate from all rows together.
+    estimates : ndarray, shape (R,) or (R, k)
+        By replicate.
+    scatter_at : float or ndarray, optional
+        The share whose scatter `estimates` show, if not `share` itself.
+    confidence : float, optional
+    rows : float or ndarray, shape (k,), optional
+        Of all replicates together: an upper limit of the effective number where hits are few.
+    samples : int, optional
+        Where samples have several rows, their number: the limit if nothing shows how the rows of
+        one agree. Hits are then counted in effective rows.
+
+    Returns
+    -------
+    low, high : float or ndarray, shape (k,)
+        As in `share_interval`; arrays of shape (k,) if `share` is one.
+    """
+    at = share if scatter_at is None else scatter_at
+    count = len(estimates)
+    if count < 2:
+        return np.full(np.shape(share), np.nan), np.full(np.shape(share), np.nan)
+    variance = estimates.var(axis=0, ddof=1) / count
+    # A survival curve may reach 0 while that of a censored replicate does not.
+    known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
+    worth = at * (1 - at) / np.where(known, variance, np.nan)
+    wide = student(upper_probability(confidence), count - 1)
+    found = _wilson(share, worth, wide)
+    if rows is None:
+        return found
+    limit = rows if samples is None else np.where(known, rows, np.minimum(rows, samples))
+    worth = np.fmin(worth * (normal(upper_probability(confidence)) / wide) ** 2, limit)
+    few = are_few(share, rows if samples is None else worth)
+    low, high = exact_interval(share, worth, confidence)
+    return np.where(few, low, found[0]), np.where(few, high, found[1])
+
+
+def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
+    """Return the mean of each replicate that has rows; of samples see `linearised_means`."""
+    if isinstance(replicate, Clusters):
+        return linearised_means(values, replicate)
+    counts = np.bincount(replicate)
+    sums = np.bincount(replicate, weights=values.astype(float, copy=False))
+    return sums[counts > 0] / counts[counts > 0]
+
+
+def replicates_of_some(replicate: Replicates, rows: Mask) -> Replicates:
+    """Return the replicate of each of some rows."""
+    return None if replicate is None else replicate[rows]
+
+
+def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
+    """Return Wilson's interval; scipy's takes only integer numbers of rows.
+
+    The bounds solve (1 + w) x^2 - (2 p + w) x + p^2 = 0 with w = z^2 / rows. One comes from the
+    other by the product of the roots, so that a share of 0 or 1 has a bound of exactly 0 or 1.
+    """
+    w = z**2 / rows
+    high = (share + w / 2 + np.sqrt(w * share * (1 - share) + w**2 / 4)) / (1 + w)
+    low = share**2 / (1 + w) / high
+    return low, 1 - (1 - share) ** 2 / (1 + w) / (1 - low)
+
+
+def upper_probability(confidence: float = CONFIDENCE) -> float:
+    """Return the probability below the upper end of an interval with equal tails."""
+    return 0.5 + confidence / 2
+
+
+def _floats(ends: Ends) -> Ends:
+    return float(ends[0]), float(ends[1])
+
+
+FEW = 20
+"""Below so many hits, or misses, an interval is exact.
+
+Wilson's lower end lies above the true share in up to 16 % of samples where one hit is seen, in up
+to 4 % from twenty hits on.
+"""
+
+
+def are_few(share: Floats | float, rows: Floats | float, below: int = FEW) -> Mask:
+    """Whether there are few hits or few misses; false where the share is unknown."""
+    rarer = np.minimum(share, 1 - np.asarray(share)) * rows
+    return np.asarray(np.round(rarer, 6) < below)
+
+
+def exact_interval(
+    share: Floats | float, rows: Floats | float, confidence: float
+) -> tuple[Floats, Floats]:
+    """Return the interval of Clopper and Pearson [1]_ of a share, or of several.
+
+    Parameters
+    ----------
+    share : float or ndarray, shape (k,)
+    rows : float or ndarray, shape (k,)
+        Effective number of independent rows; need not be an integer [2]_.
+    confidence : float
+
+    Returns
+    -------
+    low, high : ndarray
+        Each misses in at most ``(1 - confidence) / 2`` of samples, less often where hits are few.
+
+    References
+    ----------
+    .. [1] C. J. Clopper, E. S. Pearson, "The use of confidence or fiducial limits illustrated in
+       the case of the binomial", Biometrika 26, 404-413 (1934).
+    .. [2] E. L. Korn, B. I. Graubard, "Confidence intervals for proportions with small expected
+       number of positive counts estimated from survey data", Surv. Methodol. 24, 193-201 (1998).
+    """
+    tail = (1 - confidence) / 2
+    hits = np.asarray(share * rows, dtype=float)
+    # Rounding must not leave a fraction of a hit where there was none.
+    hits = np.where(np.isclose(hits, np.round(hits), rtol=0, atol=1e-9), np.round(hits), hits)
+    misses = np.maximum(rows - hits, 0.0)
+    low = np.where(hits > 0, special.betaincinv(np.maximum(hits, 1e-9), misses + 1, tail), 0.0)
+    high = np.where(misses > 0, special.betainccinv(hits + 1, np.maximum(misses, 1e-9), tail), 1.0)
+    return low, high

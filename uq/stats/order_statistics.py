@@ -1,0 +1,252 @@
+"""Quantiles, their intervals, and tolerance bounds, from order statistics."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from uq.stats.clusters import Clusters
+from uq.stats.intervals import (
+    CONFIDENCE,
+    ROUNDING,
+    UNKNOWN,
+    Ends,
+    Floats,
+    Replicates,
+    by_replicate,
+    scattered_share_interval,
+    upper_probability,
+)
+from uq.stats.quantile_functions import binomial, binomial_exceeded, negative_binomial
+
+
+def is_within(probability: float, rows: int) -> bool:
+    """Whether there are enough values for a quantile: their ranks lie on average at i/(n + 1).
+
+    The rows of all replicates count, since their designs spread at least as evenly.
+    """
+    return bool(1 - ROUNDING <= probability * (rows + 1) <= rows + ROUNDING * rows)
+
+
+def rows_to_reach(probability: float) -> int:
+    """Return the least number of values that gives a quantile."""
+    rarer = min(probability, 1 - probability)
+    rows = int(np.ceil(1 / rarer - 1))
+    return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
+
+
+def quantile(values: Floats, probability: float) -> float:
+    """Return the median-unbiased estimate of a quantile (type 8 of [1]_).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or infinite.
+    probability : float
+
+    Returns
+    -------
+    float
+        Infinite if an infinite value takes part; NaN where there are too few values, see
+        `is_within`.
+
+    References
+    ----------
+    .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", Am. Stat. 50,
+       361-365 (1996).
+    """
+    if not is_within(probability, len(values)):
+        return np.nan
+    huge = np.finfo(float).max / 4
+    if -huge < values.min() and values.max() < huge:
+        return float(np.quantile(values, probability, method="median_unbiased"))
+    # Infinity times zero is NaN: numpy interpolates towards a huge number instead.
+    finite = values[np.isfinite(values)]
+    found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
+    if found > finite.max(initial=-huge):
+        return np.inf
+    return float(found) if found >= finite.min(initial=huge) else -np.inf
+
+
+def quantile_interval(
+    values: Floats,
+    probability: float,
+    replicate: Replicates = None,
+    confidence: float = CONFIDENCE,
+    ascending: Floats | None = None,
+) -> Ends:
+    """Return the interval of a quantile.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or infinite.
+    probability : float
+    replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
+    ascending : ndarray, shape (n,), optional
+        The values in order, where that is known.
+
+    Returns
+    -------
+    low, high : float
+        Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
+        be infinite.
+
+    References
+    ----------
+    .. [1] W. J. Conover, "Practical nonparametric statistics", 3rd ed., Wiley (1999), 3.2.
+    .. [2] R. S. Woodruff, "Confidence intervals for medians and other position measures", J. Am.
+       Stat. Assoc. 47, 635-646 (1952).
+    """
+    n = len(values)
+    if n == 0:
+        return UNKNOWN
+    if replicate is None:
+        tail = 1 - upper_probability(confidence)
+        return (
+            order_statistic(values, binomial(tail, n, probability)),
+            order_statistic(values, binomial_exceeded(tail, n, probability) + 1),
+        )
+    ascending = np.sort(values) if ascending is None else ascending
+    value = quantile(ascending, probability)
+    if np.isnan(value):
+        return UNKNOWN
+    below = values < value if np.isposinf(value) else values <= value
+    several = {"rows": n, "samples": replicate.samples} if isinstance(replicate, Clusters) else {}
+    low, high = scattered_share_interval(
+        probability, by_replicate(below, replicate), below.mean(), confidence, **several
+    )
+    return (
+        quantile(ascending, low) if low * n >= 1 else np.nan,
+        quantile(ascending, high) if (1 - high) * n >= 1 else np.nan,
+    )
+
+
+def order_statistic(values: Floats, rank: int) -> float:
+    """Return the value of this rank, from 1 to n, or NaN beyond."""
+    if not 1 <= rank <= len(values):
+        return np.nan
+    return float(np.partition(values, rank - 1)[rank - 1])
+
+
+def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: float) -> Ends:
+    """Return two one-sided tolerance bounds from independent rows (Wilks 1941).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or +inf.
+    failed : int
+        Number of further rows without a value: they count as the worst on each side.
+    coverage : float
+        Share of all values that must lie on the right side of a bound.
+    confidence : float
+        Probability that it does; 0.95 and 0.95 give the 95/95 bounds.
+
+    Returns
+    -------
+    low, high : float
+        NaN where there are fewer rows than `rows_for_bound`.
+
+    References
+    ----------
+    S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
+    91-96 (1941).
+    """
+    n = len(values)
+    if n + failed == 0:
+        return np.nan, np.nan
+    outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
+    return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
+
+
+def joint_bounds(
+    values: Sequence[Floats], failed: int, coverage: float, confidence: float
+) -> list[float]:
+    """Return upper tolerance bounds that hold for several outputs at once, from independent rows.
+
+    Parameters
+    ----------
+    values : sequence of ndarray, shape (n,)
+        Of each output, in the same rows; finite or infinite. Those of an output with a lower bound
+        have the opposite sign.
+    failed : int
+        Number of further rows that lack a value: they count as lying outside.
+    coverage : float
+        Share of all rows that must lie within all bounds.
+    confidence : float
+        Probability that it does.
+
+    Returns
+    -------
+    list of float
+        One bound for each output; NaN where there are fewer rows than `rows_for_bound`.
+
+    Notes
+    -----
+    Rows are cut off one at a time, the largest left of each output in turn [1]_; the last one cut
+    off for an output is its bound. As many are cut off as a bound of a single output leaves
+    outside, so that the share of the law within all bounds has the same distribution whatever the
+    dependence of the outputs [2]_.
+
+    References
+    ----------
+    .. [1] A. Wald, "An extension of Wilks' method for setting tolerance limits", Ann. Math. Stat.
+       14, 45-55 (1943).
+    .. [2] A. Guba, M. Makai, L. Pal, "Statistical aspects of best estimate method - I", Reliab.
+       Eng. Syst. Saf. 80, 217-232 (2003).
+    """
+    n, bounds = len(values[0]), [np.nan] * len(values)
+    outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
+    if outside < len(values):
+        return bounds
+    descending = [iter(np.argsort(-one, kind="stable").tolist()) for one in values]
+    left = np.ones(n, dtype=bool)
+    for cut in range(outside):
+        place = cut % len(values)
+        row = next(row for row in descending[place] if left[row])
+        left[row], bounds[place] = False, float(values[place][row])
+    return bounds
+
+
+def rows_for_bound(coverage: float, confidence: float, failed: int = 0, bounds: int = 1) -> int:
+    """Return the smallest number of rows, `failed` of them failed, for bounds that hold at once.
+
+    References
+    ----------
+    S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
+    91-96 (1941); for several bounds see `joint_bounds`.
+    """
+    beyond = failed + bounds  # rows that must lie outside
+    return beyond + negative_binomial(confidence, beyond, 1 - coverage)
+
+
+def rows_still_needed(
+    rows: int, failed: int, coverage: float, confidence: float, bounds: int = 1
+) -> float:
+    """Return how many rows bounds need if no more fail than have failed.
+
+    Parameters
+    ----------
+    rows : int
+        There are, the failed ones included.
+    failed, coverage, confidence, bounds
+        As for `rows_for_bound`.
+
+    Returns
+    -------
+    float
+        Infinite where as large a share failed as may lie outside: further rows, of which as many
+        fail, never give a bound.
+    """
+    if rows and failed >= (1 - coverage) * rows:
+        return np.inf
+    return rows_for_bound(coverage, confidence, failed, bounds)
+
+
+def mid_ranks(values: Floats) -> Floats:
+    """Return the share of values below each, shape (n,), ties counted by half."""
+    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
+    middle = np.cumsum(counts) - counts / 2
+    return np.asarray(middle[place] / max(len(values), 1))

@@ -1,0 +1,257 @@
+"""Shares of the variance of nested rows: repeats of units of independent samples.
+
+Y = mean + A(sample) + B(sample, unit) + C(sample, unit, repeat), each with its own variance, of any
+law. B holds what a unit changes in any of the samples: units are nested in samples, so that it
+includes their interplay.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Mask
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import CONFIDENCE, ROUNDING, is_constant, upper_probability
+from uq.stats.quantile_functions import student
+
+FEWEST_SAMPLES = 8
+"""Fewer independent samples do not show how far the shares scatter."""
+
+FARTHEST = 2.0
+"""By this, times its squared share of the squared influences, the most influential sample widens
+an interval: samples without such a one scatter too little (measured)."""
+
+FEW = f"needs {FEWEST_SAMPLES} samples to judge its scatter"
+ALL_SAME = "all values are the same"
+TOO_FEW_ROWS = "fewer than two rows have a value"
+TOO_FEW = "fewer than two samples have values in two units, and in two repeats of one"
+NO_SCATTER = "no two samples show different shares"
+
+
+class NestedShares(NamedTuple):
+    """Shares of the variance, and how many samples they come from.
+
+    Attributes
+    ----------
+    outer, middle, inner : Estimate
+        Of samples, of units, of repeats.
+    error : Estimate
+        Of the error that each row states: contained in the others.
+    variance : float
+        The sum of the three components.
+    left_out : int
+        Samples without two units with a value, or without a unit of two repeats where there are
+        repeats.
+    """
+
+    outer: Estimate
+    middle: Estimate
+    inner: Estimate
+    error: Estimate
+    variance: float
+    left_out: int
+
+
+class _Sums(NamedTuple):
+    """Sums over samples, or over all samples but those of one group: shapes (), or (groups,)."""
+
+    weights: Floats
+    squares: Floats
+    mean: Floats
+    square: Floats
+    noise: Floats
+    middle: Floats
+    inner: Floats
+    floor: Floats
+    error: Floats
+    known_outer: Floats
+    known_middle: Floats
+    known_inner: Floats
+
+
+class _Share(NamedTuple):
+    """A share, and what the transformation of its interval adds to it and to its complement."""
+
+    value: Floats
+    added: Floats
+    beside: Floats
+
+
+def nested_shares(
+    values: Floats,
+    errors: Floats | None = None,
+    replicate: NDArray[np.integer] | None = None,
+    known: Floats | None = None,
+    weights: Floats | None = None,
+) -> NestedShares:
+    """Estimate the shares of the variance of samples, units and repeats.
+
+    Parameters
+    ----------
+    values : ndarray, shape (samples, units, repeats)
+        NaN where there is none. With a single repeat `middle` includes `inner`, which is unknown;
+        with a single unit `outer` includes both.
+    errors : ndarray, shape (samples, units, repeats), optional
+        Standard deviation of the numerical error of each value; NaN where it is not known.
+    replicate : ndarray of int, shape (samples,), optional
+        Of each sample, where only replicates are independent.
+    known : ndarray, shape (3, samples, units, repeats), optional
+        What each row adds to the variances of samples, units and repeats, known without scatter:
+        of independent terms that `values` have at their means.
+    weights : ndarray, shape (samples,), optional
+        Of samples.
+
+    Returns
+    -------
+    NestedShares
+
+    Notes
+    -----
+    Analysis of variance: the components are unbiased for any laws [1]_. With s_u^2 the variance of
+    the repeats of a unit, b^2 that of the unit means of a sample and m their mean, they are
+    mean(s_u^2), mean(b^2) - mean(s_u^2) / repeats, and var(m) - mean(b^2) / units, where means are
+    over samples; where values are missing, with the numbers of those that are there. With weights w
+    of samples, means are weighted, and var(m) is unbiased for weights that do not depend on m: its
+    divisor is sum(w) - sum(w^2) / sum(w).
+
+    Intervals: Student's t with the jackknife over independent samples (or replicates) [2]_ of a
+    share p, on the scale log((p + e) / (1 - p + f)), where e and f are the noise that was
+    subtracted from a component: what is left are ratios of mean squares, which are positive, skewed
+    as their logarithms suppose, and not pinned where a component vanishes. What is known is added
+    to the components. Measured in `tests/uq/test_coverage_levels.py`.
+
+    References
+    ----------
+    .. [1] S. R. Searle, G. Casella, C. E. McCulloch, "Variance components", Wiley (1992), 3.
+    .. [2] J. N. Arvesen, "Jackknifing U-statistics", Ann. Math. Stat. 40, 2076-2100 (1969).
+    """
+    added = np.zeros((3, *values.shape)) if known is None else known
+    worth = np.ones(len(values)) if weights is None else weights
+    columns, whole = _columns(values, errors, added, worth)
+    independent = np.flatnonzero(whole)
+    if replicate is not None:
+        _, independent = np.unique(replicate[whole], return_inverse=True)
+    else:
+        independent = np.arange(len(independent))
+    total = _Sums(*columns.sum(axis=1))
+    shares, variance = _shares(total)
+    left_out = int((~whole & (worth > 0)).sum())
+    there = values[whole][np.isfinite(values[whole])]
+    least = ROUNDING * float(np.nan_to_num(np.sqrt(np.abs(variance))))
+    scatters = len(there) > 1 and not is_constant(there) and np.ptp(there) > least
+    if len(there) < 2 or not (scatters or variance > 0):
+        too_few = TOO_FEW if values[0].size > 1 else TOO_FEW_ROWS
+        nothing = Estimate(reason=ALL_SAME if whole.sum() > 1 else too_few)
+        return NestedShares(nothing, nothing, nothing, nothing, 0.0, left_out)
+    groups = int(independent.max(initial=-1)) + 1
+    reason = FEW if replicate is None and groups < FEWEST_SAMPLES else ""
+    if groups < 2:
+        reason = reason or "a single replicate does not show its scatter"
+    if not scatters:
+        found = [Estimate(*3 * (float(one.value),)) for one in shares]
+    elif reason:
+        found = [Estimate(float(one.value), reason=reason) for one in shares]
+    else:
+        own = np.stack([np.bincount(independent, column) for column in columns])
+        without, _ = _shares(_Sums(*(columns.sum(axis=1)[:, None] - own)))
+        pairs = zip(shares, without, strict=True)
+        found = [_estimate(one, other.value, groups) for one, other in pairs]
+    for place in (1, 2):
+        if values.shape[place] == 1 and not added[place].any():
+            found[place] = Estimate(reason="needs two of them")
+    if errors is None or not np.isfinite(errors).any():
+        found[3] = Estimate(reason="no row states its error")
+    outer, middle, inner, error = found
+    return NestedShares(outer, middle, inner, error, float(variance), left_out)
+
+
+def _columns(
+    values: Floats, errors: Floats | None, added: Floats, worth: Floats
+) -> tuple[Floats, Mask]:
+    """Return the terms of `_Sums` of each sample that has them, shape (12, n), and which have."""
+    counts = np.isfinite(values).sum(axis=2)
+    units = (counts > 0).sum(axis=1)
+    repeated = (counts > 1).sum(axis=1)
+    enough_units = units > min(values.shape[1] - 1, 1)
+    whole = enough_units & ((repeated > 0) | (values.shape[2] == 1)) & (worth > 0)
+    values, counts, units, repeated = (one[whole] for one in (values, counts, units, repeated))
+    there = np.isfinite(values)
+    known_sums = np.where(there, added[:, whole], 0.0).sum(axis=(2, 3)) / there.sum(axis=(1, 2))
+    least = (ROUNDING * np.nanmax(np.abs(values), initial=0.0)) ** 2
+    values = values - (np.nanmean(values) if values.size else 0.0)  # squares lose no digits
+    known = counts > 0
+    unit_means, within = _mean_and_variance(values, counts, least)
+    means = np.where(known, unit_means, np.nan)
+    sample_means, between = _mean_and_variance(means, units, least)
+    inner = np.divide(
+        np.where(counts > 1, within, 0.0).sum(axis=1),
+        repeated,
+        out=np.zeros(len(values)),
+        where=repeated > 0,
+    )
+    with np.errstate(divide="ignore"):
+        floor = inner * np.where(known, 1 / counts, 0.0).sum(axis=1) / units
+    if values.shape[2] == 1:
+        floor = np.zeros(len(values))
+    squares = np.zeros(len(values))
+    if errors is not None:
+        square = errors[whole] ** 2
+        stated = np.isfinite(square) & np.isfinite(values)
+        sums = np.where(stated, square, 0.0).sum(axis=(1, 2))
+        squares = np.divide(sums, stated.sum(axis=(1, 2)), out=squares, where=stated.any((1, 2)))
+    worth, ones = worth[whole], np.ones(len(values))
+    columns = (sample_means, sample_means**2, between / units, between - floor, inner, floor)
+    return np.stack([ones, worth, *columns, squares, *known_sums]) * worth, whole
+
+
+def _mean_and_variance(
+    values: Floats, counts: NDArray[np.integer], least: float
+) -> tuple[Floats, Floats]:
+    """Return both along the last axis, 0 for too few values, or a variance of rounding errors."""
+    known = np.isfinite(values)
+    sums = np.where(known, values, 0.0).sum(axis=-1)
+    mean = np.divide(sums, counts, out=np.zeros(counts.shape), where=counts > 0)
+    squares = np.where(known, values - mean[..., None], 0.0) ** 2
+    variance = squares.sum(axis=-1) / np.maximum(counts - 1, 1)
+    return mean, np.where(variance > least, variance, 0.0)
+
+
+def _shares(sums: _Sums) -> tuple[tuple[_Share, ...], Floats]:
+    """Return the shares of samples, units, repeats and errors, and the variance."""
+    n = sums.weights
+    with np.errstate(divide="ignore", invalid="ignore"):
+        noise, floor, error = (one / n for one in (sums.noise, sums.floor, sums.error))
+        free = n - sums.squares / n
+        outer = (sums.square - sums.mean**2 / n) / free - noise + sums.known_outer / n
+        middle = (sums.middle + sums.known_middle) / n
+        inner = (sums.inner + sums.known_inner) / n
+        variance = outer + middle + inner
+        noise, floor, nothing = noise / variance, floor / variance, 0.0 * variance
+        shares = (
+            _Share(outer / variance, noise, nothing),
+            _Share(middle / variance, floor, noise),
+            _Share(inner / variance, nothing, floor),
+            _Share(error / variance, nothing, nothing),
+        )
+    return shares, variance
+
+
+def _estimate(share: _Share, without: Floats, groups: int) -> Estimate:
+    """Return a share with its interval, from its values without each group of samples."""
+    value = float(share.value)
+    pulls = (groups - 1) * (value - without)
+    pulls = pulls - pulls.mean()
+    squares = pulls @ pulls
+    up, down = value + float(share.added), 1 - value + float(share.beside)
+    if not squares > 0:
+        return Estimate(value, reason=NO_SCATTER)
+    if not (up > 0 and down > 0):
+        return Estimate(value, 0.0, 1.0)
+    widened = 1 + FARTHEST * float((pulls**2).max() / squares) ** 2
+    error = np.sqrt(widened * squares / (groups * (groups - 1)))
+    half = student(upper_probability(CONFIDENCE), groups - 1) * error * (1 / up + 1 / down)
+    middle = np.log(up / down)
+    odds = np.exp([middle - half, middle + half])
+    low, high = (odds * (1 + share.beside) - share.added) / (1 + odds)
+    return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))

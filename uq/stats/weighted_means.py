@@ -1,0 +1,323 @@
+"""Weighted means of numbers between 0 and 1, with intervals."""
+
+from collections.abc import Callable
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from uq.contract import Floats
+from uq.stats.clusters import Clusters
+from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import (
+    HOPELESS,
+    carries_little,
+    effective_rows,
+    largest_share,
+    per_sample,
+    refusal,
+    tail_shape,
+    too_large,
+)
+from uq.stats.intervals import (
+    CONFIDENCE,
+    ONE_ROW,
+    ROUNDING,
+    Ends,
+    Replicates,
+    beyond_outliers,
+    exact_interval,
+    is_constant,
+    outlier_shift,
+    scatter_interval,
+    sized,
+    upper_probability,
+    wilson_interval,
+)
+from uq.stats.jumps import EvenReplicates, beyond_jumps
+from uq.stats.quantile_functions import student
+
+FEW = 20
+"""With fewer effective rows on either side, an interval is no narrower than that of hits."""
+
+
+class Hits(NamedTuple):
+    """Of how many rows an interval is no narrower than that of hits, and how far this counts."""
+
+    rows: float
+    """The effective number of all rows, or fewer where those that carry most are heavier than they:
+    a row that is missing may be as heavy. Where no row carries anything, as heavy as the heaviest.
+    """
+
+    extent: float
+    """1 where no more than 20 effective rows carry the mean, 0 from 40 on, between them linear, so
+    that an interval does not jump where the weights change a little.
+    """
+
+
+def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> list[Hits]:
+    """Return the hits of which the interval of a mean must allow, where few rows carry a side.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (n,)
+        Between 0 and 1.
+    weights : ndarray, shape (n,), or None
+    part : ndarray of int, shape (n,), or None
+        The independent part of each row.
+
+    Returns
+    -------
+    list of Hits
+        Of the mean, and of its complement; only those that count.
+    """
+    worth = np.ones(len(numbers)) if weights is None else weights
+    of_samples = per_sample(worth, part)
+    found = (_hits(per_sample(worth * side, part), of_samples) for side in (numbers, 1 - numbers))
+    return [one for one in found if one.extent > 0]
+
+
+def _hits(carried: Floats, of_samples: Floats) -> Hits:
+    extent = float(np.clip(2 - effective_rows(carried) / FEW, 0.0, 1.0))
+    most = carried.max()
+    # A sample that carries nearly as much as another counts nearly as it does.
+    heaviest = (of_samples * carried).max() / most if most > 0 else of_samples.max()
+    with np.errstate(over="ignore"):  # of a row that hardly has a weight
+        rows = min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
+    return Hits(rows, extent)
+
+
+def fewest_rows(hits: list[Hits]) -> float:
+    """Return the least number of rows of which an interval is that of hits; infinite for none."""
+    return min((one.rows for one in hits), default=inf)
+
+
+def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
+    """Return an interval that is no narrower than those of hits, as far as these count.
+
+    Parameters
+    ----------
+    ends : tuple
+        Lower and upper end.
+    hits : list of Hits
+    of_hits : function
+        Rows -> the interval of a share among so many.
+    """
+    intervals = [(of_hits(one.rows), one.extent) for one in hits]
+    low, high = ends
+    return (
+        min((low + extent * min(0.0, there[0] - low) for there, extent in intervals), default=low),
+        max(
+            (high + extent * max(0.0, there[1] - high) for there, extent in intervals),
+            default=high,
+        ),
+    )
+
+
+EXACT = "exact: rows differ only in what is integrated"
+
+
+def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
+    """Return what each independent part says of a weighted mean, shape (parts,).
+
+    The mean of all rows, plus the influence of the part on it; where all rows have learnt the law
+    of an input together, also on that law (`uq.stats.clusters.LearntTogether`).
+    """
+    mean = np.average(numbers, weights=weights)
+    influence = _influence(numbers, weights)
+    if part is None:
+        return mean + influence
+    of = np.asarray(part)
+    if isinstance(part, Clusters) and part.together is not None:
+        of, influence = part.together.part, part.together.with_errors(influence)
+    _, place = np.unique(of, return_inverse=True)
+    sums = np.bincount(place, weights=influence)
+    return np.asarray(mean + len(sums) * sums / len(influence))
+
+
+def _influence(numbers: Floats, weights: Floats) -> Floats:
+    """Return the influence of each row on a weighted mean, shape (n,)."""
+    return weights * (numbers - np.average(numbers, weights=weights)) / weights.mean()
+
+
+def weighted_share(
+    numbers: Floats,
+    weights: Floats | None = None,
+    part: Replicates = None,
+    hits: list[Hits] | None = None,
+    confidence: float = CONFIDENCE,
+) -> Estimate:
+    """Estimate the mean of numbers between 0 and 1, weighted where rows have weights [1]_.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (n,)
+        Probabilities, given what is known of each row.
+    weights : ndarray, shape (n,), optional
+    part : ndarray of int, shape (n,), optional
+        The independent part of each row.
+    hits : list of Hits, optional
+        The intervals of hits that it must allow for; by default `hits_behind`.
+    confidence : float, optional
+
+    Returns
+    -------
+    Estimate
+        With Student's interval of the logit from the parts' influences. The end on the side of the
+        farther outlier is moved by what two more such parts would add, since samples without them
+        scatter too little. Where no more than 20 effective rows carry the mean, or its
+        complement, it is no narrower than the exact interval of a share of hits: the rows that
+        matter may be missing. Up to 40 effective rows this fades out.
+
+    References
+    ----------
+    .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 9.2.
+    """
+    worth = np.ones(len(numbers)) if weights is None else weights
+    if not worth.sum() > 0:
+        return Estimate()
+    mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
+    found = pulls(numbers, worth, part)
+    parts = len(found)
+    if parts < 2:
+        return Estimate(mean, reason=ONE_ROW if part is None else "")
+    if numbers.min() >= 1 - ROUNDING:  # the complement has no digits
+        mean = 1.0
+    if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
+        return Estimate(mean, reason=EXACT)
+    low, high = _of_logit(mean, found, confidence)
+    if 0 < mean < 1:
+        outlier = outlier_shift(mean, found)
+        low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
+    some = hits_behind(numbers, weights, part) if hits is None else hits
+    low, high = widened((low, high), some, lambda rows: exact_interval(mean, rows, confidence))
+    return Estimate(mean, float(low), float(high))
+
+
+def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
+    """Estimate the mean of numbers between 0 and 1, with the interval that a difference needs.
+
+    Parameters
+    ----------
+    numbers, part
+        As for `weighted_share`.
+
+    Returns
+    -------
+    Estimate
+        Its interval alone would be too narrow: it has no more than Wilson's where few rows carry
+        the mean, and nothing for outliers. Two estimates are skewed to the same side, so that
+        most of this cancels in their difference, which would be too wide with it.
+    """
+    if not len(numbers):
+        return Estimate()
+    mean = float(np.clip(numbers.mean(), 0.0, 1.0))
+    found = pulls(numbers, np.ones(len(numbers)), part)
+    if len(found) < 2:
+        return Estimate(mean)
+    some = hits_behind(numbers, None, part)
+    low, high = widened(_of_logit(mean, found), some, lambda rows: wilson_interval(mean, rows))
+    return Estimate(mean, low, high)
+
+
+def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
+    """Return Student's interval of the logit of a mean, from what each part says of it."""
+    if not 0 < mean < 1:
+        return mean, mean
+    error = found.std(ddof=1) / len(found) ** 0.5
+    wide = student(upper_probability(confidence), len(found) - 1)
+    half = wide * error / (mean * (1 - mean))
+    low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
+    return low, high
+
+
+def moments_of_rows(
+    values: Floats, weights: Floats, part: Replicates = None, within: Floats | float = 0.0
+) -> tuple[Estimate, Estimate]:
+    """Estimate mean and standard deviation from rows whose weights can be trusted [1]_.
+
+    Parameters
+    ----------
+    values, weights : ndarray, shape (n,)
+    part : ndarray of int, shape (n,), optional
+    within : ndarray, shape (n,), optional
+        Variance of each value, where it is the mean of a law.
+
+    Returns
+    -------
+    mean, sd : Estimate
+        With Student's intervals from the parts' influences, that of the standard deviation by its
+        logarithm; of a single row a mean alone. The end on the side of the farther outlier is moved
+        by what two more such parts would add; of replicates whose rows have weights, two more such
+        rows: eight replicates without a heavy row scatter too little, and show no outlier.
+
+    References
+    ----------
+    .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 9.2.
+    """
+    values, unit = sized(values)  # their squares neither overflow nor vanish
+    mean = float(np.average(values, weights=weights))
+    if len(values) == 1:
+        return Estimate(unit * mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
+    squares = (values - mean) ** 2 + within / unit / unit
+    variance = float(np.average(squares, weights=weights))
+    of_rows = isinstance(part, EvenReplicates) and not is_constant(weights)
+    influence, found = _influence(values, weights), pulls(values, weights, part)
+    parts = mean + influence if of_rows else found
+    ends = beyond_outliers(mean, scatter_interval(mean, found), parts)
+    ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
+    of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
+    size = max(variance, 1e-300)
+    relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
+    parts = 1.0 + rows if of_rows else relative
+    away = np.asarray(beyond_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
+    sd = unit * variance**0.5
+    return of_mean, Estimate(sd, *(sd * np.exp(away / 2)).tolist())
+
+
+def weighted_moments(
+    values: Floats, weights: Floats, part: Replicates = None
+) -> tuple[Estimate, Estimate]:
+    """Estimate mean and standard deviation if weights allow it.
+
+    Returns
+    -------
+    mean, sd : Estimate
+        The mean is missing, with the reason, where the Pareto k of weight times value is too
+        large; the standard deviation where a sample carries more than a hundredth of all weight.
+        Whether it is given must not depend on the values: without an outlier they scatter too
+        little.
+    """
+    mean, sd = moments_of_rows(values, weights, part)
+    of_samples = per_sample(weights, part)
+    differ = tail_shape(of_samples) > -inf
+    why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
+    return trusted(mean, weights * values, part), Estimate(reason=why) if why else sd
+
+
+def trusted(
+    found: Estimate,
+    pulls: Floats,
+    part: Replicates,
+    most: float = inf,
+    hopeless: str = HOPELESS,
+) -> Estimate:
+    """Return an estimate, or why its weights do not allow one.
+
+    Parameters
+    ----------
+    found : Estimate
+    pulls : ndarray, shape (n,)
+        Weights; for a mean of numbers without bounds, times these numbers.
+    part : ndarray of int, shape (n,), or None
+    most : float, optional
+        The largest weight that a row can have.
+    hopeless : str, optional
+        What to say where more rows would not help.
+    """
+    of_samples = per_sample(np.abs(pulls), part)
+    if carries_little(most, len(of_samples)):
+        return found
+    why = refusal(tail_shape(of_samples), len(of_samples), hopeless)
+    return Estimate(reason=why) if why else found

@@ -1,0 +1,128 @@
+"""numba's cache on disk, with a separate folder for each state of the sources.
+
+numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it calls
+into, it would load stale code. Here the name of the folder is a hash of all sources on which a
+function can depend.
+"""
+
+import atexit
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, Self
+
+from uq.files.paths import cache_path
+from uq.machines.compilation import when_imported
+from uq.study.sources import DISTRIBUTION, digest, is_installed, own_packages, signature, sources_of
+
+_models: set[str] = set()
+
+
+def keep_apart(module: str) -> None:
+    """Have numba cache compiled code in this way from now on in this process.
+
+    Parameters
+    ----------
+    module : str
+        The module of a model: its package counts even if it is installed.
+    """
+    _models.add(module.partition(".")[0])
+    _watch()
+
+
+@cache
+def _watch() -> None:
+    if "numba" in sys.modules:
+        _install()
+    else:
+        when_imported("numba", _install)
+
+
+def _install() -> None:
+    from numba.core.caching import FunctionCache
+
+    places: list[Any] = FunctionCache._impl_class._locator_classes
+    places.insert(0, SourcesLocator)
+
+
+@cache
+def _fresh_folder() -> Path:
+    """Make a folder for this process alone: numba unpickles what lies there."""
+    folder = tempfile.mkdtemp(prefix=f"{DISTRIBUTION}-numba-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
+
+
+class SourcesLocator:
+    """The place of the compiled code of one function, as numba asks for it.
+
+    Parameters
+    ----------
+    function : callable
+    module : str
+        The module that defines it.
+    """
+
+    def __init__(self, function: Callable[..., Any], module: str) -> None:
+        import numba
+
+        config: Any = numba.config
+        users = config.CACHE_DIR or cache_path(DISTRIBUTION) / "numba"
+        self._path = Path(users) / key_of(module) / module
+        self._line = str(function.__code__.co_firstlineno)
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> Self | None:
+        """Return the place for a function; None if numba is to decide."""
+        module = function.__module__
+        if module == "__main__" or not os.path.isfile(file):
+            return None
+        package = module.partition(".")[0]
+        if package in own_packages() or (package not in _models and is_installed(package)):
+            return None
+        if not sources_of(module).own:
+            return None
+        found = cls(function, module)
+        try:
+            found.ensure_cache_path()
+        except OSError:
+            found._path = _fresh_folder().joinpath(*found._path.parts[-2:])
+            found.ensure_cache_path()
+        return found
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder, if need be, and check that it is writable."""
+        self._path.mkdir(parents=True, exist_ok=True)
+        os.utime(self._path.parent)
+        tempfile.TemporaryFile(dir=self._path).close()
+
+    def get_cache_path(self) -> str:
+        """Return the folder."""
+        return str(self._path)
+
+    def get_source_stamp(self) -> str:
+        """Return what else must match: nothing."""
+        return ""
+
+    def get_disambiguator(self) -> str:
+        """Return what distinguishes functions of one name in one module."""
+        return self._line
+
+
+def key_of(module: str) -> str:
+    """Return a hash of everything on which the compiled code of a module can depend.
+
+    Parameters
+    ----------
+    module : str
+        Its full name.
+    """
+    sources = sources_of(module)
+    whole = digest(sources.own)
+    for package in sorted({name.partition(".")[0] for name in sources.others}):
+        whole.update(repr(signature(package, sources.others)).encode())
+    return whole.hexdigest()[:16]

@@ -1,0 +1,200 @@
+"""One chunk of rows through a model's batch; if that fails, the rows at fault are isolated.
+
+A batch that raises or returns arrays of the wrong shape is halved until the rows at fault are
+found: they get a status and a message, the others their values.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Model, Status
+from uq.errors import InputError, described
+from uq.study.columns import Column, blank_rows, columns_of
+
+_WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
+
+
+class KernelError(InputError):
+    """A model that violates its contract, whatever the row."""
+
+
+class Chunk(NamedTuple):
+    """The outcome of n rows.
+
+    Attributes
+    ----------
+    columns : dict of str to ndarray, shape (n, *dims)
+    status : ndarray of int8, shape (n,)
+    failures : dict of str to (int, str)
+        Status label -> number of the first row with that status, and its message.
+    """
+
+    columns: dict[str, NDArray[Any]]
+    status: NDArray[np.int8]
+    failures: dict[str, tuple[int, str]]
+
+
+class Fault(NamedTuple):
+    """Why rows have no values."""
+
+    status: Status
+    message: str
+
+
+def evaluate(
+    model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], start: int = 0
+) -> Chunk:
+    """Run a model on some rows.
+
+    Parameters
+    ----------
+    model : Model
+    settings : object
+        An instance of the model's settings.
+    x : ndarray, shape (n, d)
+        Parameters in declared order.
+    seed : ndarray of uint64, shape (n,)
+    start : int
+        Number of the first row.
+
+    Returns
+    -------
+    Chunk
+        Rows that are neither ok nor out of budget are blank.
+
+    Raises
+    ------
+    KernelError
+        When names or dtypes are wrong, or a status or category does not exist.
+    """
+    expected = columns_of(model, settings)
+    columns = blank_rows(expected, len(x))
+    status = np.zeros(len(x), dtype=np.int8)
+    messages: dict[int, str] = {}
+    todo = [(0, len(x))]
+    while todo:
+        first, last = todo.pop()
+        # Copies, so that the kernel sees writable arrays of its own in every process.
+        returned = _call(model, settings, x[first:last].copy(), seed[first:last].copy(), expected)
+        if isinstance(returned, Fault) and last - first > 1:
+            middle = (first + last) // 2
+            todo += [(middle, last), (first, middle)]
+        elif isinstance(returned, Fault):
+            status[first] = returned.status
+            messages[first] = returned.message
+        else:
+            outputs, codes, said = returned
+            for name, column in columns.items():
+                column[first:last] = outputs[name]
+            status[first:last] = codes
+            messages |= {first + row: text for row, text in said.items()}
+    _check_values(model, columns, status, messages)
+    lost = ~np.isin(status, _WITH_OUTPUTS)
+    for name, column in columns.items():
+        column[lost] = expected[name].blank
+        if column.dtype.kind == "f":
+            column[np.isnan(column)] = np.nan  # one bit pattern for NaN on all processors
+    return Chunk(columns, status, _first_failures(status, messages, start))
+
+
+def lost_rows(model: Model, settings: Any, rows: int, fault: Fault, start: int = 0) -> Chunk:
+    """Return blank rows that one fault has cost; `start` as in `evaluate`."""
+    status = np.full(rows, fault.status, dtype=np.int8)
+    columns = blank_rows(columns_of(model, settings), rows)
+    return Chunk(columns, status, {fault.status.label: (start, fault.message)})
+
+
+def joined(chunks: Sequence[Chunk]) -> Chunk:
+    """Concatenate consecutive chunks."""
+    if len(chunks) == 1:
+        return chunks[0]
+    failures: dict[str, tuple[int, str]] = {}
+    for chunk in chunks:
+        failures = chunk.failures | failures  # keep the first of each status
+    return Chunk(
+        {name: np.concatenate([chunk.columns[name] for chunk in chunks]) for name in chunks[0][0]},
+        np.concatenate([chunk.status for chunk in chunks]),
+        failures,
+    )
+
+
+def _call(
+    model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], expected: Mapping[str, Column]
+) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]] | Fault:
+    try:
+        with np.errstate(all="ignore"):
+            returned = model.batch(x, seed, settings)
+    except Exception as error:
+        return Fault(Status.RAISED, described(error))
+    if not isinstance(returned, tuple) or len(returned) not in (2, 3):
+        raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
+    outputs, status, messages = (*returned, {})[:3]
+    _check_names(model, outputs, expected)
+    for name, column in (*expected.items(), ("status", _STATUS)):
+        array = status if name == "status" else outputs[name]
+        if not isinstance(array, np.ndarray):
+            raise KernelError(
+                f"model '{model.name}': '{name}' is a {type(array).__name__}, "
+                f"expected an array of {column.dtype}"
+            )
+        if array.dtype != column.dtype:
+            raise KernelError(
+                f"model '{model.name}': '{name}' is {array.dtype}, expected {column.dtype}"
+            )
+        if array.shape != (len(x), *column.shape):
+            wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
+            return Fault(Status.BAD_SHAPE, wrong)
+    unknown = np.setdiff1d(status, list(Status))
+    if unknown.size:
+        raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")
+    return outputs, status, messages
+
+
+_STATUS = Column(np.dtype(np.int8), 0, ())
+
+
+def _check_names(
+    model: Model, outputs: Mapping[str, object], expected: Mapping[str, Column]
+) -> None:
+    faults = [
+        *(f"returned no output '{name}'" for name in expected if name not in outputs),
+        *(f"returned '{name}', which is not declared" for name in outputs if name not in expected),
+    ]
+    if faults:
+        raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
+
+
+def _check_values(
+    model: Model,
+    columns: Mapping[str, NDArray[Any]],
+    status: NDArray[np.int8],
+    messages: dict[int, str],
+) -> None:
+    """Refuse undeclared categories; mark rows that claim to be ok but have an invalid number."""
+    for name, output in model.outputs.items():
+        values = columns[name].reshape(len(status), -1)
+        if output.is_category:
+            if np.any((values < -1) | (values >= len(output.categories))):
+                raise KernelError(f"model '{model.name}': '{name}' has an undeclared category")
+            continue
+        legal = ~output.is_absent(values)
+        if output.may_be_undefined:
+            legal |= np.isnan(values)
+        guilty = (status == Status.OK) & ~legal.all(axis=1)
+        status[guilty] = Status.NON_FINITE
+        for row in np.flatnonzero(guilty)[:1]:
+            messages[row] = f"'{name}' {output.absence(values[row][~legal[row]][0])}"
+
+
+def _first_failures(
+    status: NDArray[np.int8], messages: Mapping[int, str], start: int
+) -> dict[str, tuple[int, str]]:
+    codes, firsts = np.unique(status, return_index=True)
+    return {
+        kind.label: (start + row, messages.get(row, kind.meaning))
+        for kind, row in zip(map(Status, codes), firsts.tolist(), strict=True)
+        if kind != Status.OK
+    }

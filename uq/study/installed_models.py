@@ -1,0 +1,324 @@
+"""The models installed here, found through entry points, and a hash of their code.
+
+Rows computed by different code do not form one result. The version of a model is its author's
+promise; the hash comes from the files.
+"""
+
+import importlib
+import json
+import os
+import re
+import sys
+from collections.abc import Mapping
+from contextlib import redirect_stdout
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from inspect import isfunction
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from uq.contract import Model
+from uq.errors import InputError, choices, described, nearest
+from uq.files.paths import node
+from uq.machines.function import is_machine, model_of
+from uq.machines.returned import Returned, as_plain, from_plain
+from uq.study.compiled_cache import keep_apart, own_packages
+from uq.study.model_files import file_with
+from uq.study.namesakes import found_at, hidden_beside, namesake
+from uq.study.provenance import provenance
+from uq.study.sources import fingerprint
+
+GROUP = "vibrolife.models"
+
+_MACHINES = (".toml", ".fmu")
+_SERVERS = ("http://", "https://")
+_FILE = re.compile(r"(.+\.py)(?::(\w+))?")
+_KNOWN_TO_RETURN = "\n"  # what follows it in a reference is what a function returns
+
+
+def model_names() -> tuple[str, ...]:
+    """Return the names of all installed models, sorted, without importing any of them."""
+    return tuple(sorted(_entry_points()))
+
+
+def find_model(name: str, folder: Path | None = None) -> Model:
+    """Return an installed model by its name.
+
+    The name may come from a file that somebody sent: nothing but an installed model is ever
+    imported for it, no file read and no address called.
+
+    Parameters
+    ----------
+    name : str
+    folder : Path, optional
+        Where a file with such a model may lie, besides the current folder; named, not read in.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InputError
+        No model of this name is installed, or its package cannot be imported. A broken model does
+        not affect the others.
+    """
+    return _load(_installed(name, folder), f"model '{name}'", None)
+
+
+def model_at(reference: str) -> Model:
+    """Return a model by the reference that a user gave: ``--model``, or an argument in Python.
+
+    It may run code. `tests/test_architecture.py` lists the modules that may import it: those that
+    pass on what a user gave. A name in a file goes to `find_model`.
+
+    Parameters
+    ----------
+    reference : str
+        The name of an installed model, ``"package.module:ATTRIBUTE"``, or ``"file.py"`` with a
+        model or a function under `uq.machines.function.machine` (``"file.py:NAME"`` where there are
+        several), ``"file.toml"`` that describes a program or FMU, ``"file.fmu"``, or
+        ``"http://host:port/NAME"``.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InputError
+        There is no such model, or its package cannot be imported.
+    """
+    if reference.endswith(_MACHINES):
+        from uq.machines.machine import machine_of
+
+        return machine_of(Path(reference))
+    plain, _, known = reference.partition(_KNOWN_TO_RETURN)
+    returned = from_plain(json.loads(known)) if known else None
+    if plain.startswith(_SERVERS):
+        from uq.machines.server import server_model
+
+        return server_model(plain)
+    return _load(_point(plain), f"model '{plain}'", returned)
+
+
+def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
+    """Return the reference of a function of which it is known what it returns."""
+    return f"{without_returns(reference)}{_KNOWN_TO_RETURN}{json.dumps(as_plain(returned))}"
+
+
+def without_returns(reference: str) -> str:
+    """Return a reference as the user gave it."""
+    return reference.partition(_KNOWN_TO_RETURN)[0]
+
+
+def located(reference: str) -> str:
+    """Return a reference that holds in any folder of this computer."""
+    if reference.startswith(_SERVERS):
+        return reference
+    if reference.endswith(_MACHINES):
+        return str(Path(reference).absolute())
+    found = _FILE.fullmatch(reference)
+    if not found:
+        return reference
+    return str(Path(found[1]).absolute()) + (f":{found[2]}" if found[2] else "")
+
+
+def module_of(reference: str) -> str:
+    """Return the full name of the module of a model; see `model_at`."""
+    return _point(reference).value.partition(":")[0]
+
+
+def _point(reference: str) -> EntryPoint:
+    """Return the place of a model, from which it can be imported."""
+    reference = without_returns(reference)
+    if in_file := _FILE.fullmatch(reference):
+        return EntryPoint(reference, f"{_module_in(Path(in_file[1]))}:{in_file[2] or ''}", GROUP)
+    if ":" in reference:
+        # A model under development is usually in the working folder, which an installed command
+        # does not search.
+        if os.getcwd() not in sys.path:
+            sys.path.append(os.getcwd())
+        return EntryPoint(reference, reference, GROUP)
+    return _installed(reference)
+
+
+def _installed(name: str, folder: Path | None = None) -> EntryPoint:
+    """Return the place of an installed model."""
+    installed = _entry_points()
+    if name not in installed:
+        if file := file_with(name, filter(None, (Path(), folder))):
+            raise InputError(
+                f"model '{name}' is not installed; {file} has it: name that file, for a study"
+                f" or a result with --model {file}"
+            )
+        names = ", ".join(sorted(installed)) or "none"
+        raise InputError(
+            f"no such model '{name}'{nearest(name, installed)} (installed: {names};"
+            " a model of your own is named by its file, for a study with --model FILE)"
+        )
+    return installed[name]
+
+
+def _module_in(file: Path) -> str:
+    """Return the name by which the module in a file can be imported."""
+    if what := node(file):
+        raise InputError(f"{file}: is {what}, not a file")
+    if not file.is_file():
+        there = [one.name for one in file.parent.glob("*.py")] if file.parent.is_dir() else []
+        raise InputError(f"{file}: no such file{nearest(file.name, there)}")
+    folder, name = str(file.absolute().parent), file.stem
+    if folder not in sys.path:
+        sys.path.append(folder)
+    importlib.invalidate_caches()
+    spec = find_spec(name) if name.isidentifier() else None
+    if not (spec and spec.origin and Path(spec.origin).samefile(file)):
+        raise InputError(
+            f"{file}: cannot be imported as '{name}', the name of another module or of none;"
+            " rename the file"
+        )
+    return name
+
+
+def _entry_points() -> dict[str, EntryPoint]:
+    return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None) -> Model:
+    module_name, _, attribute = point.value.partition(":")
+    if not module_name or not (attribute or _FILE.fullmatch(point.name)):
+        raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
+    package = module_name.partition(".")[0]
+    if clash := namesake(package):
+        raise InputError(f"{label} cannot be imported: {clash}")
+    if _FILE.fullmatch(point.name) and (clash := hidden_beside(module_name)):
+        raise InputError(f"{label} {clash}")
+    keep_apart(module_name)
+    try:
+        with redirect_stdout(sys.stderr):  # what it prints is no part of an answer
+            module = importlib.import_module(module_name)
+        found = getattr(module, attribute or _only_model(module, label))
+    except InputError:
+        raise
+    except (Exception, SystemExit) as error:
+        place = f" from {point.value}" if attribute else ""
+        problem = described(error)
+        if isinstance(error, ModuleNotFoundError):
+            problem += f"; {_remedy_of_missing((error.name or '').partition('.')[0])}"
+        raise InputError(f"{label} cannot be imported{place}: {problem}") from error
+    if package not in own_packages():
+        fingerprint(module_name)  # now, before anything is edited
+    if is_machine(found):
+        found = model_of(found, returned)
+    if not isinstance(found, Model):
+        remedy = "; write @uq.machine above it" if isfunction(found) else ""
+        raise InputError(
+            f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model{remedy}"
+        )
+    _check(found, label)
+    return found
+
+
+def _remedy_of_missing(package: str) -> str:
+    """Return what to do where a module of a package was not found."""
+    if clash := namesake(package):
+        return clash
+    if there := found_at(package):
+        return f"Python finds '{package}' in {there}; if another is meant, rename one of them"
+    return "install it, or name its folder in PYTHONPATH"
+
+
+def _only_model(module: ModuleType, label: str) -> str:
+    """Return the name of the only model of a module, or of its only machine."""
+
+    def is_own(one: Any) -> bool:
+        return isinstance(one, Model) or (is_machine(one) and one.__module__ == module.__name__)
+
+    names = [name for name, one in vars(module).items() if is_own(one)]
+    if len(names) == 1:
+        return names[0]
+    if names:
+        raise InputError(f"{label}: has several models; name one, {label}:NAME ({choices(names)})")
+    raise InputError(f"{label}: has no model and no function under @uq.machine")
+
+
+def _check(model: Model, label: str) -> None:
+    """Refuse a model whose parameters or settings are not declared, or whose labels have blanks."""
+    try:
+        for name in model.parameter_names:
+            model.parameter(name)
+        for name in model.setting_names:
+            model.setting(name)
+        missing = set(model.parameter_names) - set(model.nominal)
+        model.settings()
+    except (TypeError, AttributeError, NameError) as error:
+        raise InputError(f"{label}: {error}") from None
+    if missing:
+        raise InputError(f"{label}: parameter '{min(missing)}' has no nominal value")
+    for name, output in model.outputs.items():
+        for one in output.categories:
+            if len(one.split()) != 1:  # a result lists them with blanks between
+                raise InputError(f"{label}: output '{name}': category '{one}' must be one word")
+
+
+def made_here(reference: str) -> dict[str, str]:
+    """Return what determines the rows of a model here: processor, versions and the model's code.
+
+    Parameters
+    ----------
+    reference : str
+        As for `model_at`.
+    """
+    return provenance() | {"code": code_of(reference)}
+
+
+def is_other_code(made: Mapping[str, object], reference: str) -> bool:
+    """Return whether rows were computed by code other than that installed here.
+
+    Parameters
+    ----------
+    made : dict
+        What determined them, as recorded by `made_here`; without ``code``, nothing is known.
+    reference : str
+        As above.
+    """
+    here = code_of(reference)
+    return made.get("code", here) != here
+
+
+def code_of(reference: str) -> str:
+    """Return a hash of the sources of a model: its module, and what that imports.
+
+    Only the sources of its package, and of its neighbours in the same folder, count.
+
+    Parameters
+    ----------
+    reference : str
+        As for `model_at`.
+
+    Returns
+    -------
+    str
+        Independent of where the package lies. It is computed once per process, like the import.
+
+    Raises
+    ------
+    InputError
+        No source was found.
+    """
+    if reference.endswith(_MACHINES):
+        from uq.machines.machine import code_of_machine
+
+        return code_of_machine(Path(reference))
+    if reference.startswith(_SERVERS):
+        from uq.machines.server import code_of_server
+
+        return code_of_server(without_returns(reference))
+    module = module_of(reference)
+    if not (found := fingerprint(module)):
+        raise InputError(
+            f"model '{reference}': no source file of module '{module}' was found, so its code "
+            "cannot be identified; install it, or name its folder in PYTHONPATH"
+        )
+    return found

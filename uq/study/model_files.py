@@ -1,0 +1,92 @@
+"""Files of a user that have a model, found by their text: nothing in them is ever run."""
+
+import ast
+import os
+import shlex
+import tomllib
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from uq.files.paths import node
+
+_LARGEST = 1_000_000  # bytes of a file that is looked into
+_MOST = 300  # files of a folder
+
+
+def file_with(model: str, folders: Iterable[Path]) -> str:
+    """Return the first file that has a model of this name, as a shell reads it; "" if none has.
+
+    Parameters
+    ----------
+    model : str
+    folders : iterable of Path
+
+    Returns
+    -------
+    str
+        As ``--model`` takes it: ``pad.py``, ``machines.py:pad`` or ``pad.toml``.
+    """
+    for folder in dict.fromkeys(folders):
+        with suppress(OSError):
+            files = sorted(path for path in folder.iterdir() if path.suffix in _NAMED)[:_MOST]
+            for path in files:
+                if found := _reference(path, model):
+                    return shlex.quote(found)
+    return ""
+
+
+def shortened(reference: str) -> str:
+    """Return a reference as a shell reads it, in the current folder without the folder."""
+    return shlex.quote(reference.removeprefix(f"{os.getcwd()}{os.sep}"))
+
+
+def _reference(path: Path, model: str) -> str:
+    """Return the reference to a model in a file; "" if it is not there."""
+    if node(path) or path.stat().st_size > _LARGEST:
+        return ""
+    content = path.read_bytes()
+    if model.encode() not in content:
+        return ""
+    # Files in progress are not always valid, and ast gives up on deep ones.
+    with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
+        return _NAMED[path.suffix](path, content, model)
+    return ""
+
+
+def _in_python(path: Path, content: bytes, model: str) -> str:
+    """Return the reference to a function under ``@uq.machine`` or a `Model` in Python source."""
+    names = dict(filter(None, map(_named, ast.parse(content).body)))
+    if model not in names:
+        return ""
+    return str(path) if len(names) == 1 else f"{path}:{names[model]}"
+
+
+def _named(statement: ast.stmt) -> tuple[str, str] | None:
+    """Return the name of the model that a statement makes, and that of its variable."""
+    match statement:
+        case ast.FunctionDef(name=name, decorator_list=marks) if "machine" in map(_callee, marks):
+            return name, name
+        case (
+            ast.Assign(targets=[ast.Name(id=variable)], value=ast.Call() as call)
+            | ast.AnnAssign(target=ast.Name(id=variable), value=ast.Call() as call)
+        ) if _callee(call) == "Model":
+            given = [*call.args[:1], *(key.value for key in call.keywords if key.arg == "name")]
+            value: Any = given[0] if given else None
+            return str(getattr(value, "value", "")), variable
+    return None
+
+
+def _callee(expression: ast.expr) -> str:
+    """Return the last part of the name of what is called, or of a decorator."""
+    called = expression.func if isinstance(expression, ast.Call) else expression
+    return getattr(called, "attr", getattr(called, "id", ""))
+
+
+def _in_machine_file(path: Path, content: bytes, model: str) -> str:
+    machine = tomllib.loads(content.decode("utf-8-sig")).get("machine")
+    return str(path) if isinstance(machine, dict) and machine.get("name") == model else ""
+
+
+_NAMED = {".py": _in_python, ".toml": _in_machine_file}

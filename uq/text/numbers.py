@@ -1,0 +1,242 @@
+"""Numbers and laws as text, for tables on a terminal and in a report."""
+
+import re
+from collections.abc import Iterable, Sequence
+from math import ceil, floor, isclose, isfinite, isnan, log10
+from typing import Any
+
+from uq.text.literals import shown
+from uq.text.quantities import Written
+from uq.text.units import PREFIXED, PURE, Unit, beside, powers, time_unit, unit_of
+
+HUGE = 1e9
+"""Numbers of rows beyond this are read as powers of ten."""
+
+
+def capitalized(text: str) -> str:
+    """Return text with a capital first letter; symbols such as ``k`` or ``x1`` stay as they are."""
+    first = text.split(" ", 1)[0].rstrip(",.:;")
+    symbol = len(first) == 1 and first != "a" or re.search(r"[\d_]", first)
+    return text if symbol else f"{text[:1].upper()}{text[1:]}"
+
+
+def number(value: float | None, resolution: float = 0.0) -> str:
+    """Return a number for a table, to five digits or its resolution; a dash if there is none."""
+    return "-" if value is None else f"{value:.{digits(value, resolution, 5)}g}"
+
+
+def digits(value: float, resolution: float, least: int) -> int:
+    """Return the significant digits of a number that show differences of this size.
+
+    Parameters
+    ----------
+    value : float
+    resolution : float
+        0 where `least` digits suffice.
+    least : int
+
+    Returns
+    -------
+    int
+        At most 17, which tell all numbers apart.
+    """
+    if not (resolution > 0 and isfinite(value) and value):
+        return least
+    return min(max(least, floor(log10(abs(value))) - floor(log10(resolution)) + 1), 17)
+
+
+def quantity(value: float, units: str) -> str:
+    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m⁻¹``."""
+    if isnan(value):
+        return "-"
+    return in_unit(value, unit_of(units, value))
+
+
+def in_unit(value: float, unit: Unit) -> str:
+    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
+    return beside(number(value / unit.size), unit.name)
+
+
+def in_brackets(unit: Unit) -> str:
+    """Return a unit after the name of what is in it: `` [µm]``; "" for a pure number."""
+    return "" if unit.name == "1" else f" [{powers(unit.name)}]"
+
+
+def duration(seconds: float | None) -> str:
+    """Return a time in hours, days or years; "" below one hour.
+
+    Parameters
+    ----------
+    seconds : float or None
+        [s]
+
+    Returns
+    -------
+    str
+    """
+    if seconds is None or not isfinite(seconds):
+        return ""
+    unit = time_unit(abs(seconds))
+    return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
+
+
+def threshold(value: float, units: str) -> str:
+    """Return a threshold [units, as in CF] as it was written: ``24 hours``, ``12°``.
+
+    One without a unit of its own is in the unit in which it is read, or as it was written where
+    five digits do not tell it from others.
+    """
+    if isinstance(value, Written):
+        return beside(value.number, value.unit.name)
+    unit = unit_of(units, value)
+    read = float(number(value / unit.size))
+    if not isclose(read * unit.size, value, rel_tol=1e-12):
+        read, unit = value, Unit(units, 1.0)
+    return beside(f"{read:.15g}", unit.name)
+
+
+def compared(name: str, is_angle: bool) -> str:
+    """Return what is compared with a threshold, where it is not the output itself: ``|psi|``."""
+    return f"|{name}|" if is_angle else ""
+
+
+def estimated(label: str, units: str, of: str = "", asked: Iterable[float] = ()) -> str:
+    """Return the label of an estimate for a person: ``P(>86400.0)`` is ``P(> 24 hours)``.
+
+    Parameters
+    ----------
+    label : str
+        Also the name of an event: ``P(life<86400.0)``.
+    units : str
+        CF unit of the output.
+    of : str
+        What is compared, if not what the label names: ``|psi|``.
+    asked : iterable of float
+        The thresholds of the study, which may have units of their own.
+
+    Returns
+    -------
+    str
+    """
+    known = {repr(one): one for one in asked}
+
+    def shown_event(found: re.Match[str]) -> str:
+        at = threshold(known.get(found[3], float(found[3])), units)
+        return f"P({' '.join(filter(None, (of or found[1], found[2], at)))})"
+
+    return re.sub(r"^P\(([^<>=]*(?:\[.*\])?)([<>])([^<>]+?)\)", shown_event, label)
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent: to a tenth, or more digits close to 0 and 100 %."""
+    if share in (0.0, 1.0):
+        return f"{100 * share:.0f} %"
+    if 0 < share < 0.01:
+        return f"{100 * share:.2g} %"
+    rest = round(1 - share, 12)
+    return f"{100 * share:.{-floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
+
+
+TO_THESE_DIGITS = "exact to these digits"
+
+
+def percent_interval(low: float, high: float) -> str:
+    """Return the ends of the interval of a share in per cent, or that they are the share shown."""
+    return TO_THESE_DIGITS if percent(low) == percent(high) else percent_range(low, high)
+
+
+def percent_range(low: float, high: float) -> str:
+    """Return two shares in per cent, one of them if they are read alike."""
+    if percent(low) == percent(high):
+        return percent(low)
+    return f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+
+def rows_in_words(rows: float) -> str:
+    """Return a number of rows, rounded up to two digits; a huge one as a power of ten."""
+    if rows > HUGE:
+        return f"{rows:.0e}".replace("e+", "e")
+    digit = 10 ** max(floor(log10(rows)) - 1, 0)
+    return grouped(ceil(rows / digit) * digit)
+
+
+def counted(count: int, one: str, several: str = "") -> str:
+    """Return a number with the word for what is counted: ``1 row``, ``3 rows``, ``4 000 rows``.
+
+    Parameters
+    ----------
+    count : int
+    one : str
+        The word where it is one.
+    several : str, optional
+        Elsewhere; by default the same with an s.
+    """
+    return f"{grouped(count)} {one if count == 1 else several or f'{one}s'}"
+
+
+def grouped(rows: int) -> str:
+    """Return a number of rows with its thousands apart."""
+    return f"{rows:,}".replace(",", " ")
+
+
+def listed(labels: Sequence[str], most: int = 8) -> str:
+    """Return the labels of a category; of many, the first and the last."""
+    some = labels if len(labels) <= most else (*labels[:3], "...", labels[-1])
+    return ", ".join(some)
+
+
+def law(stated: Any) -> str:
+    """Return the law of an input, numbers to six digits: ``normal(mean = 1.0, sd = 0.1)``."""
+    given = _arguments(stated)
+    given |= {n: float(f"{one:.6g}") for n, one in given.items() if isinstance(one, float)}
+    arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
+    return f"{stated.distribution}({arguments})"
+
+
+def law_in_unit(stated: Any, unit: Unit) -> str:
+    """Return the law of an input in a unit, to six digits: ``normal: mean 250 µm, sd 25 µm``."""
+
+    def words(name: str, value: Any) -> str:
+        if isinstance(value, str):
+            return value
+        own = PURE if name in stated.pure else unit
+        several = value if isinstance(value, tuple) else (value,)
+        numbers = [f"{one / own.size:.6g}" for one in several]
+        return beside(" to ".join(numbers) if name == "truncate" else listed(numbers), own.name)
+
+    given = (f"{name} {words(name, value)}" for name, value in _arguments(stated).items())
+    return f"{stated.distribution}: {', '.join(given)}"
+
+
+def _arguments(stated: Any) -> dict[str, Any]:
+    without = {"distribution", "source", "times", "level"}
+    given: dict[str, Any] = stated.model_dump(exclude=without, exclude_none=True)
+    if given.get("file") is not None:
+        given.pop("values", None)  # a result keeps the file's name alone
+    return given
+
+
+_NUMBER = re.compile(r"(?<![^\s(\[])-?(?:\d[\d.]*(?:e[-+]?\d+)?|∞|inf)(?![\w-])")
+_TIMES = "minutes?|hours?|days?|years?"
+_FACTOR = rf"[pnµmkMG]?(?:{'|'.join(sorted(PREFIXED - {'ohm'}))}|Ω|g)[⁻⁰¹²³⁴-⁹]*(?![\w⁻])"
+_UNIT = re.compile(rf"(?<=\d)(?: {_FACTOR})+|(?<=\d) (?=(?:{_TIMES}|%)(?!\w))")
+_POWER = r"(?<=\d) (?=× 10)|(?<=×) (?=10)"
+_GROUP = r"(?<=\d) (?=\d{3}(?!\d))"
+_DIFFERENCE = r"(?<=[₀-₉]) (?=[−+] )|(?<=[₀-₉] [−+]) "
+_BEFORE_POWER = re.compile(rf"(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER}|{_GROUP}|{_DIFFERENCE}")
+
+
+def minus(text: str) -> str:
+    """Return text with minus signs instead of hyphens in its numbers: ``−1.5e−05``.
+
+    Names, dates, laws of a study file in code and options of commands keep their hyphens.
+    """
+    return _NUMBER.sub(lambda found: found[0].replace("-", "\N{MINUS SIGN}"), text)
+
+
+def printed(text: str) -> str:
+    """Return text for a page: with minus signs, a dash for no number, and numbers in one line."""
+    if text == "-":
+        return "\N{EN DASH}"
+    text = _UNIT.sub(lambda found: found[0].replace(" ", "\N{NO-BREAK SPACE}"), minus(text))
+    return _BEFORE_POWER.sub("\N{NO-BREAK SPACE}", text)

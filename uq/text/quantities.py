@@ -1,0 +1,213 @@
+"""Quantities as a person writes them: ``24 hours``, ``12 degrees``, ``30 mm/s``."""
+
+import re
+from fractions import Fraction
+from math import pi
+
+from uq.errors import InputError, nearest
+from uq.text.units import DEGREES, PREFIXED, Unit
+
+_TIMES = {"min": "minutes", "h": "hours", "d": "days", "a": "years"}
+_SECONDS = {"min": 60, "h": 3600, "d": 86400, "a": 31557600}
+_PREFIXES = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
+_BASES = {*PREFIXED, "Ω"}
+_OTHER_NAMES = {"second": "s", "seconds": "s", "Ω": "ohm", "ohms": "ohm"}
+_DECODED = {word: name for name, word in _TIMES.items()} | {
+    "seconds": "s",
+    "milliseconds": "ms",
+    "microseconds": "us",
+    "nanoseconds": "ns",
+}
+_DEGREES = ("°", "deg", "degree", "degrees")
+
+_NUMBER = r"[-+]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,3})?"
+_UNIT = r"[A-Za-zµμΩ°%].{0,40}"
+_QUANTITY = re.compile(rf"\s*((?>{_NUMBER}))\s*({_UNIT})")
+
+EXAMPLE = '"24 hours", "250 um"'
+
+SHAPE = rf"^\s*{_NUMBER}\s*{_UNIT}$"
+"""Of a quantity, for editors."""
+
+_PART = re.compile(r"\s*([/*·]?)\s*([A-Za-zµμΩ°%]+)(?:\^|\*\*)?([-⁻]?[\d⁰¹²³⁴-⁹]{1,2})?\s*")
+_PLAIN_DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+
+Dimensions = dict[str, int]
+"""Unit without a prefix -> its power."""
+
+
+class Written(float):
+    """A number in its CF unit that was written in another unit.
+
+    It is a plain number wherever its unit does not matter.
+
+    Attributes
+    ----------
+    number : str
+        As written.
+    unit : Unit
+        As written, in the spelling of tables.
+    dimensions : dict of str to int
+    """
+
+    number: str
+    unit: Unit
+    dimensions: Dimensions
+
+
+def read_quantity(text: str) -> Written:
+    """Return a number with its unit as a number in the CF unit.
+
+    Parameters
+    ----------
+    text : str
+        Number and unit. Times may be in minutes, hours, days or years of 365.25 days, angles in
+        degrees, pure numbers in per cent; other units may have a prefix, and quotients of units a
+        slash.
+
+    Returns
+    -------
+    Written
+        To the bit the number that one would write in the CF unit; for degrees x pi / 180.
+
+    Raises
+    ------
+    ValueError
+        When it is not a number with a unit.
+
+    Examples
+    --------
+    >>> read_quantity("24 h"), read_quantity("250 um"), read_quantity("12 degrees").unit.name
+    (86400.0, 0.00025, '°')
+    """
+    found = _QUANTITY.fullmatch(text)
+    if found is None:
+        raise ValueError(f"must be a number, or have its unit: {EXAMPLE}")
+    size, turns, dimensions, name = _taken_apart(found[2].strip())
+    try:
+        value = Written(float(Fraction(found[1]) * size) * pi**turns / 180.0**turns)
+    except OverflowError:
+        raise ValueError("is too large a number") from None
+    value.number = found[1]
+    value.unit = Unit(name, float(size) * (pi / 180) ** turns)
+    value.dimensions = dimensions
+    return value
+
+
+def misfit(text: str, of: str, units: str) -> str:
+    """Return why a quantity is in a unit that does not fit; "" where it fits.
+
+    Parameters
+    ----------
+    text : str
+        As `read_quantity` takes it.
+    of : str
+        What the quantity belongs to.
+    units : str
+        The CF unit of that.
+    """
+    written = read_quantity(text)
+    size, turns, dimensions, _ = _taken_apart(units)
+    if (size, turns) != (1, 0):
+        return f"'{of}' is in '{units}': give the number in that unit, without a unit"
+    if written.dimensions == dimensions:
+        return ""
+    given = text.strip().removeprefix(written.number).strip()
+    allowed = allowed_units(units)
+    meant = nearest(given, allowed)
+    return f"the unit '{given}' does not fit '{of}'{meant} (allowed: {', '.join(allowed)})"
+
+
+def fault_of_unit(unit: str) -> str:
+    """Return why a string cannot be the unit of a parameter or output; "" where it can."""
+    if meant := _DECODED.get(unit.lower()):  # which xarray would turn into time differences
+        return f"write it as '{meant}'"
+    place = 0
+    while found := _PART.match(unit, place):
+        place = found.end()
+    if unit == "1" or (unit and place == len(unit)):
+        return ""
+    return "write its factors with their powers, such as 'N m-1', or '1' for a pure number"
+
+
+def allowed_units(units: str) -> tuple[str, ...]:
+    """Return the units in which a quantity with a CF unit may be written; prefixes as examples."""
+    if units == "s":
+        return ("s", *_TIMES.values(), "ms")
+    if units == "rad":
+        return ("rad", "degrees")
+    if units == "1":
+        return ("%",)
+    first = units.split(" ")[0]
+    return (units, *(f"{prefix}{units}" for prefix in ("m", "u", "k") if first in _BASES))
+
+
+def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
+    """Return the size of a unit, degrees apart, how often they occur, its dimensions and name."""
+    size, turns, dimensions, names = Fraction(1), 0, Dimensions(), list[str]()
+    if text == "1":
+        return size, turns, dimensions, text
+    place = 0
+    while place < len(text):
+        found = _PART.match(text, place)
+        if found is None:  # of no known form: a unit of its own
+            return Fraction(1), 0, {text: 1}, text
+        place = found.end()
+        power = int((found[3] or "1").translate(_PLAIN_DIGITS)) * (-1 if found[1] == "/" else 1)
+        base, own, name = _of_symbol(found[2])
+        if name == DEGREES:
+            turns += power
+        size *= own**power
+        if base != "1":
+            dimensions[base] = dimensions.get(base, 0) + power
+        names.append(name if power == 1 else f"{name}{power}")
+    whole = " ".join(names)
+    return size, turns, {one: n for one, n in dimensions.items() if n}, _TIMES.get(whole, whole)
+
+
+def _of_symbol(symbol: str) -> tuple[str, Fraction, str]:
+    """Return the unit without prefix, the size, and the name of one factor of a unit."""
+    for name, word in _TIMES.items():
+        if symbol in (name, word, word.removesuffix("s")):
+            return "s", Fraction(_SECONDS[name]), name
+    if symbol in _DEGREES:
+        return "rad", Fraction(1), DEGREES
+    if symbol == "%":
+        return "1", Fraction(1, 100), "%"
+    symbol = _OTHER_NAMES.get(symbol, symbol)
+    if symbol in PREFIXED or symbol[:1] not in _PREFIXES or symbol[1:] not in _BASES:
+        return symbol, Fraction(1), symbol
+    base = _OTHER_NAMES.get(symbol[1:], symbol[1:])
+    prefix = "µ" if symbol[0] in "uμ" else symbol[0]
+    return base, Fraction(10) ** _PREFIXES[symbol[0]], prefix + base
+
+
+def read_threshold(option: str, text: str, of: str, units: str) -> float:
+    """Return a number that an option of the command line gives, with or without a unit.
+
+    Parameters
+    ----------
+    option : str
+        Such as ``--by``.
+    text : str
+    of : str
+        What the number belongs to.
+    units : str
+        The CF unit of that, and of a plain number.
+
+    Raises
+    ------
+    InputError
+        When it is no number, or in a unit that does not fit.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        found, problem = read_quantity(text), misfit(text, of, units)
+    except ValueError as error:
+        found, problem = Written(), str(error)
+    if problem:
+        raise InputError(f"{option} {text}: {problem}")
+    return found

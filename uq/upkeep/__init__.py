@@ -1,1 +1,0 @@
-"""After a run: its `status`, `verification`, and `amending`: more samples, failed rows again."""
