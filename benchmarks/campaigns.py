@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import uq
-from uq.learning.inspections import Inspection, Kind
+from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.posterior import posterior
 from uq.learning.worn_depth import WornDepths
 from uq.text.literals import read_toml, toml
@@ -51,11 +51,13 @@ def campaign(truth, rng):
         depth = worn.at(np.full((RODS, 1), at))[:, 0] * np.exp(error * rng.standard_normal(RODS))
         for rod, seen in enumerate(depth):
             if seen < LIMIT:
-                found.append(Inspection(f"{rod}", "depth", Kind.BELOW, at, LIMIT, cv=CV))
+                found.append(Inspection(f"{rod}", "depth", InspectionKind.BELOW, at, LIMIT, cv=CV))
             elif seen > MOST:
-                found.append(Inspection(f"{rod}", "depth", Kind.ABOVE, at, MOST, cv=CV))
+                found.append(Inspection(f"{rod}", "depth", InspectionKind.ABOVE, at, MOST, cv=CV))
             else:
-                found.append(Inspection(f"{rod}", "depth", Kind.MEASURED, at, float(seen), cv=CV))
+                found.append(
+                    Inspection(f"{rod}", "depth", InspectionKind.MEASURED, at, float(seen), cv=CV)
+                )
     return found, times[-1]
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uq.indices.index import S1, ST
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.indices.sobol import first_order, sobol_indices, total_order
 from uq.sampling.designs import DESIGNS
 from uq.stats.quantile_functions import normal
@@ -102,7 +102,7 @@ def sample_of(case, samples, seed):
     u = DESIGNS["saltelli"].unit_rows(d=D, second_order=False, start=0, stop=samples, **sizes)
     y = np.moveaxis(case.of(u), 1, 0)
     groups = np.arange(y.size).reshape(y.shape)
-    return Sample(y.ravel(), {}, groups, ("A", *(f"AB_{name}" for name in NAMES), "B"))
+    return DesignSample(y.ravel(), {}, groups, ("A", *(f"AB_{name}" for name in NAMES), "B"))
 
 
 def estimates(blocks, y):

@@ -19,7 +19,7 @@ from uq import open_result, plots, sensitivity, summary  # noqa: E402
 from uq.assess.statistic import Statistic  # noqa: E402
 from uq.assess.statistics.table import STATISTICS  # noqa: E402
 from uq.indices.index import IndexKind, Indices  # noqa: E402
-from uq.indices.method import Method  # noqa: E402
+from uq.indices.method import SensitivityMethod  # noqa: E402
 from uq.indices.methods import METHODS  # noqa: E402
 from uq.render.figures import subjects  # noqa: E402
 from uq.render.figures.catalogue import Entry  # noqa: E402
@@ -88,7 +88,7 @@ def squared_correlation(sample):
 
 @pytest.fixture
 def toy_method(monkeypatch):
-    method = Method(
+    method = SensitivityMethod(
         "how well a straight line fits",
         DESIGNS["monte-carlo"].layout,
         squared_correlation,

@@ -11,7 +11,7 @@ from uq.assess.design_sample import sample_of
 from uq.assess.sensitivities import few_hits
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
-from uq.assess.targets import Target
+from uq.assess.targets import IndexTarget
 from uq.assess.two_fidelities import with_twin
 from uq.indices.index import RefusedError
 from uq.indices.methods import METHODS
@@ -96,7 +96,7 @@ def indices(repetitions):
         for name, (of, is_event) in OUTPUTS.items():
             values = of(*(ds[x].values for x in UNIFORMS)).astype(float)
             try:
-                few_hits(ds, Target(name, None, values, event=is_event))
+                few_hits(ds, IndexTarget(name, None, values, event=is_event))
                 found = METHODS["sobol"].indices(replace(sample, values=values)).values
             except RefusedError:
                 found = {}

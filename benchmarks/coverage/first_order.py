@@ -9,7 +9,7 @@ from uq.assess.answer.rankings import unexplained
 from uq.indices.index import S1, RefusedError
 from uq.indices.measures import first_order
 from uq.indices.methods import METHODS
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.stats.intervals import scatter_interval
 
 ROWS = (100, 300, 1000, 4000)
@@ -157,7 +157,7 @@ def rows(n, repetitions):
 
 def _count(tally, x, y, shares, replicate=None):
     inputs = {str(i): x[:, i] for i in range(x.shape[1])}
-    sample = Sample.plain(y, inputs, replicate=replicate, nulls=False)
+    sample = DesignSample.plain(y, inputs, replicate=replicate, nulls=False)
     indices = METHODS["first-order"].indices(sample)
     for i, share in enumerate(shares[:COUNTED]):
         index = indices.values[S1][str(i)]

@@ -26,7 +26,7 @@ from uq.assess.design_sample import sample_of
 from uq.contract import Output
 from uq.indices.index import S1, SHAPLEY, ST, RefusedError
 from uq.indices.methods import METHODS
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.indices.sobol import sobol_indices
 from uq.result.element import Element
 from uq.sampling.designs import DESIGNS
@@ -192,7 +192,7 @@ def indices(name, repetitions, replicates=8):
 
 def _indices_of(values, blocks, level):
     groups = np.arange(values.size).reshape(values.shape)
-    sample = Sample(values.ravel(), {}, groups, blocks, confidence=level, difference=PAIR)
+    sample = DesignSample(values.ravel(), {}, groups, blocks, confidence=level, difference=PAIR)
     return sobol_indices(sample).values
 
 

@@ -8,7 +8,7 @@ from computed import computed, study_of
 from uq.assess import sensitivities as found
 from uq.assess.sensitivity_json import sensitivity_json
 from uq.indices.methods import METHODS
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 
 INPUTS = ("x1", "x2", "x3")
 
@@ -43,4 +43,4 @@ def values(entry, kind):
 
 def of_plain_sample(method, x, y, quantiles):
     """Return the indices by one method of an output of a plain sample."""
-    return METHODS[method].indices(Sample.plain(y, x, quantiles=quantiles))
+    return METHODS[method].indices(DesignSample.plain(y, x, quantiles=quantiles))

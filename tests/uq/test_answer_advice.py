@@ -18,7 +18,7 @@ from computed import (
 import uq
 from uq.assess.answer.answer import answer
 from uq.assess.answer.halved_scatter import halved
-from uq.assess.answer.remedies import Tightened
+from uq.assess.answer.remedies import TighterTolerance
 from uq.stats.estimate import Estimate
 from uq.study.reading import read_study_text
 
@@ -186,6 +186,6 @@ def test_more_successes_and_fewer_other_ends_are_better():
     ds["life"].attrs["success"] = "the lock has closed"
     lead = answer(asking(ds, **asked)).lead
     assert lead.wants_more
-    better = Tightened(("x",), "", Estimate(0.5), Estimate(0.6), wants_more=True)
+    better = TighterTolerance(("x",), "", Estimate(0.5), Estimate(0.6), wants_more=True)
     assert better.helps and not replace(better, wants_more=False).helps
     assert replace(better, wants_more=None).helps

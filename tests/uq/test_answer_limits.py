@@ -7,7 +7,7 @@ from computed import asking, linear, with_output
 
 from uq import answer, summary, trace
 from uq.assess.answer.limits import limit_of
-from uq.assess.answer.wording import Unit
+from uq.assess.answer.wording import DisplayUnit
 from uq.assess.event_curve import EventCurve, event_curve
 from uq.stats.estimate import Estimate
 
@@ -17,7 +17,7 @@ def limit(chance, rows=4000, seed=0, is_unwanted=True):
     random = np.random.default_rng(seed)
     x = random.random(rows)
     hits = (random.random(rows) < chance(x)).astype(float)
-    return limit_of(event_curve(hits, x), "power", Unit(), "fail", is_unwanted)
+    return limit_of(event_curve(hits, x), "power", DisplayUnit(), "fail", is_unwanted)
 
 
 def falling(x):
@@ -143,7 +143,7 @@ def test_no_side_is_unwanted_where_the_study_states_none():
 def test_one_part_that_alone_is_rare_is_a_range():
     common, rare = Estimate(0.5, 0.4, 0.6), Estimate(0.01, 0.0, 0.04)
     curve = EventCurve(np.array([0.0, 1.0, 2.0]), [common, rare])
-    said = limit_of(curve, "power", Unit(), "fail", True).sentence
+    said = limit_of(curve, "power", DisplayUnit(), "fail", True).sentence
     assert said.endswith("fewer than 5 % fail on average where power is between 1 and 2.")
 
 
@@ -151,13 +151,13 @@ def test_a_value_is_a_limit_where_the_event_is_rare_at_it():
     grade = np.repeat([1.0, 2.0, 3.0], [600, 300, 100])
     for worst, said in ((3.0, "at most 2.5"), (2.0, "at most 1.5")):
         hits = (grade >= worst).astype(float)
-        found = limit_of(event_curve(hits, grade), "grade", Unit(), "fail", True)
+        found = limit_of(event_curve(hits, grade), "grade", DisplayUnit(), "fail", True)
         assert found.sentence == f"With 95 % confidence, fewer than 5 % fail where grade is {said}."
 
 
 def test_without_intervals_no_limit_is_denied():
     shares = [Estimate(one) for one in (0.3, 0.1, 0.0, 0.0)]
-    found = limit_of(EventCurve(np.arange(5.0), shares), "power", Unit(), "fail", True)
+    found = limit_of(EventCurve(np.arange(5.0), shares), "power", DisplayUnit(), "fail", True)
     assert found.sentence == (
         "Whether fewer than 5 % fail where power is between 3 and 4 is not settled."
     )

@@ -13,7 +13,7 @@ from computed import (
 )
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.contributions import Change
+from uq.assess.answer.contributions import AverageEffect
 from uq.result import ranked_rows
 from uq.result.nesting import first_samples
 from uq.stats.estimate import Estimate
@@ -42,8 +42,8 @@ def test_inputs_that_indices_do_not_tell_apart_are_named_together():
 
 
 def test_an_effect_without_a_direction_has_no_size():
-    assert Change(0, "10 %", Estimate(1.0, -1.0, 3.0)).sentence() == "no clear direction"
-    assert Change(1).sentence("rate") == "more rate raises it"
+    assert AverageEffect(0, "10 %", Estimate(1.0, -1.0, 3.0)).sentence() == "no clear direction"
+    assert AverageEffect(1).sentence("rate") == "more rate raises it"
 
 
 def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):

@@ -7,8 +7,8 @@ from computed import asking, kinds, linear, with_output
 
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Contribution, Ranking
-from uq.assess.answer.repeat_interval import Repeated, found_again, repeated_quantile
-from uq.assess.answer.wording import Unit
+from uq.assess.answer.repeat_interval import PredictionInterval, found_again, repeated_quantile
+from uq.assess.answer.wording import DisplayUnit
 from uq.stats import order_statistics
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import share_interval
@@ -84,8 +84,8 @@ def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
 
 
 def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
-    unit = Unit("rad s⁻¹")
-    one = Repeated("the 5 % quantile", 153.8, 154.2, unit=unit)
+    unit = DisplayUnit("rad s⁻¹")
+    one = PredictionInterval("the 5 % quantile", 153.8, 154.2, unit=unit)
     assert one.sentence == "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
     index = Estimate(0.5, 0.4, 0.6)
     leader = Contribution(("a",), (index,), True)

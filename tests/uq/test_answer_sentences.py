@@ -22,7 +22,7 @@ from scipy.stats import binomtest
 from uq.assess.answer.answer import answer
 from uq.assess.answer.facts import Answer
 from uq.assess.answer.parts import Event
-from uq.assess.answer.remedies import Tightened
+from uq.assess.answer.remedies import TighterTolerance
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.cli.summary_tables import show_answer
@@ -154,10 +154,10 @@ def test_a_quantile_moves_where_no_probability_is_asked_for():
 
 
 def test_nothing_is_advised_that_changes_no_digit():
-    same = Tightened(("x",), "the share", Estimate(0.0), Estimate(1e-9), is_share=True)
-    assert not Tightened(("x",), "", Estimate(0.5), Estimate(0.5004), is_share=True).is_seen
-    assert not Tightened(("x",), "", Estimate(1.0), Estimate(1.0)).is_seen
-    assert same.is_seen and Tightened(("x",), "", Estimate(0.5), Estimate(0.4)).is_seen
+    same = TighterTolerance(("x",), "the share", Estimate(0.0), Estimate(1e-9), is_share=True)
+    assert not TighterTolerance(("x",), "", Estimate(0.5), Estimate(0.5004), is_share=True).is_seen
+    assert not TighterTolerance(("x",), "", Estimate(1.0), Estimate(1.0)).is_seen
+    assert same.is_seen and TighterTolerance(("x",), "", Estimate(0.5), Estimate(0.4)).is_seen
 
 
 def test_samples_of_several_rows_bound_nothing_and_say_why():

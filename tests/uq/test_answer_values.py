@@ -8,9 +8,9 @@ import pytest
 from computed import asking, computed, linear, study_of, with_output
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.remedies import Tightened
-from uq.assess.answer.tolerance_bound import Promise
-from uq.assess.answer.wording import Unit
+from uq.assess.answer.remedies import TighterTolerance
+from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.wording import DisplayUnit
 from uq.stats.estimate import Estimate
 
 
@@ -99,7 +99,7 @@ def test_what_the_rows_cannot_show_is_no_advice():
 
 
 def test_no_less_is_promised_than_now():
-    promise = Promise(0.95, 0.95, 13.9, np.nan, Unit("h"), is_life=True)
+    promise = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
     before = Estimate(19.0, 14.0, 21.0)
     assert promise.would_be(Estimate(20.0, 13.95, 22.0), before) == ""
     # The bound that heads the answer, 13.9 h, is of another estimator, and keeps its own name.
@@ -114,9 +114,9 @@ def test_an_estimate_without_interval_is_not_promised():
 
 
 def test_failed_rows_lie_beyond_what_could_then_be_promised():
-    promise = Promise(0.95, 0.95, 13.9, np.nan, Unit("h"), is_life=True)
+    promise = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
     before, after = Estimate(18.0, 14.5, 21.0), Estimate(20.0, 15.0, 22.0)
-    one = Tightened(("x1",), "the 5 % quantile", before, after, promise=promise)
+    one = TighterTolerance(("x1",), "the 5 % quantile", before, after, promise=promise)
     assert "would then be 15 h; as studied" in one.promised
     assert one.promised.endswith(", 14.5 h.")
     promise = replace(promise, failed=(Estimate(low=13.7, high=21.0), None))

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from uq.assess.answer.tolerance_bound import Promise
-from uq.assess.answer.wording import Unit, called_together, rounded
+from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.wording import DisplayUnit, called_together, rounded
 from uq.text.numbers import rows_in_words
 
 
@@ -19,7 +19,7 @@ def test_bounds_are_rounded_to_the_safe_side():
     assert rounded(1.18, -np.inf) == rounded(1.18, np.inf) == "1.18"
     assert rounded(-0.0012345, -np.inf) == "-0.00124"
     assert (rounded(5e-324), rounded(1.7976e308, np.inf)) == ("4.94e-324", "1.8e+308")
-    one = Promise(0.95, 0.95, np.nan, 1.1821, Unit("m"))
+    one = ToleranceBound(0.95, 0.95, np.nan, 1.1821, DisplayUnit("m"))
     assert one.sentence == "With 95 % confidence, at least 95 % stay below 1.19 m."
 
 

@@ -14,7 +14,7 @@ from uq.assess.sensitivities import methods
 from uq.indices.index import S1, RefusedError
 from uq.indices.methods import METHODS, fed_by
 from uq.indices.residual_variance import residual_variance
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.sampling.designs import DESIGNS
 
 REPETITIONS = 40
@@ -23,7 +23,7 @@ REPETITIONS = 40
 def shares_of(y, replicate=None, **inputs):
     """Return the indices by the method that a plain sample feeds by default."""
     more = {} if replicate is None else {"replicate": replicate}
-    sample = Sample.plain(np.asarray(y, float), inputs, **more)
+    sample = DesignSample.plain(np.asarray(y, float), inputs, **more)
     return METHODS[fed_by(DESIGNS["monte-carlo"])[0]].indices(sample)
 
 

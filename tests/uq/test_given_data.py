@@ -14,7 +14,7 @@ from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError
 from uq.indices.index import RefusedError
 from uq.indices.methods import METHODS
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {
@@ -128,8 +128,8 @@ def test_the_method_that_a_refusal_names_accepts_what_was_refused():
         ("hdmr", continuous, level),
     ):
         with pytest.raises(RefusedError, match="use pawn$"):
-            METHODS[method].indices(Sample.plain(y, inputs))
-        found = METHODS["pawn"].indices(Sample.plain(y, inputs))
+            METHODS[method].indices(DesignSample.plain(y, inputs))
+        found = METHODS["pawn"].indices(DesignSample.plain(y, inputs))
         assert all(np.isfinite(one.value) for own in found.values.values() for one in own.values())
 
 
@@ -270,7 +270,7 @@ def test_inputs_without_effect_are_estimated_only_where_they_are_wanted(method):
     x, listed = rng.random(200), rng.integers(0, 3, 200).astype(float)
     values = x + listed if METHODS[method].takes_numbers else (x > 0.5).astype(float)
     quantiles = {"q0.5": 0.5} if method == "quantile" else {}
-    sample = Sample.plain(values, {"x": x, "listed": listed}, quantiles=quantiles)
+    sample = DesignSample.plain(values, {"x": x, "listed": listed}, quantiles=quantiles)
     compared = METHODS[method].indices(sample)
     alone = METHODS[method].indices(replace(sample, nulls=False))
     assert compared.nulls

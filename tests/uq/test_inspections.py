@@ -7,7 +7,7 @@ import xarray as xr
 
 from uq.errors import InputError
 from uq.learning import inspection_log
-from uq.learning.inspections import Inspection, Kind, read_inspections
+from uq.learning.inspections import Inspection, InspectionKind, read_inspections
 
 HEAD = "unit,time,output,kind,value,sd,cv,detection_50,detection_90\n"
 FILE = Path("found.csv")
@@ -34,11 +34,13 @@ def test_all_columns_that_are_needed():
         "B 1,,angle,measured,-0.1,0.01,,,",
     )
     assert found == [
-        Inspection("A1", "depth", Kind.MEASURED, 3.15e7, 1e-4, cv=0.1),
-        Inspection("A2", "depth", Kind.BELOW, 3.15e7, 5e-5),
-        Inspection("A3", "depth", Kind.BELOW, 3.15e7, detection_50=3e-5, detection_90=6e-5),
-        Inspection("A2", "life", Kind.SURVIVED, 6.3e7),
-        Inspection("B 1", "angle", Kind.MEASURED, value=-0.1, sd=0.01),
+        Inspection("A1", "depth", InspectionKind.MEASURED, 3.15e7, 1e-4, cv=0.1),
+        Inspection("A2", "depth", InspectionKind.BELOW, 3.15e7, 5e-5),
+        Inspection(
+            "A3", "depth", InspectionKind.BELOW, 3.15e7, detection_50=3e-5, detection_90=6e-5
+        ),
+        Inspection("A2", "life", InspectionKind.SURVIVED, 6.3e7),
+        Inspection("B 1", "angle", InspectionKind.MEASURED, value=-0.1, sd=0.01),
     ]
 
 
@@ -48,7 +50,7 @@ def test_columns_in_any_order_and_names_with_commas():
         head="output, kind, unit, time\n",
     )
     assert found == [
-        Inspection("A1", "time_to_depth[site=left,depth=0.00025]", Kind.SURVIVED, 6.3e7)
+        Inspection("A1", "time_to_depth[site=left,depth=0.00025]", InspectionKind.SURVIVED, 6.3e7)
     ]
 
 
@@ -148,7 +150,9 @@ def test_tables_of_a_toml_file():
     FILE.with_suffix(".toml").write_text(
         '[[inspection]]\nunit = "A"\noutput = "life"\nkind = "survived"\ntime = 3.15e7\n'
     )
-    assert inspection_log.read("found.toml") == [Inspection("A", "life", Kind.SURVIVED, 3.15e7)]
+    assert inspection_log.read("found.toml") == [
+        Inspection("A", "life", InspectionKind.SURVIVED, 3.15e7)
+    ]
     FILE.with_suffix(".toml").write_text('[[inspection]]\nunit = "A"\nkind = "lived"\n')
     with pytest.raises(InputError) as refused:
         inspection_log.read("found.toml")

@@ -21,7 +21,7 @@ from uq.assess.findings import Findings
 from uq.contract import Status
 from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
-from uq.render.html.cells import Cell, Table
+from uq.render.html.cells import Cell, HtmlTable
 from uq.render.html.page import page
 
 
@@ -114,7 +114,7 @@ def test_numbers_are_written_as_one_reads_them(no_other_figures):
 
 def test_a_column_of_numbers_may_begin_with_an_empty_cell():
     rows = [(Cell("first"), Cell("")), (Cell("second"), Cell("2", key=2.0))]
-    table = Table("some", ("name", "number"), rows)
+    table = HtmlTable("some", ("name", "number"), rows)
     assert [table.has_numbers(column) for column in (0, 1)] == [False, True]
 
 

@@ -22,7 +22,7 @@ from uq.assess.findings import Findings
 from uq.assess.statistic import Statistic
 from uq.assess.summary import summarise
 from uq.contract import Status
-from uq.render.html.cells import Cell, Table, cell, without_empty_columns
+from uq.render.html.cells import Cell, HtmlTable, cell, without_empty_columns
 from uq.render.html.convergence import convergence_of
 from uq.render.html.embedded_rows import rows_inside
 from uq.render.html.indices import sensitivity_of
@@ -273,7 +273,7 @@ def test_numbers_of_a_kind_have_bars_on_one_scale():
         Cell("7", key=7.0),
         Cell("never", key=np.inf, scale="m"),
     ]
-    table = Table("", ("",) * 5, [tuple(cells)])
+    table = HtmlTable("", ("",) * 5, [tuple(cells)])
     assert table.scales == {"share": (0.0, 1.0), "m": (-1.0, 4.0)}
     of_two, of_less, of_share, none, never = (one.bar(table.scales) for one in cells)
     assert "left:20.0%;width:40.0%" in of_two and "left:40.0%;width:60.0%" in of_two  # with ends
@@ -293,5 +293,5 @@ def test_probabilities_and_quantiles_have_bars():
 def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():
     never = cell(Statistic(("life",), "life", Estimate(np.inf, 1.0, np.inf)))
     assert (never.text, never.more, never.key) == ("never", "1 to\u00a0never", np.inf)
-    table = Table("", ("name", "empty", "full"), [(Cell("a"), Cell("-"), Cell("1"))])
+    table = HtmlTable("", ("name", "empty", "full"), [(Cell("a"), Cell("-"), Cell("1"))])
     assert without_empty_columns(table).header == ("name", "full")

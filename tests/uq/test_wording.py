@@ -21,7 +21,7 @@ from uq.text.numbers import (
     quantity,
 )
 from uq.text.quantities import read_quantity
-from uq.text.units import Unit
+from uq.text.units import ReadableUnit
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ from uq.text.units import Unit
     ids=lambda one: one["distribution"] if isinstance(one, dict) else "",
 )
 def test_a_law_is_in_the_unit_of_its_input(stated, words):
-    assert law_in_unit(law_of(stated), Unit("µm", 1e-6)) == words
+    assert law_in_unit(law_of(stated), ReadableUnit("µm", 1e-6)) == words
 
 
 @pytest.mark.parametrize(

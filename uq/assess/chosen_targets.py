@@ -8,7 +8,7 @@ import xarray as xr
 from uq.assess import targets
 from uq.assess.joint_targets import wholes
 from uq.assess.targets import (
-    Target,
+    IndexTarget,
     canonical,
     category_targets,
     lightened,
@@ -17,7 +17,7 @@ from uq.assess.targets import (
     with_tail_note,
 )
 from uq.errors import InputError, choices, nearest
-from uq.indices.method import Method
+from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS
 from uq.result.element import Element
 from uq.result.elements import analysis_of, elements_of, named_elements, shown_outputs
@@ -27,7 +27,9 @@ from uq.text.element_names import is_whole, whole_name
 from uq.text.quantities import read_threshold
 
 
-def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> Iterator[Target]:
+def chosen(
+    ds: xr.Dataset, method: str, output: str | Sequence[str] | None
+) -> Iterator[IndexTarget]:
     """Yield the targets that a user means.
 
     Parameters
@@ -40,7 +42,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
 
     Yields
     ------
-    Target
+    IndexTarget
         One at a time, as each holds a number per row. Of several names, unknown ones are skipped.
 
     Raises
@@ -96,13 +98,13 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
     yield from named if asked.scale_free else map(with_tail_note, named)
 
 
-def _suits(method: Method, target: Target) -> bool:
+def _suits(method: SensitivityMethod, target: IndexTarget) -> bool:
     if target.event:
         return method.takes_events and not (method.conditional and target.element is None)
     return method.takes_numbers
 
 
-def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
+def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[IndexTarget]:
     """Return the targets that a user means by a name; none for an unknown name."""
     written, name = name, canonical(name)
     form, inside, _ = split_name(name)
@@ -121,7 +123,7 @@ def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[Target]:
     return [*(own or targets_of(ds, name)), *whole]
 
 
-def _as_stored(name: str, element: str, found: Sequence[Target]) -> str:
+def _as_stored(name: str, element: str, found: Sequence[IndexTarget]) -> str:
     """Return a name with that of its element, of which some targets are, as the result has it."""
     one = found[0].element if found else None
     return name if one is None or "[" not in element else name.replace(element, one.name)
@@ -137,7 +139,7 @@ def _elements(ds: xr.Dataset, name: str) -> list[Element]:
     return [] if is_category(ds, name.partition("[")[0]) else named_elements(ds, name)
 
 
-def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
+def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[IndexTarget]:
     """Return the targets of an output or of one element of it.
 
     Parameters
@@ -150,7 +152,7 @@ def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Targe
 
     Returns
     -------
-    iterator of Target
+    iterator of IndexTarget
         Of a category, or an element of one, whether a row is in each that occurs.
     """
     if is_category(ds, name.partition("[")[0]):

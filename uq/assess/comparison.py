@@ -6,8 +6,13 @@ from dataclasses import dataclass
 import pandas as pd
 import xarray as xr
 
-from uq.assess.differences import Compared, ComparedOutput, compared_output, compared_shares
-from uq.assess.input_changes import Change, OnlyChange, changes, only_change
+from uq.assess.differences import (
+    ComparedOutput,
+    ComparedStatistic,
+    compared_output,
+    compared_shares,
+)
+from uq.assess.input_changes import ChangedEntry, OnlyChange, changes, only_change
 from uq.assess.pairing import Pair
 from uq.assess.scaling import population
 from uq.assess.summary import Summary, summarise
@@ -31,7 +36,7 @@ class Comparison:
     Attributes
     ----------
     first, second : Side
-    changed : list of Change
+    changed : list of ChangedEntry
         Differences between the studies.
     only : OnlyChange, optional
         The input that differs, if nothing else does.
@@ -39,17 +44,17 @@ class Comparison:
         ``rows`` or ``replicates`` where these are paired by number, ``strangers`` where the samples
         are independent, else ``unknown``.
     shares : dict of str to dict
-        Category, such as the regime -> label -> `Compared`.
+        Category, such as the regime -> label -> `ComparedStatistic`.
     outputs : dict of str to ComparedOutput
     notes : list of str
     """
 
     first: Side
     second: Side
-    changed: list[Change]
+    changed: list[ChangedEntry]
     only: OnlyChange | None
     pairing: str
-    shares: Mapping[str, Mapping[str, Compared]]
+    shares: Mapping[str, Mapping[str, ComparedStatistic]]
     outputs: Mapping[str, ComparedOutput]
     notes: list[str]
 

@@ -56,7 +56,7 @@ def learnt_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats
     Returns
     -------
     tuple of ndarray, shape (n, terms), or None
-        The means over the law of each row of the terms (`uq.stats.clusters.LearntTogether`), and
+        The means over the law of each row of the terms (`uq.stats.clusters.SharedInfluence`), and
         of the terms times whether T < time.
     """
     if isinstance(law, LearntScale) and law.terms is not None:

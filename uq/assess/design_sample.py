@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from uq.assess.independent_inputs import correlated_inputs, independent_inputs
 from uq.contract import Floats
 from uq.errors import InputError
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.result.elements import flags, has_independent_samples, study_file_of
 from uq.sampling.conditional_draws import conditional_paths
 from uq.sampling.dependence import normal_correlations
@@ -20,12 +20,12 @@ from uq.study.file import Tied
 from uq.study.input_checks import laws_of
 
 
-def with_scores(sample: Sample, ds: xr.Dataset, unit: Floats) -> Sample:
+def with_scores(sample: DesignSample, ds: xr.Dataset, unit: Floats) -> DesignSample:
     """Return a sample of paths with the normal scores of its inputs.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Without scores.
     ds : xarray.Dataset
         The result that it is of.
@@ -34,7 +34,7 @@ def with_scores(sample: Sample, ds: xr.Dataset, unit: Floats) -> Sample:
 
     Returns
     -------
-    Sample
+    DesignSample
     """
     from scipy.special import ndtri
 
@@ -57,7 +57,7 @@ def with_scores(sample: Sample, ds: xr.Dataset, unit: Floats) -> Sample:
     return replace(sample, scores=scores, matrix=matrix)
 
 
-def sample_of(ds: xr.Dataset) -> Sample:
+def sample_of(ds: xr.Dataset) -> DesignSample:
     """Find the groups of a design, in which no row has a value yet.
 
     Parameters
@@ -67,7 +67,7 @@ def sample_of(ds: xr.Dataset) -> Sample:
 
     Returns
     -------
-    Sample
+    DesignSample
 
     Raises
     ------
@@ -76,7 +76,9 @@ def sample_of(ds: xr.Dataset) -> Sample:
     """
     layout = DESIGNS[ds.attrs["design"]].layout
     nothing = np.full(ds.sizes["sample"], np.nan)
-    sample = Sample.plain(nothing, independent_inputs(ds), random=bool(ds.attrs.get("random")))
+    sample = DesignSample.plain(
+        nothing, independent_inputs(ds), random=bool(ds.attrs.get("random"))
+    )
     if layout is PLAIN:
         independent = has_independent_samples(ds)
         return replace(sample, replicate=None if independent else ds["replicate"].values)
@@ -109,7 +111,7 @@ def _grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
 
 
 def _directions(ds: xr.Dataset, order: NDArray[np.intp], unit: Floats) -> Floats:
-    """Return the steps of a design in which one input changes at a time: `Sample.direction`.
+    """Return the steps of a design in which one input changes at a time: `DesignSample.direction`.
 
     Raises
     ------

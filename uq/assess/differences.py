@@ -6,7 +6,7 @@ from itertools import chain
 from math import isnan
 
 from uq.assess import estimators
-from uq.assess.estimators import Sample
+from uq.assess.estimators import SelectedRows
 from uq.assess.pairing import Pair
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.summary import REGIME, Shares, Summary
@@ -17,7 +17,7 @@ from uq.stats.estimate import NOTHING, Estimate
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedStatistic:
     """A statistic of two results.
 
     Attributes
@@ -46,7 +46,7 @@ class ComparedOutput:
     """An element of an output: name in the table of statistics -> what is compared of it."""
 
     declared: Output
-    parts: Mapping[str, tuple[Compared, ...]]
+    parts: Mapping[str, tuple[ComparedStatistic, ...]]
 
     @property
     def units(self) -> str:
@@ -54,18 +54,18 @@ class ComparedOutput:
         return self.declared.unit
 
     @property
-    def statistics(self) -> tuple[Compared, ...]:
+    def statistics(self) -> tuple[ComparedStatistic, ...]:
         """All of them in order."""
         return tuple(chain.from_iterable(self.parts.values()))
 
 
-def compared_shares(pair: Pair, found: list[Summary]) -> dict[str, dict[str, Compared]]:
+def compared_shares(pair: Pair, found: list[Summary]) -> dict[str, dict[str, ComparedStatistic]]:
     """Return category -> label -> what is compared: all regimes, else what occurs."""
     names = [name for name in found[0].shares if name in found[1].shares]
     return {name: dict(_shares(pair, [one.shares[name] for one in found], name)) for name in names}
 
 
-def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, Compared]]:
+def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, ComparedStatistic]]:
     members = [estimators.in_categories(rows, name) for rows in pair.rows]
     for label in shares[0]:
         both = [one[label] for one in shares if label in one]
@@ -90,7 +90,7 @@ def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -
     return ComparedOutput(elements[0].declared, parts)
 
 
-def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> Compared:
+def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> ComparedStatistic:
     """Compare a statistic of the same element of two results."""
     estimator = both[0].estimator
     samples = [] if estimator is None else [estimator.sample(element) for element in elements]
@@ -100,21 +100,21 @@ def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> 
 
 
 def _compared(
-    pair: Pair, both: list[Statistic], samples: list[Sample], are_equal: bool
-) -> Compared:
+    pair: Pair, both: list[Statistic], samples: list[SelectedRows], are_equal: bool
+) -> ComparedStatistic:
     """Compare two statistics of paired rows that are equal in both results, or of others."""
     estimator = both[0].estimator
     is_scale = estimator is not None and estimator.is_scale
     known = [one.estimate.finite for one in both]
     if any(isnan(one.value) for one in known):
-        return Compared(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
+        return ComparedStatistic(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
     if are_equal:
         ratio = Estimate(1.0) if is_scale else None
-        return Compared(both[0], both[1], Estimate(0.0), identical=True, ratio=ratio)
+        return ComparedStatistic(both[0], both[1], Estimate(0.0), identical=True, ratio=ratio)
     if estimator is not None and estimator.counts_hits and pair.are_equal(samples):
         most = pair.most_that_change_sides(samples[0])
         apart = Estimate(0.0, -most, most)
-        return Compared(both[0], both[1], apart, no_row_changes_sides=True)
+        return ComparedStatistic(both[0], both[1], apart, no_row_changes_sides=True)
     if estimator is None or any(one.estimate.assumes for one in both):
         apart = two_samples.difference(known[0], known[1], pair.unpaired)
     else:
@@ -122,4 +122,4 @@ def _compared(
     times = pair.ratio(samples, known) if is_scale else None
     if any(one.reason for one in known):  # without an interval its difference has none
         apart, times = Estimate(apart.value), times and Estimate(times.value)
-    return Compared(both[0], both[1], apart.finite, ratio=times and times.finite)
+    return ComparedStatistic(both[0], both[1], apart.finite, ratio=times and times.finite)

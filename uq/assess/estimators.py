@@ -13,24 +13,24 @@ from uq.result.elements import Element, Floats, Mask, category_codes, flags
 from uq.stats import order_statistics
 
 
-class Sample(NamedTuple):
+class SelectedRows(NamedTuple):
     """Numbers of the rows of a result, and which of them take part."""
 
     kept: Mask
     numbers: Floats
 
 
-def with_value(element: Element) -> Sample:
+def with_value(element: Element) -> SelectedRows:
     """Return the values of an element, censored rows never ending."""
-    return Sample(element.present, np.where(element.censored, np.inf, element.values))
+    return SelectedRows(element.present, np.where(element.censored, np.inf, element.values))
 
 
-def whole(element: Element) -> Sample:
+def whole(element: Element) -> SelectedRows:
     """Return value and censoring of each row."""
-    return Sample(element.present, np.column_stack([element.values, element.censored]))
+    return SelectedRows(element.present, np.column_stack([element.values, element.censored]))
 
 
-def in_categories(rows: xr.Dataset, name: str) -> dict[str, Sample]:
+def in_categories(rows: xr.Dataset, name: str) -> dict[str, SelectedRows]:
     """Return which rows are in each category, of those that did not fail without.
 
     The name is that of an output, or of one element of it.
@@ -38,7 +38,7 @@ def in_categories(rows: xr.Dataset, name: str) -> dict[str, Sample]:
     codes = category_codes(rows, name)[name]
     kept = (codes >= 0) | (rows["status"].values == Status.OK)
     return {
-        label: Sample(kept, (codes == code).astype(float))
+        label: SelectedRows(kept, (codes == code).astype(float))
         for code, label in flags(rows[name.partition("[")[0]])
         if code >= 0
     }
@@ -68,7 +68,7 @@ class Estimator:
 
     of: Callable[[Floats], float]
     pull: Callable[[Floats], Floats]
-    sample: Callable[[Element], Sample | None] = with_value
+    sample: Callable[[Element], SelectedRows | None] = with_value
     is_share: bool = False
     counts_hits: bool = False
     averages: bool = False
@@ -92,7 +92,7 @@ MEAN = Estimator(np.mean, _centred)
 SD = Estimator(_sd, lambda x: (x - x.mean()) ** 2 - x.var(), is_scale=True)
 
 
-def share(sample: Callable[[Element], Sample | None] = with_value) -> Estimator:
+def share(sample: Callable[[Element], SelectedRows | None] = with_value) -> Estimator:
     """Return the estimator of the share of ones among the rows of a sample."""
     return Estimator(np.mean, _centred, sample, is_share=True, counts_hits=True)
 
@@ -115,8 +115,8 @@ def quantile_of(element: Element, probability: float) -> Estimator:
     if element.is_plain:
         return quantile(probability)
 
-    def sample(other: Element) -> Sample:
+    def sample(other: Element) -> SelectedRows:
         at = Population(other, None).middle(probability)
-        return Sample(other.present, other.below(at))
+        return SelectedRows(other.present, other.below(at))
 
     return Estimator(np.mean, _centred, sample, is_share=True)

@@ -12,9 +12,9 @@ import numpy as np
 import xarray as xr
 
 from uq.assess.targets import lightened, number_of
-from uq.indices.method import Method
+from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, piloted_by
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.result.elements import (
     Element,
     Floats,
@@ -86,7 +86,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     ):
         own = factor if len(element.at_least) >= _ENOUGH_ROWS else None
         limits = analysis.thresholds.get(element.output, ())
-        sample = Sample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
+        sample = DesignSample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
         found[element.name] = Widths(
             units=element.units,
             mean=own and _mean(element, rows, own),
@@ -139,7 +139,7 @@ def _share(element: Element, threshold: float, rows: int, factor: float) -> floa
 
 
 def _indices(
-    sample: Sample, method: Method, groups: int, factor: float | None
+    sample: DesignSample, method: SensitivityMethod, groups: int, factor: float | None
 ) -> dict[str, float | None]:
     """Return the widest interval of each kind of index, as of independent groups."""
     whole = sample.grouped[sample.whole]

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from uq.assess.targets import Target
+from uq.assess.targets import IndexTarget
 from uq.indices.index import RefusedError
 from uq.indices.measures import MIN_SIDE
 from uq.result.elements import independent_rows, why_no_statistics
@@ -18,14 +18,14 @@ ENOUGH_HITS = 20
 """With fewer in each replicate the indices come with a warning."""
 
 
-def few_hits(ds: xr.Dataset, target: Target, intervals: bool = True) -> tuple[str, ...]:
+def few_hits(ds: xr.Dataset, target: IndexTarget, intervals: bool = True) -> tuple[str, ...]:
     """Return the warning for an event with few hits or misses; any two values make one.
 
     Parameters
     ----------
     ds : xarray.Dataset
         The result that the target is of.
-    target : Target
+    target : IndexTarget
     intervals : bool, optional
         Whether its indices have any.
 

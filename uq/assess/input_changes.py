@@ -11,7 +11,7 @@ from uq.text.literals import shown
 from uq.text.numbers import law
 
 
-class Change(NamedTuple):
+class ChangedEntry(NamedTuple):
     """One entry that differs between two studies.
 
     Attributes
@@ -29,7 +29,7 @@ class Change(NamedTuple):
     second: str
 
 
-class Spread(NamedTuple):
+class InputMoments(NamedTuple):
     """Mean and standard deviation of an input, in its unit; 0 where it is one number."""
 
     mean: float
@@ -41,11 +41,11 @@ class OnlyChange(NamedTuple):
 
     name: str
     units: str
-    first: Spread
-    second: Spread
+    first: InputMoments
+    second: InputMoments
 
 
-def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
+def changes(first: xr.Dataset, second: xr.Dataset) -> list[ChangedEntry]:
     """Return all differences between two studies, apart from [analysis].
 
     Parameters
@@ -55,7 +55,7 @@ def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
 
     Returns
     -------
-    list of Change
+    list of ChangedEntry
     """
     sides = [(ds, study_file_of(ds)) for ds in (first, second)]
     return [*_frame(sides), *_inputs(sides)]
@@ -64,19 +64,19 @@ def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
 Side = tuple[xr.Dataset, StudyFile]
 
 
-def _frame(sides: list[Side]) -> Iterator[Change]:
+def _frame(sides: list[Side]) -> Iterator[ChangedEntry]:
     frames = [dict(_entries(*side)) for side in sides]
     for place in dict.fromkeys((*frames[0], *frames[1])):
         one, other = (shown(f[place]) if place in f else "default" for f in frames)
         if one != other:
-            yield Change(*place, one, other)
+            yield ChangedEntry(*place, one, other)
     ranks = [
         study.dependence.model_dump(exclude={"source"}) if study.dependence else None
         for _, study in sides
     ]
     if ranks[0] != ranks[1]:
         parameters = (", ".join(one["parameters"]) if one else "none" for one in ranks)
-        yield Change("dependence", "rank correlations", *parameters)
+        yield ChangedEntry("dependence", "rank correlations", *parameters)
 
 
 def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str], Any]]:
@@ -88,13 +88,13 @@ def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str]
         yield ("setting", name), value
 
 
-def _inputs(sides: list[Side]) -> Iterator[Change]:
+def _inputs(sides: list[Side]) -> Iterator[ChangedEntry]:
     first, second = (ds for ds, _ in sides)
     for name, variable in first.data_vars.items():
         if variable.attrs.get("role") in ("input", "fixed") and name in second:
             one, other = (_stated(*side, str(name)) for side in sides)
             if one != other:
-                yield Change("input", str(name), one[0], other[0])
+                yield ChangedEntry("input", str(name), one[0], other[0])
 
 
 def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
@@ -113,7 +113,9 @@ def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
     return stated, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
 
 
-def only_change(first: xr.Dataset, second: xr.Dataset, found: list[Change]) -> OnlyChange | None:
+def only_change(
+    first: xr.Dataset, second: xr.Dataset, found: list[ChangedEntry]
+) -> OnlyChange | None:
     """Return the only input that differs, if nothing else but the design does."""
     decisive = [change for change in found if change.kind != "design"]
     if [change.kind for change in decisive] != ["input"]:
@@ -123,5 +125,5 @@ def only_change(first: xr.Dataset, second: xr.Dataset, found: list[Change]) -> O
     return OnlyChange(name, str(first[name].attrs["units"]), *spreads)
 
 
-def _spread(values: Floats) -> Spread:
-    return Spread(float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else 0.0)
+def _spread(values: Floats) -> InputMoments:
+    return InputMoments(float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else 0.0)

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from uq.assess.targets import FORMS, Target, lightened, number_of, split_name, transformed
+from uq.assess.targets import FORMS, IndexTarget, lightened, number_of, split_name, transformed
 from uq.result.element import Element
 from uq.stats.intervals import sized
 from uq.text.element_names import whole_name
 from uq.text.numbers import percent
 
 
-def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[Target]:
+def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[IndexTarget]:
     """Yield targets that are all elements of an output together.
 
     Parameters
@@ -24,7 +24,7 @@ def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[Target]
 
     Yields
     ------
-    Target
+    IndexTarget
         Numbers of shape (n, e). First what stands for each element by default, in one form for
         all: the logarithms if some have a heavy tail or are lifetimes, the ranks if some rows have
         no logarithm, else the values. If every target is asked for, the other forms follow.
@@ -61,9 +61,10 @@ def _common(elements: Sequence[Element]) -> str:
     return "rank" if "rank" in forms or no_logarithm else "log"
 
 
-def _together(elements: Sequence[Element], form: str) -> Target:
+def _together(elements: Sequence[Element], form: str) -> IndexTarget:
     parts = [
-        transformed(one, form) if form else Target(one.name, one, one.values) for one in elements
+        transformed(one, form) if form else IndexTarget(one.name, one, one.values)
+        for one in elements
     ]
     name = whole_name(elements[0].output)
     values = np.column_stack([one.values for one in parts])
@@ -73,7 +74,7 @@ def _together(elements: Sequence[Element], form: str) -> Target:
         others = "; ask for the other elements by name" if len(lacking) < len(parts) else ""
         refused = f"no row has a {lacking[0]}{others}"
     notes = _weights(elements, values[np.isfinite(values).all(axis=1)])
-    return Target(f"{form}({name})" if form else name, None, values, refused, notes=notes)
+    return IndexTarget(f"{form}({name})" if form else name, None, values, refused, notes=notes)
 
 
 def _weights(elements: Sequence[Element], values: np.ndarray) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from uq.assess.few_events import FEWEST_HITS, few_hits
 from uq.assess.regime_switching import switching
 from uq.assess.scaling_by_level import Scales, scales_by_level
 from uq.assess.statistics.counts import stated_error
-from uq.assess.targets import Target, lightened, split_name
+from uq.assess.targets import IndexTarget, lightened, split_name
 from uq.assess.variance_by_level import SOLVER, SOURCES, LevelShares, shares_of
 from uq.contract import Floats
 from uq.errors import InputError
@@ -119,7 +119,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     return ByLevel(*size, levels_of(rows), found, mean, each, weights)
 
 
-def _scales(rows: xr.Dataset, target: Target) -> Scales:
+def _scales(rows: xr.Dataset, target: IndexTarget) -> Scales:
     """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
     element = target.element
     if element is None or target.event or target.refused or not element.declared.scales:
@@ -134,7 +134,7 @@ def _scales(rows: xr.Dataset, target: Target) -> Scales:
 
 def _shares(
     rows: xr.Dataset,
-    target: Target,
+    target: IndexTarget,
     place: Nesting,
     scales: Scales,
     replicate: Any,
@@ -169,7 +169,7 @@ def _why_not_weighted(weights: Smoothed | None) -> str:
     return weights.refusal or too_large(largest_share(weights.weights), weights.rows)
 
 
-def _few(rows: xr.Dataset, event: Target) -> tuple[str, tuple[str, ...]]:
+def _few(rows: xr.Dataset, event: IndexTarget) -> tuple[str, tuple[str, ...]]:
     """Return why an event has too few hits for shares, or the warning that it has few."""
     try:
         return "", few_hits(rows, event)
@@ -191,7 +191,7 @@ def _too_few_effective(hits: Floats, place: Nesting, weights: Smoothed | None) -
     return f"the rows are worth {rarer:.2g} {side} of equal weight, and {FEWEST_HITS} are needed"
 
 
-def _errors(rows: xr.Dataset, target: Target) -> tuple[Floats | None, str]:
+def _errors(rows: xr.Dataset, target: IndexTarget) -> tuple[Floats | None, str]:
     """Return the numerical error of each row, of a logarithm the relative one; or why none."""
     stated = None if target.element is None else stated_error(rows, target.element)
     if stated is None or target.element is None:

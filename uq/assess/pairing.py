@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.assess.estimators import MEAN, SD, Estimator, Sample
+from uq.assess.estimators import MEAN, SD, Estimator, SelectedRows
 from uq.result.elements import (
     Floats,
     are_independent,
@@ -164,7 +164,7 @@ class Pair:
         self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
 
     def difference(
-        self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
+        self, estimator: Estimator, samples: list[SelectedRows], known: list[Estimate]
     ) -> Estimate:
         """Return an estimate from the second result less that from the first."""
         if self.kinship is Kinship.REPLICATES and not estimator.is_share:
@@ -191,7 +191,7 @@ class Pair:
             return Estimate(found.value)  # equal in each pair, but for rounding
         return found
 
-    def are_equal(self, samples: list[Sample]) -> bool:
+    def are_equal(self, samples: list[SelectedRows]) -> bool:
         """Whether the rows are paired and both rows of each pair have the same numbers."""
         if not self._paired or len(samples) < 2:
             return False
@@ -207,7 +207,7 @@ class Pair:
         names = [name for name in outputs_of(first) if name in second]
         return self._paired and first[names].drop_attrs().equals(second[names].drop_attrs())
 
-    def most_that_change_sides(self, sample: Sample) -> float:
+    def most_that_change_sides(self, sample: SelectedRows) -> float:
         """Return the largest share of rows that change sides where no row of a sample does.
 
         A share that has no hit among all rows in 2.5 % of samples: the upper end of the exact 95 %
@@ -221,7 +221,7 @@ class Pair:
         rows = int(np.count_nonzero(sample.kept))
         return float(exact_interval(0.0, rows, intervals.CONFIDENCE)[1])
 
-    def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
+    def ratio(self, samples: list[SelectedRows], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
         if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
             found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
@@ -235,7 +235,7 @@ class Pair:
         """The correlation to assume where rows are not paired."""
         return 0.0 if self.kinship is Kinship.STRANGERS else WORST
 
-    def _correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
+    def _correlation(self, estimator: Estimator, samples: list[SelectedRows]) -> float:
         """Return that of the influences of paired rows, or of their means in paired replicates.
 
         The second is NaN where a replicate has no rows. Together with Woodruff's intervals it gives
@@ -254,7 +254,7 @@ class Pair:
         return float(np.asarray(np.corrcoef(means))[0, 1])
 
     def _beyond_jumps(
-        self, value: float, ends: intervals.Ends, estimator: Estimator, samples: list[Sample]
+        self, value: float, ends: intervals.Ends, estimator: Estimator, samples: list[SelectedRows]
     ) -> intervals.Ends:
         """Return the interval of a difference, with the error of jumps that replicates hide.
 
@@ -272,12 +272,12 @@ class Pair:
             ends = beyond_jumps(value, ends, of_rows, part, intervals.CONFIDENCE)
         return ends
 
-    def _averaged(self, i: int, sample: Sample) -> Estimate:
+    def _averaged(self, i: int, sample: SelectedRows) -> Estimate:
         """Return a mean of probabilities with the interval from which a difference is built."""
         part = intervals.replicates_of_some(self._replicate[i], sample.kept)
         return share_to_compare(sample.numbers[sample.kept], part=part)
 
-    def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
+    def _by_replicate(self, estimator: Estimator, i: int, sample: SelectedRows) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
         assert of is not None, "independent rows have no replicates"
         found = np.full(count, np.nan)
@@ -288,15 +288,15 @@ class Pair:
         return found
 
 
-def _pull(estimator: Estimator, sample: Sample) -> Sample:
+def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
     """Return the influence of each row, 0 of those that take no part."""
     pull = np.zeros(len(sample.numbers))
     if sample.kept.any():
         pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
-    return Sample(sample.kept, pull)
+    return SelectedRows(sample.kept, pull)
 
 
-def _students(estimator: Estimator, sample: Sample, known: Estimate) -> Estimate:
+def _students(estimator: Estimator, sample: SelectedRows, known: Estimate) -> Estimate:
     """Return a moment with Student's interval, from which the difference of paired rows is built.
 
     The interval of a single moment allows for outliers that its rows do not show; most of them
@@ -310,7 +310,7 @@ def _students(estimator: Estimator, sample: Sample, known: Estimate) -> Estimate
     return Estimate(known.value, known.value + float(low), known.value + float(high))
 
 
-def _newcombe(sample: Sample) -> Estimate:
+def _newcombe(sample: SelectedRows) -> Estimate:
     """Return a share with Wilson's interval, from which that of a difference is built.
 
     For few hits the interval of a single share is exact; the difference of two such intervals would

@@ -8,11 +8,11 @@ import xarray as xr
 from uq.assess.regime_boundary import EXPONENT, boundary
 from uq.assess.statistics.between_regimes import between_share
 from uq.assess.summary import REGIME, category_shares
-from uq.assess.targets import Target, category_targets, number_of
+from uq.assess.targets import IndexTarget, category_targets, number_of
 from uq.errors import InputError
 from uq.indices.index import RefusedError
 from uq.indices.methods import KS, METHODS
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.result.elements import (
     Floats,
     analysis_of,
@@ -113,10 +113,10 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
 
 
-def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
+def _distances(inputs: dict[str, Floats], target: IndexTarget) -> list[float]:
     """Return the distance of each input, and the largest of inputs without effect."""
     try:
-        found = METHODS["regional"].indices(Sample.plain(target.values, inputs))
+        found = METHODS["regional"].indices(DesignSample.plain(target.values, inputs))
     except RefusedError:
         return [np.nan] * (len(inputs) + 1)
     return [*(index.value for index in found.values[KS].values()), found.nulls[KS].one]

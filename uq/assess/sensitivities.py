@@ -11,13 +11,13 @@ from uq.assess.chosen_targets import chosen
 from uq.assess.design_sample import sample_of
 from uq.assess.few_events import few_hits
 from uq.assess.independent_inputs import notes_on_inputs, why_dependent
-from uq.assess.targets import Target, where_it_happens
+from uq.assess.targets import IndexTarget, where_it_happens
 from uq.contract import Mask
 from uq.errors import InputError, nearest
 from uq.indices.index import IndexKind, Indices, RefusedError
-from uq.indices.method import Method
+from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_inputs
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.result.elements import analysis_of
 from uq.result.nesting import is_nested, one_of_each_sample
 from uq.result.ranked_rows import ranked_in_words, ranked_rows
@@ -169,7 +169,11 @@ def _with_reason(one: TargetIndices) -> TargetIndices:
 
 
 def indices_of_target(
-    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...] = ()
+    ds: xr.Dataset,
+    method: SensitivityMethod,
+    target: IndexTarget,
+    sample: DesignSample,
+    notes: tuple[str, ...] = (),
 ) -> TargetIndices:
     """Estimate the indices of a target, or say why there are none.
 
@@ -177,9 +181,9 @@ def indices_of_target(
     ----------
     ds : xarray.Dataset
         The result that the target is of.
-    method : Method
-    target : Target
-    sample : Sample
+    method : SensitivityMethod
+    target : IndexTarget
+    sample : DesignSample
         With its values.
     notes : tuple of str, optional
         Sentences to add to those of the indices.
@@ -207,7 +211,7 @@ def indices_of_target(
     return TargetIndices(target.name, *counts, replace(found, notes=combined))
 
 
-def _conditioned(target: Target, sample: Sample) -> Sample:
+def _conditioned(target: IndexTarget, sample: DesignSample) -> DesignSample:
     """Return the output of the rows in which an event happens."""
     if not target.event or target.element is None:
         raise RefusedError(
@@ -223,7 +227,7 @@ def _counts(*whole: Mask, rows: int) -> tuple[int, int]:
     return int(every.sum()) * (rows // every.size), int((~every).sum())
 
 
-def _no_variance(target: Target) -> str:
+def _no_variance(target: IndexTarget) -> str:
     name = target.element.name if target.element else target.name
     logarithm = f"log({name})"
     others = f"{logarithm}, where all rows are positive, or " * (target.name != logarithm)
@@ -233,7 +237,7 @@ def _no_variance(target: Target) -> str:
     )
 
 
-def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
+def _quantiles(target: IndexTarget, asked: tuple[float, ...]) -> dict[str, float]:
     """Return the names of quantiles of a target; B10 of a life is where its rate is high."""
     if target.element is not None and target.element.is_lifetime:
         return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}

@@ -119,7 +119,7 @@ def count_in_words(value: float) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kind:
+class StatisticKind:
     """How statistics of one kind are shown.
 
     Attributes
@@ -154,15 +154,15 @@ class Kind:
     readers: Reader = ~Reader(0)
 
 
-ESTIMATE = Kind()
-COUNT = Kind(
+ESTIMATE = StatisticKind()
+COUNT = StatisticKind(
     write=counts,
     shown=count_in_words,
     is_count=True,
     has_interval=False,
     readers=~(Reader.COMPARED | Reader.RUNNING),
 )
-FACT = Kind(write=facts, has_interval=False, readers=Reader.JSON | Reader.COLUMNS)
+FACT = StatisticKind(write=facts, has_interval=False, readers=Reader.JSON | Reader.COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class Statistic:
     estimate : Estimate
     unit : str
         ``rows`` for a number of rows.
-    kind : Kind
+    kind : StatisticKind
     column, heading : str, optional
         Its name in pandas and in a report; "" if it is not shown there.
     failed : Estimate, optional
@@ -212,7 +212,7 @@ class Statistic:
     label: str
     estimate: Estimate
     unit: str = "1"
-    kind: Kind = ESTIMATE
+    kind: StatisticKind = ESTIMATE
     _: KW_ONLY
     column: str | None = None
     heading: str | None = None

@@ -19,7 +19,7 @@ from uq.assess.life_quantiles import life_quantiles, quantile_estimate
 from uq.assess.population import Population
 from uq.assess.scaling import population
 from uq.assess.sensitivities import indices_of_target
-from uq.assess.targets import Target, lightened, number_of
+from uq.assess.targets import IndexTarget, lightened, number_of
 from uq.contract import Floats
 from uq.indices.methods import METHODS, kinds_with_intervals
 from uq.result.elements import Element, independent_rows, named_elements, replicates_of
@@ -269,7 +269,7 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
             yield InterimEstimate(what, one, until.half_width, lost)
 
 
-def _targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+def _targets(ds: xr.Dataset, output: str) -> Iterator[IndexTarget]:
     """Yield what has an index: each element that is meant, or all of them together."""
     elements = named_elements(ds, output)
     if is_whole(output):

@@ -12,7 +12,7 @@ from uq.stats.estimate_text import rounded_text
 from uq.stats.weighted_means import EXACT
 from uq.text.numbers import in_unit, rows_in_words, threshold
 from uq.text.quantities import Written
-from uq.text.units import Unit, beside, unit_of
+from uq.text.units import ReadableUnit, beside, unit_of
 
 if TYPE_CHECKING:
     from uq.study.file import DesignTable
@@ -104,7 +104,7 @@ def _needed(seen: InterimEstimate, samples: int) -> str:
     return rows_in_words(seen.rows_factor * samples) if isfinite(seen.rows_factor) else ""
 
 
-def _wanted(half_width: float, unit: Unit) -> str:
+def _wanted(half_width: float, unit: ReadableUnit) -> str:
     """Return the goal, as written or in the unit of the estimate."""
     written = isinstance(half_width, Written)
     text = threshold(half_width, unit.name) if written else in_unit(half_width, unit)
@@ -121,7 +121,7 @@ def _stop(design: "DesignTable", ds: xr.Dataset) -> tuple[int, InterimEstimate]:
     return size, seen
 
 
-def _in_words(found: Estimate, unit: Unit) -> str:
+def _in_words(found: Estimate, unit: ReadableUnit) -> str:
     if isnan(found.value):
         sides = {"at least": found.low, "at most": found.high}
         ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]

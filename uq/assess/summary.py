@@ -14,7 +14,7 @@ from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.reweighting import Weighting
 from uq.assess.scaling import population
-from uq.assess.statistic import Context, Kind, Statistic
+from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
 from uq.assess.statistics.thresholds import share_of
 from uq.result.elements import (
@@ -73,7 +73,7 @@ def _compared_json(one: Statistic) -> dict[str, Any]:
     return share_json(one) | {"value": estimate_json.number(one.estimate.value)}
 
 
-SHARE = Kind(entry=_compared_json)
+SHARE = StatisticKind(entry=_compared_json)
 
 _OF_VALUES = {"moments", "quantiles", "b_lives", "tolerance", "joint_bounds"}
 _DIGITS = 5  # of numbers in tables

@@ -5,7 +5,7 @@ from itertools import groupby
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from uq.assess.input_changes import OnlyChange, Spread
+from uq.assess.input_changes import InputMoments, OnlyChange
 from uq.assess.life_fit import Fit
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.table import EMPTY, JSON_ORDER
@@ -15,7 +15,7 @@ from uq.stats.importance_weights import Smoothed, quality
 
 if TYPE_CHECKING:
     from uq.assess.comparison import Comparison, Side
-    from uq.assess.differences import Compared, ComparedOutput
+    from uq.assess.differences import ComparedOutput, ComparedStatistic
     from uq.assess.level_shares import ByLevel
     from uq.assess.running_estimates import Converging
     from uq.assess.two_fidelities import Sharpened, TwoFidelities
@@ -143,7 +143,8 @@ def _about(one: "Side") -> dict[str, Any]:
 
 def _only(one: OnlyChange) -> dict[str, Any]:
     found = {
-        key: {"a": getattr(one.first, key), "b": getattr(one.second, key)} for key in Spread._fields
+        key: {"a": getattr(one.first, key), "b": getattr(one.second, key)}
+        for key in InputMoments._fields
     }
     return {"name": one.name, "units": one.units} | found
 
@@ -159,7 +160,7 @@ def _output(one: "ComparedOutput") -> dict[str, Any]:
     return found
 
 
-def _compared(one: "Compared") -> dict[str, Any]:
+def _compared(one: "ComparedStatistic") -> dict[str, Any]:
     same = {"identical": True} if one.identical else {}
     if one.no_row_changes_sides:
         same = {"no_row_changes_sides": True}

@@ -18,7 +18,7 @@ from uq.stats.intervals import (
     scattered_share_interval,
     upper_probability,
 )
-from uq.stats.kaplan_meier import Outliving, outliving
+from uq.stats.kaplan_meier import SurvivalCurve, outliving
 from uq.stats.quantile_functions import normal
 from uq.stats.survival_band import simultaneous_band
 
@@ -233,7 +233,7 @@ def _pointwise(
     censored: Mask,
     time: Floats,
     confidence: float,
-    estimate: Outliving,
+    estimate: SurvivalCurve,
     known_at_once: bool,
 ) -> Ends:
     """Return the interval that is symmetric about the logarithm of -log(share).

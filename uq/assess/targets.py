@@ -152,7 +152,7 @@ def rate(element: Element) -> Transformed:
 
 
 @dataclass(frozen=True)
-class Target:
+class IndexTarget:
     """One number per row, or one for each element of an output.
 
     Attributes
@@ -191,7 +191,7 @@ class Target:
         return size * np.asarray(np.linalg.norm(away, axis=1))
 
 
-def where_it_happens(event: Target) -> Floats:
+def where_it_happens(event: IndexTarget) -> Floats:
     """Return the output that an event is about in the rows in which it happens, NaN in others."""
     assert event.element is not None
     return np.where(event.values == 1, event.element.for_thresholds, np.nan)
@@ -201,7 +201,7 @@ def targets(
     elements: Iterable[Element],
     thresholds: Mapping[str, tuple[float, ...]],
     every: bool = False,
-) -> Iterator[Target]:
+) -> Iterator[IndexTarget]:
     """Yield targets of some elements.
 
     Parameters
@@ -214,7 +214,7 @@ def targets(
 
     Yields
     ------
-    Target
+    IndexTarget
         What `number_of` gives, and of a lifetime T the events T < t. If every target is asked for:
         a value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
         also the rate 1/T and the events; of others the events y > t, of an angle's magnitude.
@@ -230,14 +230,14 @@ def targets(
                 yield _event(element, threshold)
 
 
-def number_of(element: Element) -> Target:
+def number_of(element: Element) -> IndexTarget:
     """Return one number per row that has moments.
 
     A value or angle is such a number. A lifetime is replaced by its logarithm where every row's
     life is finite, uncensored and positive, else by its rank.
     """
     if not element.is_lifetime:
-        return Target(element.name, element, element.values)
+        return IndexTarget(element.name, element, element.values)
     found = transformed(element, "log")
     return transformed(element, "rank") if found.refused else found
 
@@ -291,31 +291,31 @@ def threshold_text(name: str) -> str:
     return found[3] if found else ""
 
 
-def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:
+def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> IndexTarget:
     """Return the ``log``, ``rank`` or ``rate`` of an element."""
     values, refused = _TRANSFORMS[form](element)
     if form == "rank" and (top := int((element.never | element.censored).sum())):
         several = "rows that never end or are censored share"
         rows = counted(top, "row that never ends or is censored has", several)
         notes += (f"{rows} the highest rank",)
-    return Target(f"{form}({element.name})", element, values, refused, notes=notes)
+    return IndexTarget(f"{form}({element.name})", element, values, refused, notes=notes)
 
 
 INDICES_OF = "these are indices of its {form}; ask for {name} for those of the output itself"
 
 
-def lightened(target: Target, said: str = INDICES_OF) -> Target:
+def lightened(target: IndexTarget, said: str = INDICES_OF) -> IndexTarget:
     """Return what replaces a value with a heavy tail, for methods that apportion a variance.
 
     Parameters
     ----------
-    target : Target
+    target : IndexTarget
     said : str
         What its note says of the ``form`` that replaces it, and of its ``name``.
 
     Returns
     -------
-    Target
+    IndexTarget
         The logarithm, where all rows are positive and its own tail is not heavy, else the rank,
         with a note; `target` itself where `heaviness` finds nothing.
     """
@@ -327,7 +327,7 @@ def lightened(target: Target, said: str = INDICES_OF) -> Target:
     return transformed(target.element, form, (f"{why}: {note}",))
 
 
-def with_tail_note(target: Target) -> Target:
+def with_tail_note(target: IndexTarget) -> IndexTarget:
     """Return a target with a note if its tail is heavy, for methods that apportion a variance."""
     if not (why := _heaviness(target)):
         return target
@@ -336,7 +336,7 @@ def with_tail_note(target: Target) -> Target:
     return replace(target, notes=(*target.notes, f"{why}: {other} is more informative"))
 
 
-def _heaviness(target: Target) -> str:
+def _heaviness(target: IndexTarget) -> str:
     """Return why indices of the variance of a value are not informative, or ""."""
     element = target.element
     if element is None or element.is_lifetime or element.is_angle or target.name != element.name:
@@ -349,18 +349,18 @@ def _lighter_form(element: Element) -> str:
     return "rank" if found.refused or heaviness(found.values) else "log"
 
 
-def _event(element: Element, threshold: float) -> Target:
+def _event(element: Element, threshold: float) -> IndexTarget:
     if not element.is_lifetime:
         above = np.where(element.present, element.for_thresholds > threshold, np.nan)
-        return Target(f"P({element.name}>{threshold!r})", element, above, event=True)
+        return IndexTarget(f"P({element.name}>{threshold!r})", element, above, event=True)
     ended = element.values < threshold
     unknown = int(element.unknown_sides(threshold).sum())
     refused = f"{unknown} of {ended.size} rows were censored before that time" * (unknown > 0)
     event = np.where(element.present, ended, np.nan)
-    return Target(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
+    return IndexTarget(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
 
 
-def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+def category_targets(ds: xr.Dataset, output: str) -> Iterator[IndexTarget]:
     """Yield whether a category, such as the regime, has each of the labels that occur.
 
     Parameters
@@ -372,7 +372,7 @@ def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
 
     Yields
     ------
-    Target
+    IndexTarget
         NaN for rows that failed before they had a category; a sound row of no category has none.
     """
     lost = failed(ds)
@@ -380,4 +380,4 @@ def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
         for code, label in flags(ds[output.partition("[")[0]]):
             if code >= 0 and (hits := codes == code).any():
                 values = np.where((codes < 0) & lost, np.nan, hits)
-                yield Target(f"P({name}={label})", None, values, event=True)
+                yield IndexTarget(f"P({name}={label})", None, values, event=True)

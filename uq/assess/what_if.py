@@ -26,7 +26,7 @@ from uq.result.elements import (
 from uq.result.weights import refuse_weights
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.designs import DESIGNS
-from uq.sampling.input_faults import Fault
+from uq.sampling.input_faults import InputFault
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
 from uq.study.file import AnalysisTable, StudyFile
@@ -189,7 +189,7 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         known[name][argument] = value
 
 
-def _faults(rows: xr.Dataset, study: StudyFile, inputs: Inputs) -> list[Fault]:
+def _faults(rows: xr.Dataset, study: StudyFile, inputs: Inputs) -> list[InputFault]:
     faults = []
     for name, law in inputs.laws.items():
         about = rows[name].attrs

@@ -6,14 +6,14 @@ from math import isfinite
 from pathlib import Path
 
 from uq.assess.comparison import Comparison, Side, comparison
-from uq.assess.differences import Compared, ComparedOutput
+from uq.assess.differences import ComparedOutput, ComparedStatistic
 from uq.assess.summary_json import comparison_json
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.result.result_file import open_result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, in_unit, number, percent
-from uq.text.units import Unit, typical, unit_of
+from uq.text.units import ReadableUnit, typical, unit_of
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -70,7 +70,7 @@ def _about(side: Side) -> str:
     return f"{side.title} ({rows}{f'; {lost}' if lost else ''})"
 
 
-def _unit(output: ComparedOutput) -> Unit:
+def _unit(output: ComparedOutput) -> ReadableUnit:
     """Return the unit in which an output is shown."""
     return unit_of(
         output.units, typical(one.first.estimate.value for one in output.parts["quantiles"])
@@ -80,7 +80,7 @@ def _unit(output: ComparedOutput) -> Unit:
 Line = tuple[str, ...]
 
 
-def _lines(one: Compared, units: str, per: float, of: str) -> Iterator[Line]:
+def _lines(one: ComparedStatistic, units: str, per: float, of: str) -> Iterator[Line]:
     own = per if one.first.unit == units else 1.0
     asked = () if one.first.at is None else (one.first.at,)
     yield estimated(one.first.label, units, of, asked), *_cells(one, own)
@@ -88,12 +88,12 @@ def _lines(one: Compared, units: str, per: float, of: str) -> Iterator[Line]:
         yield f"{one.first.label}, B over A", "", "", *_apart(one, one.ratio, 1.0, 1.0)
 
 
-def _cells(one: Compared, per: float = 1.0) -> Line:
+def _cells(one: ComparedStatistic, per: float = 1.0) -> Line:
     both = (one.first.words(per), one.second.words(per))
     return *both, *_apart(one, one.difference, per)
 
 
-def _apart(of: Compared, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
+def _apart(of: ComparedStatistic, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
     """Return value and interval of a difference, and a mark where it excludes `nothing`."""
     sure = apart.low > nothing or apart.high < nothing
     ends = "identical rows" if of.identical else interval_text(apart, per)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from uq.assess.answer.number_targets import Target
+from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.assess.running_estimates import converging
@@ -26,7 +26,7 @@ class _Block:
     """How the estimates of one target are shown: its name, and their unit."""
 
     def __init__(self, ds: xr.Dataset, name: str, estimates: Mapping[str, Estimate]):
-        self._target = Target(ds, name)
+        self._target = NumberTarget(ds, name)
         own = (one.value for label, one in estimates.items() if _is_value(label))
         self._unit = unit_of(self._target.units, typical(own))
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 
-from uq.assess.answer.number_targets import Target
+from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.level_shares import by_level
 from uq.assess.summary_json import levels_json
 from uq.assess.variance_by_level import SOLVER, LevelShares
@@ -25,7 +25,7 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.size}")
     grid([(level, ", ".join(found.inputs_on(level)) or "-") for level in LEVELS])
     for name, shares in found.outputs.items():
-        heading(f"\n{Target(ds, name).name}", "shares of the variance")
+        heading(f"\n{NumberTarget(ds, name).name}", "shares of the variance")
         grid(_lines(shares), header=("", "share", "95 % interval", ""))
         for text in shares.sentences:
             paragraph(text, indent=2)

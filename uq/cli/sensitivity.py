@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from uq.assess.answer.number_targets import Target
+from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.ranked_indices import Values, lines
 from uq.assess.sensitivities import Sensitivities
 from uq.cli.printing import grid, heading, paragraph
@@ -20,7 +20,7 @@ def show(ds: xr.Dataset, found: Sensitivities) -> None:
     more = f"of {counted(found.rows_used, 'row')}{lost}"
     heading(f"Sensitivity by {found.method}", more)
     for name, one in found.targets.items():
-        target = Target(ds, name)
+        target = NumberTarget(ds, name)
         effects = [
             e.value for kind, of in one.kinds().items() if _is_effect(kind) for e in of.values()
         ]

@@ -22,7 +22,7 @@ from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import failed_bounds_text, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
 from uq.text.symbols import readable
-from uq.text.units import Unit, typical, unit_of
+from uq.text.units import ReadableUnit, typical, unit_of
 
 _LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
 
@@ -102,7 +102,7 @@ Line = tuple[str, str, str, str]
 class Block(NamedTuple):
     """How the numbers of an output are shown: their unit, that of the model, what is compared."""
 
-    unit: Unit
+    unit: ReadableUnit
     units: str
     compared: str
 

@@ -25,7 +25,7 @@ from uq.execution.environment import started
 from uq.files.interrupts import undone
 from uq.machines.child_processes import end_with_descendants
 from uq.machines.row_by_row import RowByRow
-from uq.study.evaluate import Chunk, Fault, joined, lost_rows
+from uq.study.evaluate import Chunk, RowFailure, joined, lost_rows
 from uq.study.installed_models import code_of
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class Isolated:
                 return outcome
             if outcome.status is not Status.CRASHED:
                 break
-        fault = cast(Fault, outcome)
+        fault = cast(RowFailure, outcome)
         model, settings = self.spec.load()
         if isinstance(model.batch, RowByRow):
             kept = model.batch.kept(x[0].tolist(), int(seed[0]))
@@ -135,18 +135,18 @@ class Isolated:
         self._closed.set()
         self._end(at_once=True)
 
-    def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
+    def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | RowFailure:
         try:
             connection = self.start()
             connection.send((x, seed, start))
             answer = self._answer(connection, self._patience(len(x)))
         except (EOFError, OSError):
-            return Fault(Status.CRASHED, f"killed its process ({self._end()})")
+            return RowFailure(Status.CRASHED, f"killed its process ({self._end()})")
         if self._ready:
             self._ready = self._ready._replace(loads_first=False)
         if answer is None:
             self._end(at_once=True)
-            return Fault(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
+            return RowFailure(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
         kind, value = answer
         if kind == child.REFUSED:
             raise value

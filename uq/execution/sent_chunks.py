@@ -13,7 +13,7 @@ from uq.errors import InputError, RunError, one_line
 from uq.execution.dask_task import evaluate_rows
 from uq.execution.isolation import TRIES, spec_of
 from uq.result.workload import Workload
-from uq.study.evaluate import Chunk, Fault, lost_rows
+from uq.study.evaluate import Chunk, RowFailure, lost_rows
 from uq.study.provenance import versions
 from uq.study.row_sampling import Rows
 
@@ -108,7 +108,7 @@ class SentChunks:
             raise error
         if isinstance(error, KilledWorker):
             if count == 1:
-                fault = Fault(Status.CRASHED, "killed every worker that computed it")
+                fault = RowFailure(Status.CRASHED, "killed every worker that computed it")
                 lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
                 return [(start, rows, lost, 0.0)]
             half = count // 2

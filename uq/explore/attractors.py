@@ -18,7 +18,7 @@ STANDARD_ERRORS = 4.0
 """Of the difference between two values: a smaller difference is no gap."""
 
 
-class Compared(NamedTuple):
+class AttractorNumber(NamedTuple):
     """One number of every row.
 
     Attributes
@@ -36,12 +36,12 @@ class Compared(NamedTuple):
     tolerance: float
 
 
-def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
+def attractors(compared: Sequence[AttractorNumber], rows: int) -> NDArray[np.int32]:
     """Return the number of the attractor of each row, the most frequent first.
 
     Parameters
     ----------
-    compared : sequence of Compared
+    compared : sequence of AttractorNumber
     rows : int
 
     Returns
@@ -61,7 +61,7 @@ def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
     return rank[place]
 
 
-def _parted(labels: NDArray[np.int64], one: Compared) -> NDArray[np.int64]:
+def _parted(labels: NDArray[np.int64], one: AttractorNumber) -> NDArray[np.int64]:
     """Split each group of rows at the gaps of one output."""
     size = np.abs(one.values[np.isfinite(one.values)]).max(initial=0.0)
     order = np.lexsort((one.values, labels))

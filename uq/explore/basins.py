@@ -15,8 +15,8 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.execution import runner, tally
 from uq.execution.options import RunOptions
-from uq.explore.attractors import STANDARD_ERRORS, Compared, attractors
-from uq.explore.grid import Axis, Grid, grid_of
+from uq.explore.attractors import STANDARD_ERRORS, AttractorNumber, attractors
+from uq.explore.grid import Axis, ParameterGrid, grid_of
 from uq.files import whole_files
 from uq.files.netcdf_files import refuse_tricks
 from uq.result import result_file
@@ -128,7 +128,7 @@ def _found(path: Path, identity: str) -> xr.Dataset:
 
 
 def _finish(
-    grid: Grid,
+    grid: ParameterGrid,
     compared: Sequence[str],
     tolerance: float,
     identity: str,
@@ -163,7 +163,7 @@ def _finish(
     return ds
 
 
-def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[Compared]:
+def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[AttractorNumber]:
     """Yield the numbers to be compared, element by element."""
     declared = outputs_of(flat)
     for name in names:
@@ -174,10 +174,10 @@ def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterat
         slack = 0.0 if declared[name].is_category else tolerance
         columns = (np.reshape(a.values, (len(a), -1)).T for a in (values, errors))
         for value, error in zip(*columns, strict=True):
-            yield Compared(value, np.nan_to_num(error, posinf=0.0), slack)
+            yield AttractorNumber(value, np.nan_to_num(error, posinf=0.0), slack)
 
 
-def _folded(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
+def _folded(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
     """Replace the dimension of rows by one dimension per axis."""
     axes, variables = tuple(grid.axes), {}
     for name, rows in flat.data_vars.items():
@@ -189,7 +189,7 @@ def _folded(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
     return xr.Dataset(variables, flat.coords)
 
 
-def _table(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
+def _table(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
     """Return the table of attractors, given the rows that did not fail."""
     _, first, count = np.unique(flat["attractor"], return_index=True, return_counts=True)
     some = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)

@@ -19,7 +19,7 @@ Axis = tuple[float, float, int]
 
 
 @dataclass(frozen=True)
-class Grid:
+class ParameterGrid:
     """Rows of a model on the points of a grid, the last axis running fastest.
 
     Attributes
@@ -82,7 +82,7 @@ def grid_of(
     axes: Mapping[str, Axis],
     fixed: Mapping[str, float],
     settings: Mapping[str, Any],
-) -> Grid:
+) -> ParameterGrid:
     """Check and build a grid.
 
     Parameters
@@ -96,7 +96,7 @@ def grid_of(
 
     Returns
     -------
-    Grid
+    ParameterGrid
 
     Raises
     ------
@@ -122,7 +122,7 @@ def grid_of(
     faults += fault_lines("axes: ", axes, wrong_axes) + fault_lines("fixed: ", fixed, wrong_fixed)
     if faults := faults + fault_lines("settings: ", settings, wrong):
         raise InputError(*faults)
-    return Grid(
+    return ParameterGrid(
         found.given(frozen),
         reference,
         {name: (float(a), float(b), index(n)) for name, (a, b, n) in axes.items()},

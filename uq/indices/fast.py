@@ -5,18 +5,18 @@ from math import floor
 import numpy as np
 
 from uq.indices.index import ALL_NOISE, S1, ST, IndexKind, Indices, RefusedError
-from uq.indices.sample import Floats, Sample
+from uq.indices.sample import DesignSample, Floats
 from uq.sampling.unit_cube import HARMONICS
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import is_constant
 
 
-def fast_indices(sample: Sample) -> Indices:
+def fast_indices(sample: DesignSample) -> Indices:
     """Estimate first-order and total indices.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of curves, one for each input.
 
     Returns

@@ -17,7 +17,7 @@ from uq.indices.residual_variance import (
     residual_variance,
     variance,
 )
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import upper_probability
 from uq.stats.quantile_functions import student
@@ -33,12 +33,12 @@ _IMPOSSIBLE = 0.999
 _FEW = f"has no interval: {ENOUGH_ROWS} rows are needed"
 
 
-def first_order_indices(sample: Sample) -> Indices:
+def first_order_indices(sample: DesignSample) -> Indices:
     """Estimate the share of the variance that each input explains alone.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of independent inputs; of a whole output the variances of its elements are summed.
 
     Returns

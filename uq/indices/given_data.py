@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from uq.indices.index import IndexKind, Indices, Null, RefusedError
-from uq.indices.sample import Floats, Sample
+from uq.indices.sample import DesignSample, Floats
 from uq.indices.slices import has_many_equal
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import CONFIDENCE, scatter_interval, upper_probability
@@ -153,7 +153,7 @@ MIN_ROWS = 64
 DUMMIES = 19
 """One input in twenty without effect exceeds the largest of 19."""
 
-Measure = Callable[[Floats, Sample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
+Measure = Callable[[Floats, DesignSample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
 """Columns of inputs, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
 
 
@@ -165,7 +165,7 @@ def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Me
 def beside_nulls(
     measure: Measure,
     correction: Callable[[Floats, Floats], Floats] | None = None,
-) -> Callable[[Sample], Indices]:
+) -> Callable[[DesignSample], Indices]:
     """Return the estimate of indices with the null of inputs without effect.
 
     Parameters
@@ -178,11 +178,11 @@ def beside_nulls(
     Returns
     -------
     callable
-        ``estimate(sample)`` of a `uq.indices.method.Method`.
+        ``estimate(sample)`` of a `uq.indices.method.SensitivityMethod`.
     """
     corrected = correction or (lambda raw, idle: raw)
 
-    def estimate(sample: Sample) -> Indices:
+    def estimate(sample: DesignSample) -> Indices:
         x = sample.inputs
         rng = np.random.default_rng(0)
         dummies = DUMMIES if sample.nulls or correction else 0

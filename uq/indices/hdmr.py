@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from uq.indices.index import S1, S2, SHAPLEY, ST, Indices, Null, RefusedError
-from uq.indices.sample import Floats, Sample
+from uq.indices.sample import DesignSample, Floats
 from uq.stats.estimate import Estimate
 
 EXPLAINED = 0.8
@@ -22,12 +22,12 @@ _TERMS_PER_ROW = 0.8
 _MOST_TERMS = 500
 
 
-def hdmr_indices(sample: Sample) -> Indices:
+def hdmr_indices(sample: DesignSample) -> Indices:
     """Estimate the indices of an expansion in functions of one and of two inputs.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of independent inputs.
 
     Returns

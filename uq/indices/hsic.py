@@ -13,7 +13,7 @@ from uq.contract import Floats
 from uq.indices.given_data import beside_nulls, one_kind
 from uq.indices.index import IndexKind, Indices, RefusedError
 from uq.indices.measures import as_event
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.indices.slices import MOST_CATEGORIES
 from uq.stats.estimate import Estimate
 from uq.stats.order_statistics import mid_ranks
@@ -25,12 +25,12 @@ MOST_ROWS = 2000
 """Time and memory grow with the square of the rows."""
 
 
-def target_indices(sample: Sample) -> Indices:
+def target_indices(sample: DesignSample) -> Indices:
     """Estimate how much each input decides whether an event happens.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Plain; an event, 0 or 1.
 
     Returns
@@ -59,12 +59,12 @@ def target_indices(sample: Sample) -> Indices:
     return _indices(sample)
 
 
-def conditional_indices(sample: Sample) -> Indices:
+def conditional_indices(sample: DesignSample) -> Indices:
     """Estimate how much each input matters for an output among the rows in which an event happens.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Plain; the output in these rows.
 
     Returns
@@ -83,7 +83,7 @@ def conditional_indices(sample: Sample) -> Indices:
     return replace(found, notes=(note, *found.notes))
 
 
-def _indices(sample: Sample) -> Indices:
+def _indices(sample: DesignSample) -> Indices:
     found = beside_nulls(one_kind(HSIC, _normalised))(sample)
     p_values = {name: Estimate(_p_value(x, sample.values)) for name, x in sample.inputs.items()}
     return replace(found, values={P: p_values, **found.values})

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from uq.indices.index import IndexKind, Indices, RefusedError
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.sampling.layouts import PLAIN, Layout
 from uq.stats.intervals import sized
 from uq.text.numbers import counted
@@ -20,7 +20,7 @@ UNSEEN = (
 
 
 @dataclass(frozen=True)
-class Method:
+class SensitivityMethod:
     """One way to find which inputs matter.
 
     Attributes
@@ -31,7 +31,7 @@ class Method:
         How the rows of a design must belong together for it.
     estimate : callable
         ``estimate(sample)`` -> `Indices`, or `RefusedError`. Groups with a row without a value are
-        left out by it (`Sample.whole`); every row of a plain sample has a value.
+        left out by it (`DesignSample.whole`); every row of a plain sample has a value.
     kinds : tuple of IndexKind
         What it estimates; none where that depends on the study.
     gives : str
@@ -67,7 +67,7 @@ class Method:
 
     question: str
     layout: Layout
-    estimate: Callable[[Sample], Indices]
+    estimate: Callable[[DesignSample], Indices]
     kinds: tuple[IndexKind, ...]
     gives: str = ""
     source: str = ""
@@ -82,19 +82,19 @@ class Method:
     conditional: bool = False
     scale_free: bool = False
     noise: str = ""
-    pilot: Callable[[Sample], dict[IndexKind, float]] | None = None
+    pilot: Callable[[DesignSample], dict[IndexKind, float]] | None = None
 
     @property
     def of_variance(self) -> bool:
         """Whether its indices are shares of the variance."""
         return any(kind.unit == "variance" for kind in self.kinds)
 
-    def indices(self, sample: Sample) -> Indices:
+    def indices(self, sample: DesignSample) -> Indices:
         """Estimate the indices of one output.
 
         Parameters
         ----------
-        sample : Sample
+        sample : DesignSample
             Its rows laid out as the method needs them.
 
         Returns
@@ -124,7 +124,7 @@ class Method:
         found = self.estimate(sample.rows(rows))
         return replace(found, notes=(note, *found.notes) if note else found.notes)
 
-    def refuse_few_groups(self, sample: Sample) -> None:
+    def refuse_few_groups(self, sample: DesignSample) -> None:
         """Refuse a sample in which too few groups have a value in each row."""
         kept, every = int(sample.whole.sum()), sample.whole.size
         if kept < self.least:

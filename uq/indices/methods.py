@@ -13,7 +13,7 @@ from uq.indices.hdmr import EXPLAINED, hdmr_indices
 from uq.indices.hsic import HSIC, MOST_ROWS, P, conditional_indices, target_indices
 from uq.indices.index import S1, S2, SHAPLEY, ST, IndexKind
 from uq.indices.measures import delta, first_order, ks_distances, pawn
-from uq.indices.method import Method
+from uq.indices.method import SensitivityMethod
 from uq.indices.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
 from uq.indices.quantile_oriented import quantile_indices, without_optimism
 from uq.indices.shapley import MIN_PATHS, shapley_indices
@@ -31,11 +31,11 @@ _AT_ONE_SEED = (
     " part"
 )
 
-_of_plain_rows = partial(Method, layout=PLAIN, has_null=True, least=MIN_ROWS)
+_of_plain_rows = partial(SensitivityMethod, layout=PLAIN, has_null=True, least=MIN_ROWS)
 _of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
 
 METHODS = {
-    "first-order": Method(
+    "first-order": SensitivityMethod(
         "how much of the variance, alone",
         PLAIN,
         first_order_indices,
@@ -111,7 +111,7 @@ METHODS = {
         conditional=True,
         scale_free=True,
     ),
-    "sobol": Method(
+    "sobol": SensitivityMethod(
         "how much of the variance, alone and with others",
         CROSSED,
         sobol_indices,
@@ -126,7 +126,7 @@ METHODS = {
         " remains once all inputs are known",
         pilot=pilot,
     ),
-    "morris": Method(
+    "morris": SensitivityMethod(
         "which inputs matter at all",
         TRAJECTORIES,
         morris_indices,
@@ -136,7 +136,7 @@ METHODS = {
         least=MIN_TRAJECTORIES,
         noise="the model is random, and the rows of a trajectory share a seed: no effect is noise",
     ),
-    "shapley": Method(
+    "shapley": SensitivityMethod(
         "how much of the variance, in shares that sum to one",
         PATHS,
         shapley_indices,
@@ -148,7 +148,7 @@ METHODS = {
         aggregates=True,
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
     ),
-    "fast": Method(
+    "fast": SensitivityMethod(
         "how much of the variance, alone and with others, without intervals",
         CURVES,
         fast_indices,

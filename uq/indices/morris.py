@@ -5,7 +5,7 @@ import numpy as np
 from uq.indices.given_data import Values, pooled_with_intervals
 from uq.indices.index import IndexKind, Indices, RefusedError
 from uq.indices.method import NO_EFFECT
-from uq.indices.sample import Floats, Sample
+from uq.indices.sample import DesignSample, Floats
 from uq.sampling.unit_cube import STEP
 from uq.stats.intervals import ROUNDING, is_constant, sized
 
@@ -17,12 +17,12 @@ SIGMA = IndexKind("sigma", "scatter of effects (sigma)", "output")
 MU_STAR = IndexKind("mu_star", "mean magnitude of effects (mu*)", "output")
 
 
-def morris_indices(sample: Sample) -> Indices:
+def morris_indices(sample: DesignSample) -> Indices:
     """Estimate mean, mean magnitude and standard deviation of the elementary effects.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of trajectories.
 
     Returns

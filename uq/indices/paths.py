@@ -4,19 +4,19 @@ import numpy as np
 
 from uq.contract import Floats, Mask
 from uq.indices.polynomials import products, shapley_values, terms_of
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.stats.intervals import ROUNDING
 
 MIN_SEEN = 10
 """With fewer paths it is not known whether an input has an effect of its own."""
 
 
-def parts_of(sample: Sample, y: Floats) -> Floats:
+def parts_of(sample: DesignSample, y: Floats) -> Floats:
     """Return what the steps of each input add to half the square of the change along each path.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
     y : ndarray, shape (n, k) or (n, k, e)
         Any function of the rows of whole paths; its elements add up.
 
@@ -31,7 +31,7 @@ def parts_of(sample: Sample, y: Floats) -> Floats:
     return np.asarray(np.einsum("ns,nsp->np", steps, sample.direction[sample.whole] != 0))
 
 
-def changes_alone(sample: Sample) -> Mask:
+def changes_alone(sample: DesignSample) -> Mask:
     """Return along which whole path each input changes the output by itself, shape (n, d).
 
     It can do so where it is the first to change: all others then keep their values.
@@ -42,7 +42,7 @@ def changes_alone(sample: Sample) -> Mask:
     return np.asarray((sample.direction[sample.whole][:, 0] != 0) & moved[:, None])
 
 
-def paths_without_effect(sample: Sample, name: str) -> int:
+def paths_without_effect(sample: DesignSample, name: str) -> int:
     """Return how many paths show that a correlated input has no effect of its own; else 0.
 
     Only paths along which the output changes say something.
@@ -70,12 +70,12 @@ MOST_NUMBERS = 30_000_000
 """In all products of all rows."""
 
 
-def controlled(sample: Sample, parts: Floats) -> tuple[Floats, Floats]:
+def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
     """Replace what a polynomial's parts are on the paths by what they are.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of paths.
     parts : ndarray, shape (n, d)
         Of the output, on each whole path.
@@ -106,7 +106,7 @@ def controlled(sample: Sample, parts: Floats) -> tuple[Floats, Floats]:
     return parts - slopes * errors, spread**2 / squares
 
 
-def _errors(sample: Sample, parts: Floats) -> Floats:
+def _errors(sample: DesignSample, parts: Floats) -> Floats:
     """Return the parts of a polynomial on each path, less what they are."""
     errors = np.zeros_like(parts)
     y = sample.grouped[sample.whole]
@@ -136,7 +136,7 @@ def _products_of(one: Floats, other: Floats) -> Floats:
     return np.asarray(np.tensordot(one, other, axes=((0, 1), (0, 1))))
 
 
-def _used(sample: Sample) -> list[int]:
+def _used(sample: DesignSample) -> list[int]:
     """Return the places of the inputs that the polynomial is about.
 
     Not of those that never change the output by themselves: if they have no effect, paths show that

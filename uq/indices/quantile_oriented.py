@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.indices.index import IndexKind, RefusedError
-from uq.indices.sample import Floats, Sample
+from uq.indices.sample import DesignSample, Floats
 from uq.indices.slices import by_slices, even_cuts
 
 MIN_SLICES = 5
@@ -15,7 +15,9 @@ _ROWS_IN_SLICE = 30
 _ROWS_BEYOND = 5
 
 
-def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[IndexKind, Floats], tuple[str, ...]]:
+def quantile_indices(
+    x: Floats, sample: DesignSample
+) -> tuple[dict[IndexKind, Floats], tuple[str, ...]]:
     """Estimate the index of each input for each quantile.
 
     With psi(r) = r (p - [r < 0]), whose mean E psi(Y - q) is least at the quantile q of Y, the
@@ -25,7 +27,7 @@ def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[IndexKind, Floats]
     Parameters
     ----------
     x : ndarray, shape (n, d)
-    sample : Sample
+    sample : DesignSample
         The output, and the quantiles.
 
     Returns

@@ -13,7 +13,7 @@ from uq.stats.intervals import CONFIDENCE, is_constant
 
 
 @dataclass(frozen=True)
-class Sample:
+class DesignSample:
     """The rows of a result and one number for each, or one for each element of an output.
 
     Attributes

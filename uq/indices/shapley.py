@@ -7,7 +7,7 @@ from uq.errors import choices
 from uq.indices.index import ALL_NOISE, SHAPLEY, Indices, RefusedError
 from uq.indices.method import NO_VARIANCE, UNSEEN
 from uq.indices.paths import controlled, parts_of, paths_without_effect
-from uq.indices.sample import Sample
+from uq.indices.sample import DesignSample
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import UNKNOWN, is_constant, scatter_interval
 
@@ -18,12 +18,12 @@ EXACT = 1e-9
 """The least half-width of an interval: what rounding may leave of an effect known by formula."""
 
 
-def shapley_indices(sample: Sample) -> Indices:
+def shapley_indices(sample: DesignSample) -> Indices:
     """Estimate the Shapley effect of each input.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of paths.
 
     Returns

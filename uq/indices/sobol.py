@@ -16,7 +16,7 @@ from uq.indices.given_data import (
 )
 from uq.indices.index import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.indices.method import NO_VARIANCE, UNSEEN
-from uq.indices.sample import Floats, Sample
+from uq.indices.sample import DesignSample, Floats
 from uq.sampling.layouts import NOISE
 
 MIN_GROUPS = 8
@@ -28,14 +28,14 @@ Estimates = Callable[[Sequence[str], Floats], Values]
 """Names of the blocks, and groups of shape (n, blocks), standardised -> indices."""
 
 
-def sobol_indices(sample: Sample, estimates: Estimates | None = None) -> Indices:
+def sobol_indices(sample: DesignSample, estimates: Estimates | None = None) -> Indices:
     """Estimate first-order, total and, where the design has them, second-order indices.
 
     Those of a whole output are aggregated [5]_: parts of the variance are summed over its elements.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         Of a crossed design.
     estimates : callable, optional
         Estimators to compare with those below.
@@ -169,12 +169,12 @@ def _share(part: Floats, a: Floats, b: Floats) -> float:
     return float(part.sum() / variance) if variance > np.finfo(float).eps else 0.0
 
 
-def pilot(sample: Sample) -> dict[IndexKind, float]:
+def pilot(sample: DesignSample) -> dict[IndexKind, float]:
     """Return the largest standard deviation, over inputs, of a group's share in S1 and in ST.
 
     Parameters
     ----------
-    sample : Sample
+    sample : DesignSample
         A few groups of a crossed design, of which some are whole.
 
     Returns

@@ -13,7 +13,13 @@ from uq.errors import InputError
 from uq.learning.information_gain import Taught, taught
 from uq.learning.inspections import Inspection
 from uq.learning.posterior import Posterior, posterior
-from uq.learning.posterior_inputs import Confounded, InputLearnt, Spread, confounded, inputs_learnt
+from uq.learning.posterior_inputs import (
+    Confounded,
+    InputLearnt,
+    PosteriorMoments,
+    confounded,
+    inputs_learnt,
+)
 from uq.learning.posterior_result import as_table, inspections_of, prior_of, unit_quality
 from uq.learning.prior_predictive import STRANGE, strangeness
 from uq.learning.remaining_life import ANY, Remaining, remaining
@@ -164,7 +170,7 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
     }
 
 
-def _spread(one: Spread) -> dict[str, Any]:
+def _spread(one: PosteriorMoments) -> dict[str, Any]:
     quantiles = {repr(p): value for p, value in one.quantiles.items()}
     found: dict[str, Any] = {}
     for name, of in (("mean", one.mean), ("sd", one.sd)):

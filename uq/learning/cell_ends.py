@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from uq.contract import Floats, Mask
-from uq.learning.evidence import Grid, centres
+from uq.learning.evidence import QuadratureGrid, centres
 
 _HALVINGS = 12
 
@@ -14,7 +14,7 @@ Allowed = Callable[[Floats], Mask]
 shape (n,)."""
 
 
-def edges_of_rows(grid: Grid, possible: Mask, allowed: Allowed | None) -> Floats:
+def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None) -> Floats:
     """Return between which prior probabilities each value of a grid stands, in each row.
 
     A unit that was seen running has lives from then on alone: the first value that a row allows
@@ -22,7 +22,7 @@ def edges_of_rows(grid: Grid, possible: Mask, allowed: Allowed | None) -> Floats
 
     Parameters
     ----------
-    grid : Grid
+    grid : QuadratureGrid
     possible : ndarray of bool, shape (n, g)
         Whether inspections allow each value.
     allowed : callable, optional
@@ -37,7 +37,7 @@ def edges_of_rows(grid: Grid, possible: Mask, allowed: Allowed | None) -> Floats
     return _cut(grid, possible, allowed)
 
 
-def _cut(grid: Grid, possible: Mask, allowed: Allowed) -> Floats:
+def _cut(grid: QuadratureGrid, possible: Mask, allowed: Allowed) -> Floats:
     edges, middle = np.repeat(grid.edges[None], len(possible), axis=0), centres(grid.edges)
     some, last = possible.any(axis=1), possible.shape[1] - 1
     first, final = possible.argmax(axis=1), last - possible[:, ::-1].argmax(axis=1)

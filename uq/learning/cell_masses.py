@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
-from uq.learning.evidence import Grid, centres
+from uq.learning.evidence import QuadratureGrid, centres
 
 Places = NDArray[np.intp]
 
@@ -18,12 +18,12 @@ _STEEPEST = 3.0
 _TINY = 1e-300
 
 
-def masses(grid: Grid, edges: Floats, worth: Floats) -> Floats:
+def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
     """Return the probability of each cell, to second order in its width as normal scores.
 
     Parameters
     ----------
-    grid : Grid
+    grid : QuadratureGrid
     edges : ndarray, shape (n, g + 1)
         Between which probabilities each cell stands in each row (`cut_cells.edges_of_rows`).
     worth : ndarray, shape (n, g)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Mask
 from uq.errors import choices
-from uq.learning.evidence import Grid
+from uq.learning.evidence import QuadratureGrid
 from uq.learning.inspections import Inspection
 from uq.learning.unit_likelihood import UnitLikelihoods
 
@@ -18,7 +18,7 @@ _WHOLE = "no row of this result agrees with"
 def contradictions(
     likelihoods: UnitLikelihoods,
     labels: Sequence[str],
-    grids: Sequence[Grid],
+    grids: Sequence[QuadratureGrid],
     world: NDArray[np.intp],
     own: bool,
 ) -> list[str]:
@@ -32,7 +32,7 @@ def contradictions(
     likelihoods : UnitLikelihoods
     labels : sequence of str
         Of the inspected units.
-    grids : sequence of Grid
+    grids : sequence of QuadratureGrid
         Of each.
     world : ndarray of int, shape (n,)
         Of each row.

@@ -36,7 +36,7 @@ _FAR = 7.5
 _PASSES = 8
 
 
-class Grid(NamedTuple):
+class QuadratureGrid(NamedTuple):
     """Values of an integrated input, evenly spread in probability, and in the tails in score.
 
     Attributes
@@ -76,7 +76,7 @@ class Evidence:
         For each inspected unit the same without its own likelihood, not normalised.
     log_evidence : float
         Logarithm of the probability of all inspections.
-    grids : tuple of Grid
+    grids : tuple of QuadratureGrid
         Of each inspected unit.
     nodes : float
         How many values share the law of an integrated input in a row, in the unit of the fewest.
@@ -85,7 +85,7 @@ class Evidence:
     log_worlds: Floats
     rest: tuple[Floats, ...]
     log_evidence: float
-    grids: tuple[Grid, ...]
+    grids: tuple[QuadratureGrid, ...]
     nodes: float = np.inf
 
 
@@ -135,7 +135,7 @@ def weigh(
 
 
 def weigh_on(
-    grids: Sequence[Grid],
+    grids: Sequence[QuadratureGrid],
     likelihoods: Sequence[Likelihood],
     world_of: Sequence[NDArray[np.intp]],
     worlds: int,
@@ -158,9 +158,9 @@ def weigh_on(
     return units, replace(found, nodes=min(fewest))
 
 
-def _grid(low: float, high: float, quantiles: Quantiles | None, nodes: int) -> Grid:
+def _grid(low: float, high: float, quantiles: Quantiles | None, nodes: int) -> QuadratureGrid:
     if quantiles is None:
-        return Grid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
+        return QuadratureGrid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
     first, last = _scores(low, high)
     scores = np.linspace(first, last, nodes + 1)[1:-1]
     return _joined([np.linspace(low, high, nodes + 1), special.ndtr(scores)], quantiles)
@@ -171,10 +171,10 @@ def _scores(low: float, high: float) -> Floats:
     return np.asarray(special.ndtri(np.array([low, high])).clip(-_FAR, _FAR))
 
 
-def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> Grid:
+def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> QuadratureGrid:
     """Return the grid whose values lie between some probabilities."""
     edges = np.unique(np.concatenate(parts))
-    return Grid(edges, quantiles(centres(edges)), np.log(np.diff(edges)))
+    return QuadratureGrid(edges, quantiles(centres(edges)), np.log(np.diff(edges)))
 
 
 def centres(edges: Floats) -> Floats:
@@ -189,7 +189,7 @@ def centres(edges: Floats) -> Floats:
     )
 
 
-def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
+def wide(grid: QuadratureGrid, quantiles: Quantiles | None) -> QuadratureGrid:
     """Return a grid from end to end of the prior that is as fine as another where that is."""
     if quantiles is None:
         return grid
@@ -197,12 +197,12 @@ def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
     return _joined([outside[0], grid.edges, outside[1]], quantiles)
 
 
-def _shared(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
+def _shared(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: int) -> Evidence:
     log_worlds, rest = _with_all_but_each(units, grids[0].log_share, worlds)
     return _evidence(log_worlds, rest, grids)
 
 
-def _own(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
+def _own(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: int) -> Evidence:
     of_unit = [
         special.logsumexp(one + grid.log_share, axis=1, keepdims=True)
         for one, grid in zip(units, grids, strict=True)
@@ -226,14 +226,16 @@ def _with_all_but_each(
     return np.where(count > 0, -np.inf, total), rest
 
 
-def _evidence(log_worlds: Floats, rest: Sequence[Floats], grids: Sequence[Grid]) -> Evidence:
+def _evidence(
+    log_worlds: Floats, rest: Sequence[Floats], grids: Sequence[QuadratureGrid]
+) -> Evidence:
     total = float(special.logsumexp(log_worlds))
     if np.isfinite(total):
         log_worlds = log_worlds - total
     return Evidence(log_worlds, tuple(rest), total, tuple(grids))
 
 
-def _narrower(grid: Grid, log_unit: Floats, rest: Floats) -> tuple[float, float]:
+def _narrower(grid: QuadratureGrid, log_unit: Floats, rest: Floats) -> tuple[float, float]:
     """Return the part of the grid, one node wider on each side, with nearly all probability."""
     share = special.logsumexp(log_unit + rest, axis=0)
     share = np.exp(share - special.logsumexp(share))
@@ -243,7 +245,7 @@ def _narrower(grid: Grid, log_unit: Floats, rest: Floats) -> tuple[float, float]
     return float(grid.edges[first]), float(grid.edges[last])
 
 
-def _is_much(ends: tuple[float, float], grid: Grid) -> bool:
+def _is_much(ends: tuple[float, float], grid: QuadratureGrid) -> bool:
     """Return whether the part is half the grid or less: its middle, or its tails."""
     middle = ends[1] - ends[0] <= 0.5 * (grid.high - grid.low)
     return middle or bool(np.ptp(_scores(*ends)) <= 0.5 * np.ptp(_scores(grid.low, grid.high)))

@@ -8,7 +8,7 @@ import xarray as xr
 
 from uq.errors import InputError
 from uq.files.paths import node
-from uq.learning.inspections import Inspection, Kind, read_inspections, read_tables
+from uq.learning.inspections import Inspection, InspectionKind, read_inspections, read_tables
 from uq.learning.posterior_result import inspections_of
 from uq.text.literals import read_toml
 
@@ -80,11 +80,15 @@ def all_of(ds: xr.Dataset, new: Sequence[Inspection]) -> list[Inspection]:
 
 def _contradictions(inspections: Sequence[Inspection]) -> Iterator[str]:
     """Yield which lives had ended before they were seen running."""
-    ended = [one for one in inspections if one.kind is Kind.ENDED]
+    ended = [one for one in inspections if one.kind is InspectionKind.ENDED]
     for one in inspections:
         for end in ended:
             same = (one.unit, one.output) == (end.unit, end.output)
-            if same and one.kind is Kind.SURVIVED and (one.time or 0.0) >= (end.time or 0.0):
+            if (
+                same
+                and one.kind is InspectionKind.SURVIVED
+                and (one.time or 0.0) >= (end.time or 0.0)
+            ):
                 yield (
                     f"{one.where} (unit {one.unit}, {one.output}): survived until {one.time:g}, but"
                     f" had ended by {end.time:g} ({end.where})"

@@ -13,7 +13,7 @@ from uq.files.paths import node
 from uq.text.literals import read_number, shown
 
 
-class Kind(StrEnum):
+class InspectionKind(StrEnum):
     """What an inspection says."""
 
     MEASURED = "measured"
@@ -26,8 +26,8 @@ class Kind(StrEnum):
 MOST_CV = 10.0
 """Coefficient of variation that no error reaches: per cent, perhaps, or a mistake."""
 
-LIMITS = (Kind.BELOW, Kind.ABOVE)
-OUTCOMES = (Kind.SURVIVED, Kind.ENDED)
+LIMITS = (InspectionKind.BELOW, InspectionKind.ABOVE)
+OUTCOMES = (InspectionKind.SURVIVED, InspectionKind.ENDED)
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Inspection:
         The label of the unit.
     output : str
         What was looked at: the name of an element, or such as ``depth[site=right]``.
-    kind : Kind
+    kind : InspectionKind
         ``measured``: the value; ``below``, ``above``: on which side of the value it lies, or
         whether it was not or was detected; ``survived``, ``ended``: whether the life had ended.
     time : float or None
@@ -59,7 +59,7 @@ class Inspection:
 
     unit: str
     output: str
-    kind: Kind
+    kind: InspectionKind
     time: float | None = None
     value: float | None = None
     sd: float | None = None
@@ -212,13 +212,13 @@ def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list
             except (ValueError, OverflowError):
                 since = ", in the unit of the life, since that began" if name == "time" else ""
                 faults.append(f"{name} = {cells[name]}: must be a finite number{since}")
-    if cells.get("kind") and cells["kind"] not in list(Kind):
-        allowed = f"(allowed: {', '.join(Kind)})"
-        like = nearest(cells["kind"], list(Kind))
+    if cells.get("kind") and cells["kind"] not in list(InspectionKind):
+        allowed = f"(allowed: {', '.join(InspectionKind)})"
+        like = nearest(cells["kind"], list(InspectionKind))
         faults.append(f"kind = {cells['kind']}: no such kind{like} {allowed}")
     if faults:
         return None, faults
-    kind = Kind(cells["kind"])
+    kind = InspectionKind(cells["kind"])
     faults = list(_conflicts(kind, numbers))
     if faults:
         return None, faults
@@ -234,7 +234,7 @@ def _number(text: str) -> float:
     return number
 
 
-def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
+def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[str]:
     """Yield what is wrong with the numbers of an inspection of a kind."""
     given = [name for name in _NUMBERS if name in numbers]
     positive: Callable[[float], bool] = lambda number: number > 0  # noqa: E731
@@ -257,7 +257,7 @@ def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
     if "cv" in given and not numbers.get("value", 1.0) > 0:
         yield f"value = {numbers['value']:g}: must be above 0 with a cv; or give an sd"
     curve = [name for name in _DETECTION if name in given]
-    if kind is Kind.MEASURED:
+    if kind is InspectionKind.MEASURED:
         if "value" not in given:
             yield "value is missing: what was measured"
         if "sd" not in given and "cv" not in given:

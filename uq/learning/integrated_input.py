@@ -18,7 +18,7 @@ from uq.sampling.truncation import ppf_within
 
 
 @dataclass(frozen=True)
-class Scale:
+class IntegratedScale:
     """An input that only scales lives, and is integrated on a grid.
 
     Attributes
@@ -57,7 +57,9 @@ class Scale:
         return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
 
 
-def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> tuple[Scale | None, tuple[str, ...]]:
+def scale_of(
+    rows: xr.Dataset, looks: Sequence[Look]
+) -> tuple[IntegratedScale | None, tuple[str, ...]]:
     """Return the input to integrate, and sentences on those that do too much to be integrated.
 
     A shared one first, of these the one that scatters lives most. One that scales all lives and
@@ -86,7 +88,7 @@ def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> tuple[Scale | None, tup
 
     best = max(free, key=lambda name: (levels[name] == SHARED, spread(name)))
     of = {name: one[best] for name, one in exponents.items()}
-    return Scale(best, levels[best], of, inputs.values[best], inputs), tuple(why)
+    return IntegratedScale(best, levels[best], of, inputs.values[best], inputs), tuple(why)
 
 
 def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:

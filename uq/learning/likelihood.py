@@ -6,7 +6,7 @@ import numpy as np
 from scipy import special
 
 from uq.contract import Floats
-from uq.learning.inspections import Inspection, Kind
+from uq.learning.inspections import Inspection, InspectionKind
 
 _NINETY = float(special.ndtri(0.9))
 
@@ -49,34 +49,34 @@ def _of_kind(inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
     else:
         spread = np.hypot(inspection.sd or 0.0, np.abs(truth) * model_cv)
         if inspection.sd is None and not model_cv:  # a limit without error
-            inside = truth < value if inspection.kind is Kind.BELOW else truth > value
+            inside = truth < value if inspection.kind is InspectionKind.BELOW else truth > value
             return np.where(np.isnan(truth), -np.inf, np.where(inside, 0.0, -np.inf))
         z = (value - truth) / spread
-    if inspection.kind is Kind.MEASURED:
+    if inspection.kind is InspectionKind.MEASURED:
         return np.asarray(-(z**2) / 2 - np.log(spread) - log(2 * np.pi) / 2)
     return _log_side(inspection.kind, z)
 
 
-def _log_side(kind: Kind, z: Floats) -> Floats:
+def _log_side(kind: InspectionKind, z: Floats) -> Floats:
     """Return the logarithm of the probability of lying on a side of a limit, z errors above."""
-    return np.asarray(special.log_ndtr(z if kind is Kind.BELOW else -z))
+    return np.asarray(special.log_ndtr(z if kind is InspectionKind.BELOW else -z))
 
 
 def _sigma(cv: float) -> float:
     return sqrt(np.log1p(cv**2))
 
 
-def log_outcome(kind: Kind, life: Floats, time: Floats) -> Floats:
+def log_outcome(kind: InspectionKind, life: Floats, time: Floats) -> Floats:
     """Return the logarithm of the likelihood that a life has ``survived`` or ``ended`` by a time.
 
     Parameters
     ----------
-    kind : Kind
+    kind : InspectionKind
     life, time : ndarray
         Of one shape; NaN where a row has no life.
     """
     with np.errstate(invalid="ignore"):
-        inside = life > time if kind is Kind.SURVIVED else life <= time
+        inside = life > time if kind is InspectionKind.SURVIVED else life <= time
     return np.where(inside, 0.0, -np.inf)
 
 
@@ -107,7 +107,7 @@ def drawn_measurement(
 
 def log_most(inspection: Inspection, model_cv: float = 0.0) -> float:
     """Return a bound of the logarithm of the likelihood of an inspection, whatever the truth."""
-    if inspection.kind is not Kind.MEASURED:
+    if inspection.kind is not InspectionKind.MEASURED:
         return 0.0
     assert inspection.value is not None
     if inspection.cv is not None:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError, choices
-from uq.learning.inspections import Inspection, Kind
+from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.observables import Look, Quantities, look_at, quantities_of
 from uq.learning.remaining_life import check_times
 from uq.result.elements import (
@@ -153,7 +153,7 @@ def unit_of_time(ds: xr.Dataset, output: str) -> str:
 
 def _look(quantities: Quantities, output: str, time: float | None) -> Look:
     """Return what is to be inspected."""
-    when = Inspection("", output, Kind.MEASURED, time, _ANY)
+    when = Inspection("", output, InspectionKind.MEASURED, time, _ANY)
     if output in quantities.known and time is not None:
         raise InputError(f"uq next-inspection: {output} is not a depth: leave out when")
     return look_at(quantities, when)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Output
 from uq.errors import InputError, choices, nearest
-from uq.learning.inspections import OUTCOMES, Inspection, Kind
+from uq.learning.inspections import OUTCOMES, Inspection, InspectionKind
 from uq.learning.likelihood import log_likelihood, log_outcome
 from uq.learning.worn_depth import WornDepths
 from uq.result.element import Element, places
@@ -87,7 +87,7 @@ class Look:
 
     def _angle(self, one: Inspection, truth: Floats) -> Floats:
         """Return an angle on the turn of the value measured; of a limit, its magnitude."""
-        if one.kind is not Kind.MEASURED or one.value is None:
+        if one.kind is not InspectionKind.MEASURED or one.value is None:
             return np.abs(truth)
         turn = 2 * np.pi if self.unit == "rad" else 360.0
         return one.value + (truth - one.value + turn / 2) % turn - turn / 2
@@ -258,7 +258,7 @@ def reach(one: Inspection) -> float:
     if one.detection_90 is not None:
         return one.detection_90
     assert one.value is not None
-    if one.kind is not Kind.MEASURED:
+    if one.kind is not InspectionKind.MEASURED:
         return one.value
     if one.cv is not None:
         return one.value * float(np.exp(_REACH * one.cv))

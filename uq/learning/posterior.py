@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Mask
 from uq.errors import InputError
 from uq.learning.contradiction import contradictions
-from uq.learning.evidence import Evidence, Grid, weigh, weigh_on, wide
+from uq.learning.evidence import Evidence, QuadratureGrid, weigh, weigh_on, wide
 from uq.learning.importance import Importance, importance_of
 from uq.learning.inspections import Inspection
-from uq.learning.integrated_input import Scale, scale_of
+from uq.learning.integrated_input import IntegratedScale, scale_of
 from uq.learning.leave_one_out import log_worth
 from uq.learning.observables import Look, look_at, quantities_of
 from uq.learning.rows_as_units import Weighted, inspected, uninspected
@@ -43,7 +43,7 @@ class Posterior:
         Units that were not inspected.
     units : dict of str to Weighted
         Each inspected one, by label.
-    scale : Scale or None
+    scale : IntegratedScale or None
     evidence : Evidence
     likelihoods : UnitLikelihoods
         Of the inspected units, in their order.
@@ -63,7 +63,7 @@ class Posterior:
 
     any_unit: Weighted
     units: Mapping[str, Weighted]
-    scale: Scale | None
+    scale: IntegratedScale | None
     evidence: Evidence
     likelihoods: UnitLikelihoods
     looks: Mapping[Inspection, Look]
@@ -156,12 +156,12 @@ def posterior(
     return Posterior(everyone, units, scale, found, *of_rows, law, others, why)
 
 
-def _units_differ(rows: xr.Dataset, scale: Scale | None) -> bool:
+def _units_differ(rows: xr.Dataset, scale: IntegratedScale | None) -> bool:
     """Return whether units of a world differ in more than the integrated input."""
     return bool({*levels_that_vary(rows, () if scale is None else (scale.name,))} - {SHARED})
 
 
-def on_wide_grids(found: Posterior) -> tuple[list[Grid], Evidence]:
+def on_wide_grids(found: Posterior) -> tuple[list[QuadratureGrid], Evidence]:
     """Return grids from end to end of the prior, of each inspected unit, and the evidence there."""
     scale, of = found.scale, found.likelihoods
     grids = [wide(grid, scale.quantiles if scale else None) for grid in found.evidence.grids]
@@ -185,7 +185,7 @@ def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspecti
     return found
 
 
-def _worlds(rows: xr.Dataset, place: Nesting, scale: Scale | None) -> tuple[Rows, int]:
+def _worlds(rows: xr.Dataset, place: Nesting, scale: IntegratedScale | None) -> tuple[Rows, int]:
     """Return the world of each row, and how many there are.
 
     All rows are of one world where nothing is shared but what is integrated.
@@ -195,7 +195,7 @@ def _worlds(rows: xr.Dataset, place: Nesting, scale: Scale | None) -> tuple[Rows
     return place.sample, place.samples
 
 
-def shared_inputs(rows: xr.Dataset, scale: Scale | None) -> list[str]:
+def shared_inputs(rows: xr.Dataset, scale: IntegratedScale | None) -> list[str]:
     """Return the inputs that units share, without the integrated one and those equal to it."""
     shared = [name for name, level in levels_of(rows).items() if level == SHARED]
     if scale is None or scale.is_own:
@@ -214,7 +214,7 @@ def _blocks(place: Nesting, inspected: int, worlds: int) -> list[Rows]:
 
 
 def _allowed(
-    likelihoods: UnitLikelihoods, world: Rows, worlds: int, scale: Scale, places: Floats
+    likelihoods: UnitLikelihoods, world: Rows, worlds: int, scale: IntegratedScale, places: Floats
 ) -> Mask:
     """Return where inspections allow values of an input that the units of a world share, (n,)."""
     values, possible = scale.quantiles(places)[:, None], np.ones(worlds, dtype=bool)

@@ -28,7 +28,7 @@ _FEW_ROWS = "it rests on a few rows, and more hardly help; read the quantiles"
 
 
 @dataclass(frozen=True)
-class Spread:
+class PosteriorMoments:
     """Mean, standard deviation and quantiles of an input.
 
     Attributes
@@ -53,13 +53,13 @@ class InputLearnt:
     name : str
         Of an input that a unit has of its own: ``initial_gap[unit=A1]``.
     units : str
-    prior, posterior : Spread
+    prior, posterior : PosteriorMoments
     """
 
     name: str
     units: str
-    prior: Spread
-    posterior: Spread
+    prior: PosteriorMoments
+    posterior: PosteriorMoments
 
     @property
     def unit(self) -> str:
@@ -156,13 +156,13 @@ def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Float
     return order, np.cumsum(worth) - worth / 2
 
 
-def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Spread:
+def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> PosteriorMoments:
     mean = float(np.average(values, weights=weights))
     sd = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
-    return Spread(Estimate(mean), Estimate(sd), quantiles(values, weights, asked))
+    return PosteriorMoments(Estimate(mean), Estimate(sd), quantiles(values, weights, asked))
 
 
-def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
+def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> PosteriorMoments:
     values, weights = ds[name].values, ds[WEIGHT].values
     part, of_rows, within = replicates_of(ds), values, np.zeros(len(values))
     if name == learnt_input(ds):
@@ -170,7 +170,7 @@ def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> Spread:
     mean, sd = moments_of_rows(of_rows, weights, part, within)
     mean = trusted(mean, weights * of_rows, part, hopeless=_FEW_ROWS)
     sd = trusted(sd, weights * (of_rows**2 + within), part, hopeless=_FEW_ROWS)
-    return Spread(mean, sd, quantiles(values, weights, asked))
+    return PosteriorMoments(mean, sd, quantiles(values, weights, asked))
 
 
 def quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:

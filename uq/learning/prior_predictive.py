@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
-from uq.learning.inspections import Inspection, Kind
+from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.likelihood import drawn_measurement
 from uq.learning.posterior import Posterior
 
@@ -77,7 +77,7 @@ def _log_probability(
 ) -> Floats:
     """Return how probable the inspection is in each campaign, and last as it really was."""
     n = len(truth)
-    if one.kind is not Kind.MEASURED:
+    if one.kind is not InspectionKind.MEASURED:
         log_chance = found.looks[one].log_likelihood(one, truth[:, None], model_cv)[:, 0]
         chance = np.exp(log_chance)
         so = rng.random(n) < chance

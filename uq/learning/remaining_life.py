@@ -13,7 +13,7 @@ from uq.assess.scaling import population
 from uq.contract import Output
 from uq.errors import InputError, choices
 from uq.learning.epistemic_band import over_shared
-from uq.learning.inspections import Inspection, Kind
+from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.observables import look_at, quantities_of
 from uq.learning.posterior_result import as_unit, inspections_of, prior_of
 from uq.result.elements import Element, analysis_of, replicates_of, shown_outputs
@@ -133,7 +133,7 @@ def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
         yield from _of_unit(ds, ANY, _last_seen(units), by)
     for label in map(str, ds["inspected"].values):
         own = {one: unit for one, unit in units.items() if one.unit == label}
-        if not any(one.kind is Kind.ENDED for one in own):
+        if not any(one.kind is InspectionKind.ENDED for one in own):
             yield from _of_unit(as_unit(ds, label), label, _last_seen(own), by)
 
 

@@ -12,7 +12,7 @@ from uq.contract import Floats, Mask
 from uq.learning.cell_ends import Allowed, edges_of_rows
 from uq.learning.cell_masses import masses
 from uq.learning.evidence import Evidence
-from uq.learning.integrated_input import Scale
+from uq.learning.integrated_input import IntegratedScale
 from uq.learning.scale_quantiles import in_order, in_order_of_weight, prior_places
 from uq.learning.shared_law import SharedLaw, pulls_of
 from uq.learning.unit_likelihood import UnitLikelihoods
@@ -64,7 +64,7 @@ class Weighted:
 def uninspected(
     log_rows: Floats,
     found: Evidence,
-    scale: Scale | None,
+    scale: IntegratedScale | None,
     place: Nesting,
     part: Replicates,
     allowed: Allowed | None,
@@ -103,7 +103,7 @@ def inspected(
     unit: int,
     likelihoods: UnitLikelihoods,
     world: Rows,
-    scale: Scale | None,
+    scale: IntegratedScale | None,
     part: Replicates,
     law: SharedLaw | None,
 ) -> Weighted:
@@ -141,6 +141,8 @@ def inspected(
     return replace(one, terms=terms, pulls=pulls_of(unit, of_unit, found, law))
 
 
-def _allowed(likelihoods: UnitLikelihoods, unit: int, scale: Scale, places: Floats) -> Mask:
+def _allowed(
+    likelihoods: UnitLikelihoods, unit: int, scale: IntegratedScale, places: Floats
+) -> Mask:
     """Return where the inspections of a unit allow a value of the input in each row, shape (m,)."""
     return likelihoods.of(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf

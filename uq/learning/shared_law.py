@@ -2,7 +2,7 @@
 
 Its density given the inspections is the product of what the units say, each a mean over rows: an
 error of that mean is an error of all that is read from the posterior. The delta method follows it:
-`uq.stats.clusters.LearntTogether`.
+`uq.stats.clusters.SharedInfluence`.
 """
 
 from typing import NamedTuple

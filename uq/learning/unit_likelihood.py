@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.learning.importance import Importance
 from uq.learning.inspections import Inspection
-from uq.learning.integrated_input import Scale
+from uq.learning.integrated_input import IntegratedScale
 from uq.learning.likelihood import log_most
 from uq.learning.observables import Look
 
@@ -26,7 +26,7 @@ class UnitLikelihoods:
         The inspected units.
     blocks : sequence of ndarray of int
         The rows that stand for each of them.
-    scale : Scale or None
+    scale : IntegratedScale or None
     model_cv : float
     importance : Importance
         Of all rows.
@@ -38,7 +38,7 @@ class UnitLikelihoods:
         looks: Mapping[Inspection, Look],
         labels: Sequence[str],
         blocks: Sequence[NDArray[np.intp]],
-        scale: Scale | None,
+        scale: IntegratedScale | None,
         model_cv: float,
         importance: Importance,
     ):

@@ -27,7 +27,7 @@ from uq.machines.machine_file import content_of, refuse
 from uq.machines.returned import Censored, NonFiniteError, Returned, censored, checked
 from uq.machines.row_by_row import RowByRow, model_from
 from uq.machines.row_folders import Folders
-from uq.sampling.input_faults import Fault, unknown
+from uq.sampling.input_faults import InputFault, unknown
 
 _LOG, _UNPACKED = "log.txt", "fmu"
 _DISCARDED, _FATAL = 2, 4  # statuses of FMI
@@ -115,20 +115,24 @@ def _faults(
     parameters: Mapping[str, FmuParameterTable],
     outputs: Mapping[str, FmuOutputTable],
     reals: Mapping[str, Any],
-) -> Iterator[Fault]:
+) -> Iterator[InputFault]:
     settable = [name for name, one in reals.items() if one.causality in ("parameter", "input")]
     for table, tables, known in (("parameters", parameters, settable), ("outputs", outputs, reals)):
         if not tables:
-            yield Fault((table,), f"the FMU declares none; name its variables in [{table}.NAME]")
+            yield InputFault(
+                (table,), f"the FMU declares none; name its variables in [{table}.NAME]"
+            )
         for name, one in tables.items():
             variable = one.variable or name
             if variable not in known:
                 kind = "parameter of the FMU" if table == "parameters" else "variable of the FMU"
-                yield Fault((table, name, "variable"), unknown(kind, variable, known), variable)
+                yield InputFault(
+                    (table, name, "variable"), unknown(kind, variable, known), variable
+                )
     for name, given in parameters.items():
         found = reals.get(given.variable or name)
         if found is not None and given.nominal is None and found.start is None:
-            yield Fault((*("parameters", name), "nominal"), "is missing, and the FMU has none")
+            yield InputFault((*("parameters", name), "nominal"), "is missing, and the FMU has none")
 
 
 def _field(name: str, one: FmuParameterTable, reals: Mapping[str, Any]) -> tuple[Parameter, float]:

@@ -5,12 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from uq.machines.machine_file import MachineName, Name, Table, read_as
+from uq.machines.machine_file import MachineName, Name, TomlTable, read_as
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class FmuTable(Table):
+class FmuTable(TomlTable):
     """``[machine]``: the FMU, and how long it is simulated."""
 
     name: MachineName
@@ -21,7 +21,7 @@ class FmuTable(Table):
     step: Annotated[Positive | None, Field(description="time between values [s]")] = None
 
 
-class FmuParameterTable(Table):
+class FmuParameterTable(TomlTable):
     """``[parameters.NAME]``: a parameter; what is left out is as the FMU says."""
 
     variable: Annotated[str, Field(description="by default NAME")] = ""
@@ -32,7 +32,7 @@ class FmuParameterTable(Table):
     source: str = ""
 
 
-class FmuOutputTable(Table):
+class FmuOutputTable(TomlTable):
     """``[outputs.NAME]``: a variable at the end, reduced over time, or when it reaches a level."""
 
     variable: Annotated[str, Field(description="by default NAME")] = ""
@@ -62,7 +62,7 @@ class FmuOutputTable(Table):
         return self
 
 
-class FmuFile(Table):
+class FmuFile(TomlTable):
     """A machine file of an FMU; without parameters or outputs those that the FMU declares."""
 
     machine: FmuTable

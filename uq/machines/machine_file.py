@@ -25,13 +25,13 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=100)]
 MachineName = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
 
 
-class Table(BaseModel):
+class TomlTable(BaseModel):
     """A table, or a file as a whole."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
-T = TypeVar("T", bound=Table)
+T = TypeVar("T", bound=TomlTable)
 
 
 def file_there(path: Path) -> None:
@@ -121,7 +121,7 @@ FOLDER = "machine_folder"
 """The place of the folder of the machine file, in a command or template."""
 
 
-class MachineTable(Table):
+class MachineTable(TomlTable):
     """``[machine]``: the program, and how it is called."""
 
     name: MachineName
@@ -135,7 +135,7 @@ class MachineTable(Table):
     exit_codes: Annotated[dict[str, str], Field(description="what exit codes mean")] = {}
 
 
-class ParameterTable(Table):
+class ParameterTable(TomlTable):
     """``[parameters.NAME]``: an input with its nominal value."""
 
     nominal: float
@@ -150,7 +150,7 @@ class ParameterTable(Table):
         return self.bounds[0], self.bounds[1]
 
 
-class OutputTable(Table):
+class OutputTable(TomlTable):
     """``[outputs.NAME]``: a result, and where it stands: by json, csv, netcdf or pattern."""
 
     unit: str = "1"
@@ -182,7 +182,7 @@ class OutputTable(Table):
         return self
 
 
-class MachineFile(Table):
+class MachineFile(TomlTable):
     """A machine file."""
 
     machine: MachineTable

@@ -21,7 +21,7 @@ from uq.result.variables import outputs_of
 from uq.result.weights import LAW_FOLLOWS, LAW_PULLS, ROWS, has_rounds, largest_weight, row_weights
 from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import CURVES, NOISE
-from uq.stats.clusters import Clusters, LearntTogether
+from uq.stats.clusters import Clusters, SharedInfluence
 from uq.stats.importance_weights import (
     Smoothed,
     carries_little,
@@ -100,11 +100,11 @@ def inputs_of(rows: xr.Dataset) -> Floats:
     return np.column_stack(columns) if columns else np.empty((rows.sizes["sample"], 0))
 
 
-def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> LearntTogether:
+def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> SharedInfluence:
     """Return what rows with weights have learnt of the law of an input that all units share."""
     pulls = rows[LAW_PULLS]
     some = pulls.values * (len(part) / pulls.attrs[ROWS])
-    return LearntTogether(some, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
+    return SharedInfluence(some, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
 
 
 def are_independent(ds: xr.Dataset) -> bool:

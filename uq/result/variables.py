@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from uq.contract import Model, Output, Status, censored_name
 from uq.study.installed_models import made_here
 from uq.study.row_sampling import block_labels
-from uq.text.units import Unit, typical, unit_of
+from uq.text.units import ReadableUnit, typical, unit_of
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -44,7 +44,7 @@ def parameter_variable(
     return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
 
 
-def input_unit(ds: xr.Dataset, name: str) -> Unit:
+def input_unit(ds: xr.Dataset, name: str) -> ReadableUnit:
     """Return the unit in which an input is read, in all sentences, tables and figures.
 
     Parameters

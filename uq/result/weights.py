@@ -23,7 +23,7 @@ attribute: which input."""
 LAW_PULLS, LAW_FOLLOWS, ROWS = "learnt_law_pulls", "learnt_law_follows", "rows"
 LAW_SCORES = "learnt_law_scores"
 """Variables of each row, if all units share the integrated input
-(`uq.stats.clusters.LearntTogether`);
+(`uq.stats.clusters.SharedInfluence`);
 the attribute of the first: of how many rows they are; and quantiles of the law."""
 
 MOST = "largest_possible"

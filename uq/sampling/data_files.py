@@ -19,7 +19,7 @@ from uq.errors import nearest
 from uq.files.netcdf_files import refuse_tricks
 from uq.files.paths import node
 from uq.sampling.designs import IMPORTED
-from uq.sampling.input_faults import Fault
+from uq.sampling.input_faults import InputFault
 from uq.text.literals import key
 from uq.text.numbers import counted
 
@@ -32,7 +32,7 @@ Columns = dict[str, dict[str, str]]
 
 def columns_of_files(
     tables: Mapping[str, Mapping[str, Any]], folder: Path | None
-) -> tuple[Columns, list[Fault]]:
+) -> tuple[Columns, list[InputFault]]:
     """Return all columns that a study file names.
 
     Parameters
@@ -45,7 +45,7 @@ def columns_of_files(
     Returns
     -------
     columns : dict
-    faults : list of Fault
+    faults : list of InputFault
     """
     columns: Columns = {}
     faults = []
@@ -56,7 +56,7 @@ def columns_of_files(
             else:
                 found = _as_text(_read(folder, file, column))
         except ValueError as error:
-            fault = Fault(path, str(error), file)
+            fault = InputFault(path, str(error), file)
             if fault not in faults:  # one for all columns of a file that cannot be read
                 faults.append(fault)
         else:

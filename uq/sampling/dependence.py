@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
-from uq.sampling.input_faults import Fault
+from uq.sampling.input_faults import InputFault
 from uq.sampling.unit_cube import Points, inside
 
 Matrix = tuple[tuple[float, ...], ...]
@@ -39,7 +39,7 @@ def normal_correlations(ranks: Matrix) -> Floats:
     return found
 
 
-def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> Fault | None:
+def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
     """Return why a matrix is not one of rank correlations, or None.
 
     Parameters
@@ -50,12 +50,12 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> Fault | None:
 
     Returns
     -------
-    Fault or None
+    InputFault or None
         Its path is row and column of the entry at fault, or empty.
     """
     k = len(names)
     if [len(row) for row in ranks] != [k] * k:
-        return Fault((), f"must have {k} rows of {k} numbers, one for each of the parameters")
+        return InputFault((), f"must have {k} rows of {k} numbers, one for each of the parameters")
     for i, j in np.ndindex(k, k):
         value, problem = ranks[i][j], ""
         if i == j and value != 1:
@@ -65,10 +65,10 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> Fault | None:
         elif value != ranks[j][i]:
             problem = f"must be the same as [{j}][{i}] = {ranks[j][i]!r}"
         if problem:
-            return Fault((i, j), problem, value)
+            return InputFault((i, j), problem, value)
     if _is_definite(normal_correlations(ranks)):
         return None
-    return Fault(
+    return InputFault(
         (), f"no inputs can have these rank correlations together; {_remedy(names, ranks)}"
     )
 

@@ -31,7 +31,7 @@ _REASONS = {
 }
 
 
-class Fault(NamedTuple):
+class InputFault(NamedTuple):
     """Something wrong with one entry of a study file.
 
     Attributes
@@ -48,7 +48,7 @@ class Fault(NamedTuple):
     problem: str
     value: Any = None
 
-    def within(self, *path: str) -> "Fault":
+    def within(self, *path: str) -> "InputFault":
         """Return the fault with its place in the whole file."""
         return self._replace(path=(*path, *self.path))
 
@@ -77,7 +77,7 @@ def unknown(kind: str, name: str, known: Iterable[str]) -> str:
 
 def fault_of(
     error: dict[str, Any], known: Callable[[Sequence[Any]], Iterable[str]] | None = None
-) -> Fault:
+) -> InputFault:
     """Return an error of pydantic as a fault.
 
     Parameters
@@ -89,9 +89,9 @@ def fault_of(
     """
     path, kind = tuple(error["loc"]), error["type"]
     if kind == "missing":
-        return Fault(path, MISSING)
+        return InputFault(path, MISSING)
     if kind == "extra_forbidden" and known is not None:
         table = "key" if len(path) > 1 else "table"
-        return Fault(path, unknown(table, str(path[-1]), list(known(path))), error["input"])
+        return InputFault(path, unknown(table, str(path[-1]), list(known(path))), error["input"])
     reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
-    return Fault(path, reason or error["msg"], error["input"])
+    return InputFault(path, reason or error["msg"], error["input"])

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uq.contract import Floats, Parameter
-from uq.sampling.input_faults import Fault
+from uq.sampling.input_faults import InputFault
 from uq.sampling.law import Law
 from uq.sampling.listed_values import Listed
 from uq.sampling.named_values import bounds_of
@@ -213,7 +213,7 @@ def _shares(law: Law, low: Any, high: Any) -> _Condition:
     return _Condition(parent, low, high, *shares)
 
 
-def law_problem(law: Law, parameter: Parameter) -> Fault | None:
+def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
     """Return why a law does not suit a parameter, or None.
 
     Parameters
@@ -223,7 +223,7 @@ def law_problem(law: Law, parameter: Parameter) -> Fault | None:
 
     Returns
     -------
-    Fault or None
+    InputFault or None
         Its path is the argument at fault, or empty.
     """
     low, high = parameter.bounds
@@ -232,16 +232,16 @@ def law_problem(law: Law, parameter: Parameter) -> Fault | None:
     for argument in ("mean", "median", "mode"):
         value = getattr(law, argument, None)
         if value is not None and not low <= value <= high and not cut:
-            return Fault((argument,), f"must lie within {bounds}", value)
+            return InputFault((argument,), f"must lie within {bounds}", value)
     if isinstance(law, Listed) and law.between(*map(float, _tightened(law, low, high))) is None:
-        return Fault((), f"has no value within {bounds}")
+        return InputFault((), f"has no value within {bounds}")
     outside = outside_share(law, low, high)
     if outside is None:
-        return Fault((), TOO_EXTREME)
+        return InputFault((), TOO_EXTREME)
     if outside <= OUTSIDE_AT_MOST:
         return None
     share = f"{outside:.2g} of its probability outside {bounds} (allowed: {OUTSIDE_AT_MOST:g})"
-    return Fault((), f"has {share}; {_remedy(law)}")
+    return InputFault((), f"has {share}; {_remedy(law)}")
 
 
 def outside_share(law: Law, low: Any, high: Any) -> Any:

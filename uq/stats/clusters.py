@@ -15,7 +15,7 @@ MOST_GROUPS = 32
 
 
 @dataclass(frozen=True)
-class LearntTogether:
+class SharedInfluence:
     """The law of an input that all units share, which all rows together have learnt.
 
     Each row weighs values of the input by what all rows say of them, so that an error of this law
@@ -41,11 +41,11 @@ class LearntTogether:
     follows: Floats
     errors: Floats | None = None
 
-    def some(self, rows: Any) -> "LearntTogether":
+    def some(self, rows: Any) -> "SharedInfluence":
         """Return the same for some of the rows at hand."""
         return replace(self, row=self.row[rows], follows=self.follows[rows])
 
-    def going_with(self, joint: Floats) -> "LearntTogether":
+    def going_with(self, joint: Floats) -> "SharedInfluence":
         """Return the same for a mean that goes with the terms in another way than row by row.
 
         Parameters
@@ -83,20 +83,20 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
         The number of samples: of independent things, at most.
     are_samples : bool
         Whether the parts are samples, not replicates of a design.
-    together : LearntTogether or None
+    together : SharedInfluence or None
         What else makes the rows depend on each other.
     """
 
     samples: int
     are_samples: bool
-    together: LearntTogether | None
+    together: SharedInfluence | None
 
     def __new__(
         cls,
         of: ArrayLike,
         samples: int,
         are_samples: bool = True,
-        together: LearntTogether | None = None,
+        together: SharedInfluence | None = None,
     ) -> Self:
         """Mark the part of each row, shape (n,)."""
         marked = np.asarray(of, dtype=np.int64).view(cls)
@@ -109,7 +109,7 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
         self.are_samples = getattr(other, "are_samples", True)
         self.together = None
 
-    def with_together(self, together: LearntTogether) -> Self:
+    def with_together(self, together: SharedInfluence) -> Self:
         """Return the same parts, which depend on each other in another way."""
         found = self.copy()
         found.together = together

@@ -7,14 +7,16 @@ import numpy as np
 from uq.contract import Floats, Mask
 
 
-class Outliving(NamedTuple):
+class SurvivalCurve(NamedTuple):
     """Share that outlives each time, and the variance of that estimate from independent rows."""
 
     share: Floats
     variance: Floats
 
 
-def outliving(values: Floats, censored: Mask, time: Floats, *, known_at_once: bool) -> Outliving:
+def outliving(
+    values: Floats, censored: Mask, time: Floats, *, known_at_once: bool
+) -> SurvivalCurve:
     """Estimate the share that outlives each time.
 
     Parameters
@@ -29,7 +31,7 @@ def outliving(values: Floats, censored: Mask, time: Floats, *, known_at_once: bo
 
     Returns
     -------
-    Outliving
+    SurvivalCurve
 
     Notes
     -----
@@ -48,10 +50,10 @@ def outliving(values: Floats, censored: Mask, time: Floats, *, known_at_once: bo
     of_ending = kaplan_meier(values[~never], censored[~never], time)
     share = 1 - p + p * of_ending.share
     spread = (1 - of_ending.share) ** 2 * p * (1 - p) / len(values)
-    return Outliving(share, spread + p**2 * of_ending.variance)
+    return SurvivalCurve(share, spread + p**2 * of_ending.variance)
 
 
-def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Outliving:
+def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> SurvivalCurve:
     """Return Kaplan and Meier's estimate from finite values, with Greenwood's variance.
 
     scipy's ``ecdf`` gives the first, but the second only within its own intervals.
@@ -69,4 +71,4 @@ def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Outliving:
     # All have ended: certain for these rows, unless some were censored before.
     variance[share == 0] = np.nan if censored.any() else 0.0
     place = np.searchsorted(ends, time, side="right")
-    return Outliving(np.append(1.0, share)[place], np.append(0.0, variance)[place])
+    return SurvivalCurve(np.append(1.0, share)[place], np.append(0.0, variance)[place])

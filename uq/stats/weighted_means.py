@@ -122,7 +122,7 @@ def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
     """Return what each independent part says of a weighted mean, shape (parts,).
 
     The mean of all rows, plus the influence of the part on it; where all rows have learnt the law
-    of an input together, also on that law (`uq.stats.clusters.LearntTogether`).
+    of an input together, also on that law (`uq.stats.clusters.SharedInfluence`).
     """
     mean = np.average(numbers, weights=weights)
     influence = _influence(numbers, weights)

@@ -10,7 +10,7 @@ from uq.indices.methods import designs_for, fed_by, kinds_with_intervals
 from uq.machines.row_by_row import RowByRow
 from uq.sampling.design import Design
 from uq.sampling.designs import DESIGNS
-from uq.sampling.input_faults import Fault, unknown
+from uq.sampling.input_faults import InputFault, unknown
 from uq.sampling.layouts import PATHS
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.sampling.named_values import parameter_problem, read_settings, unknown_name
@@ -21,7 +21,7 @@ Tables = Mapping[str, Mapping[str, Any]]
 """The sound entries of a study file: table -> key -> value, as parsed."""
 
 
-def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[Fault]:
+def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[InputFault]:
     """Yield what does not suit the model, apart from the laws of its parameters.
 
     Parameters
@@ -34,16 +34,20 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
 
     Yields
     ------
-    Fault
+    InputFault
     """
     yield from _name_faults(model, data)
     for name, value in tables["fixed"].items():
         if name in model.parameter_names and (problem := parameter_problem(model, name, value)):
-            yield Fault(("fixed", name), problem, value)
+            yield InputFault(("fixed", name), problem, value)
     given, analysis = tables["settings"], tables["analysis"]
     settings, problems = read_settings(model, given)
     for name, text in problems.items():
-        yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
+        yield (
+            InputFault(("settings", name), text, given[name])
+            if name
+            else InputFault(("settings",), text)
+        )
     output_faults = partial(_output_faults, model, settings)
     for name in analysis.get("outputs", ()):
         yield from output_faults(name, ("analysis", "outputs"), name)
@@ -62,7 +66,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from faults
         if not faults and model.outputs and model.outputs[name].is_lifetime:
             problem = "is a lifetime, whose model states if its end is wanted; leave it out"
-            yield Fault(path, problem, side)
+            yield InputFault(path, problem, side)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
@@ -74,7 +78,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
             yield from _element_faults(model, name, until, settings)
 
 
-def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[Fault]:
+def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[InputFault]:
     """Yield what does not suit the output by which a run stops."""
     path = ("design", "until")
     for key in ("above", "below"):
@@ -82,18 +86,18 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
     if "b_life" in until and not model.outputs[name].is_lifetime:
         lives = [one for one, output in model.outputs.items() if output.is_lifetime]
         problem = f"'{name}' is not a lifetime (lifetimes: {choices(lives)})"
-        yield Fault((*path, "b_life"), problem, until["b_life"])
+        yield InputFault((*path, "b_life"), problem, until["b_life"])
     half_width = until["half_width"]
     pure = next((key for key in ("above", "below", "index") if key in until), "")
     if not pure:
         yield from _unit_faults(model, name, (*path, "half_width"), half_width)
     elif isinstance(half_width, str) and (problem := misfit(half_width, pure, "1")):
-        yield Fault((*path, "half_width"), problem, half_width)
+        yield InputFault((*path, "half_width"), problem, half_width)
 
 
 def _element_faults(
     model: Model, name: str, until: Mapping[str, Any], settings: Any
-) -> Iterator[Fault]:
+) -> Iterator[InputFault]:
     """Yield whether an output has no such element with these settings."""
     element = until["output"]
     if element == name or settings is None:
@@ -104,13 +108,13 @@ def _element_faults(
     if element == whole_name(name) and len(names) > 1:
         if "index" not in until:
             problem = f"all elements together have only an index; '{name}' is each of them"
-            yield Fault(("design", "until", "output"), problem, element)
+            yield InputFault(("design", "until", "output"), problem, element)
     elif not place_of(element, axes):
         problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
-        yield Fault(("design", "until", "output"), problem, element)
+        yield InputFault(("design", "until", "output"), problem, element)
 
 
-def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
+def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[InputFault]:
     fixed, uncertain = (
         data[table] if isinstance(data.get(table), dict) else {} for table in ("fixed", "uncertain")
     )
@@ -118,12 +122,12 @@ def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
         for name, value in given.items():
             if name not in model.parameter_names:
                 problem = unknown_name("parameter", name, model, model.parameter_names)
-                yield Fault((table, name), problem, value)
+                yield InputFault((table, name), problem, value)
     for name in uncertain:
         if name in fixed:
-            yield Fault(("uncertain", name), "is in [fixed] too; keep one of the two")
+            yield InputFault(("uncertain", name), "is in [fixed] too; keep one of the two")
     if data.get("uncertain") == {}:
-        yield Fault(("uncertain",), "nothing varies; give at least one parameter a law")
+        yield InputFault(("uncertain",), "nothing varies; give at least one parameter a law")
 
 
 def _output_faults(
@@ -133,20 +137,22 @@ def _output_faults(
     path: tuple[str, ...],
     value: Any,
     no_number: str = "",
-) -> Iterator[Fault]:
+) -> Iterator[InputFault]:
     """Yield whether a model lacks an output, or has it as a category where numbers are needed."""
     if not model.outputs:  # not known before rows have run
         return
     if name not in model.outputs:
-        yield Fault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
+        yield InputFault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
     elif settings is not None and name not in model.given(settings).outputs:
         optional = [one for one in model.setting_names if model.setting(one).optional]
-        yield Fault(path, f"it needs {choices(optional)} in [settings]", value)
+        yield InputFault(path, f"it needs {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:
-        yield Fault(path, f"is a category: {no_number}", value)
+        yield InputFault(path, f"is a category: {no_number}", value)
 
 
-def _unit_faults(model: Model, name: str, path: tuple[str, ...], value: Any) -> Iterator[Fault]:
+def _unit_faults(
+    model: Model, name: str, path: tuple[str, ...], value: Any
+) -> Iterator[InputFault]:
     """Yield whether a number is in a unit that does not fit an output."""
     output = model.outputs.get(name)  # None: not known before rows have run
     if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
@@ -157,25 +163,27 @@ def _unit_faults(model: Model, name: str, path: tuple[str, ...], value: Any) -> 
                 f"; '{name}' has no unit: declare it, in Python by returns={{'{name}': {python},"
                 f" ...}}, in a machine file by unit = '{'s' if of_life else 'm'}'"
             )
-        yield Fault(path, problem, value)
+        yield InputFault(path, problem, value)
 
 
-def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[Fault]:
+def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[InputFault]:
     if isinstance(twin, dict):
         problems = read_settings(model, {**given, **twin})[1]
         for name, text in problems.items():
             if name in twin or not name:
-                yield Fault(("analysis", "twin", *filter(None, [name])), text, twin.get(name, twin))
+                yield InputFault(
+                    ("analysis", "twin", *filter(None, [name])), text, twin.get(name, twin)
+                )
     elif twin and twin not in model.cheap:
         cheap = tuple(model.cheap)
         listed = f" ({', '.join(cheap)})" if cheap else ""
         problem = f"model '{model.name}' cannot compute it alone at a small part of the cost"
         remedy = f"; choose one that it can{listed}" if cheap else "; it has no such output"
         remedy += "; or give a table of settings that make rows cheap" * bool(model.setting_names)
-        yield Fault(("analysis", "twin"), f"{problem}{remedy}{nearest(twin, cheap)}", twin)
+        yield InputFault(("analysis", "twin"), f"{problem}{remedy}{nearest(twin, cheap)}", twin)
 
 
-def design_faults(tables: Tables) -> Iterator[Fault]:
+def design_faults(tables: Tables) -> Iterator[InputFault]:
     """Yield what the design does not allow."""
     table, analysis = tables["design"], tables["analysis"]
     if "method" not in table:
@@ -204,7 +212,7 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
                 f"a '{method}' design without replicates gives no interval; set replicates = 8"
             )
     for key, problem in problems.items():
-        yield Fault(("design", key), problem, None if key == "until" else table[key])
+        yield InputFault(("design", key), problem, None if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
     for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
         why = ""
@@ -217,10 +225,12 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
                 " the bound out"
             )
         if why:
-            yield Fault(("analysis", key), f"refused: its confidence assumes {why}", analysis[key])
+            yield InputFault(
+                ("analysis", key), f"refused: its confidence assumes {why}", analysis[key]
+            )
     if "twin" in asks and several:
         problem = f"needs independent rows, {_SEVERAL}"
-        yield Fault(("analysis", "twin"), problem, analysis["twin"])
+        yield InputFault(("analysis", "twin"), problem, analysis["twin"])
     elif "twin" in asks and not design.independent:
         why = (
             "needs rows that can be drawn, and imported rows cannot"
@@ -228,7 +238,7 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             else f"needs independent rows, and those of '{method}' are not"
         )
         problem = f"{why}; use method = {independent}"
-        yield Fault(("analysis", "twin"), problem, analysis["twin"])
+        yield InputFault(("analysis", "twin"), problem, analysis["twin"])
     unsaid = design.imported and not stated
     dependent = bool(tables["dependence"]) or unsaid
     yield from _method_faults(method, analysis.get("sensitivity", ()), dependent, unsaid)
@@ -236,7 +246,7 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
 
 def _index_faults(
     design: Design, method: str, until: Mapping[str, Any], uncertain: Mapping[str, Any]
-) -> Iterator[Fault]:
+) -> Iterator[InputFault]:
     """Yield what is wrong with the index by which a run stops."""
     if (index := until.get("index")) is None:
         return
@@ -244,18 +254,18 @@ def _index_faults(
     if not known:
         able = _able(lambda d: d.append_only and bool(kinds_with_intervals(d)))
         problem = f"a '{method}' design gives no index with an interval; use method = {able}"
-        yield Fault((*path, "index"), problem, index)
+        yield InputFault((*path, "index"), problem, index)
     elif index not in known:
-        yield Fault((*path, "index"), unknown("index with an interval", index, known), index)
+        yield InputFault((*path, "index"), unknown("index with an interval", index, known), index)
     inputs = [name for name, law in uncertain.items() if "equals" not in law]
     if len(inputs) == 1 and design.layout is PATHS:
         problem = f"is 1 in every study of one input, {inputs[0]}: no interval to wait for"
-        yield Fault((*path, "index"), problem, index)
+        yield InputFault((*path, "index"), problem, index)
     for key in ("input", "difference"):
         given = until.get(key, [])
         for name in [given] if isinstance(given, str) else given:
             if name not in inputs:
-                yield Fault((*path, key), unknown("input with a law", name, inputs), given)
+                yield InputFault((*path, key), unknown("input with a law", name, inputs), given)
 
 
 _SEVERAL = "and the units and repeats of one sample are not; set both to 1, or leave it out"
@@ -293,7 +303,7 @@ def _nesting_problems(
 
 def _method_faults(
     method: str, asked: Iterable[str], dependent: bool, unsaid: bool
-) -> Iterator[Fault]:
+) -> Iterator[InputFault]:
     """Yield the sensitivity methods that a design cannot feed."""
     feeds, able = fed_by(DESIGNS[method]), fed_by(DESIGNS[method], dependent)
     if dependent and not able:
@@ -309,7 +319,7 @@ def _method_faults(
         if name in feeds:
             problem = f"assumes independent inputs, and {why}; those that do not are {_names(able)}"
         if name not in able:
-            yield Fault(("analysis", "sensitivity"), problem, name)
+            yield InputFault(("analysis", "sensitivity"), problem, name)
 
 
 def _able(can: Callable[[Design], bool]) -> str:

@@ -12,7 +12,7 @@ from uq.contract import Model
 from uq.errors import InputError, nearest
 from uq.sampling.data_files import columns_of_files, numbers, with_columns
 from uq.sampling.designs import DESIGNS, IMPORTED
-from uq.sampling.input_faults import Fault
+from uq.sampling.input_faults import InputFault
 from uq.sampling.law import Law
 from uq.sampling.named_values import read_settings
 from uq.study.checks import design_faults, model_faults
@@ -205,7 +205,7 @@ def study_from_text(
             if model is not None:
                 lines += error.lines
             else:
-                faults += [Fault(("study", "model"), line, reference) for line in error.lines]
+                faults += [InputFault(("study", "model"), line, reference) for line in error.lines]
     if found is not None:
         faults += model_faults(found, data, tables)
         faults += input_faults(found, entries)

@@ -37,7 +37,7 @@ class Chunk(NamedTuple):
     failures: dict[str, tuple[int, str]]
 
 
-class Fault(NamedTuple):
+class RowFailure(NamedTuple):
     """Why rows have no values."""
 
     status: Status
@@ -79,10 +79,10 @@ def evaluate(
         first, last = todo.pop()
         # Copies, so that the kernel sees writable arrays of its own in every process.
         returned = _call(model, settings, x[first:last].copy(), seed[first:last].copy(), expected)
-        if isinstance(returned, Fault) and last - first > 1:
+        if isinstance(returned, RowFailure) and last - first > 1:
             middle = (first + last) // 2
             todo += [(middle, last), (first, middle)]
-        elif isinstance(returned, Fault):
+        elif isinstance(returned, RowFailure):
             status[first] = returned.status
             messages[first] = returned.message
         else:
@@ -100,7 +100,7 @@ def evaluate(
     return Chunk(columns, status, _first_failures(status, messages, start))
 
 
-def lost_rows(model: Model, settings: Any, rows: int, fault: Fault, start: int = 0) -> Chunk:
+def lost_rows(model: Model, settings: Any, rows: int, fault: RowFailure, start: int = 0) -> Chunk:
     """Return blank rows that one fault has cost; `start` as in `evaluate`."""
     status = np.full(rows, fault.status, dtype=np.int8)
     columns = blank_rows(columns_of(model, settings), rows)
@@ -123,12 +123,12 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
 
 def _call(
     model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], expected: Mapping[str, Column]
-) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]] | Fault:
+) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]] | RowFailure:
     try:
         with np.errstate(all="ignore"):
             returned = model.batch(x, seed, settings)
     except Exception as error:
-        return Fault(Status.RAISED, described(error))
+        return RowFailure(Status.RAISED, described(error))
     if not isinstance(returned, tuple) or len(returned) not in (2, 3):
         raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
     outputs, status, messages = (*returned, {})[:3]
@@ -146,7 +146,7 @@ def _call(
             )
         if array.shape != (len(x), *column.shape):
             wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
-            return Fault(Status.BAD_SHAPE, wrong)
+            return RowFailure(Status.BAD_SHAPE, wrong)
     unknown = np.setdiff1d(status, list(Status))
     if unknown.size:
         raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")

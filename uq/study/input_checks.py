@@ -11,7 +11,7 @@ from uq.indices.methods import fed_by
 from uq.sampling.data_files import Columns, columns_of_files, numbers
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.designs import DESIGNS, IMPORTED
-from uq.sampling.input_faults import Fault
+from uq.sampling.input_faults import InputFault
 from uq.sampling.law import Law
 from uq.sampling.listed_values import Empirical, values_problem
 from uq.sampling.named_values import bounds_of
@@ -32,7 +32,7 @@ Entries = Mapping[str, Any]
 """Parameter -> `Law` or `Tied`."""
 
 
-def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, list[Fault]]:
+def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, list[InputFault]]:
     """Return the sound entries of [uncertain], with the values of those that name a file.
 
     Parameters
@@ -46,7 +46,7 @@ def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, 
     -------
     entries : dict of str to Law or Tied
         Without those whose file could not be read.
-    faults : list of Fault
+    faults : list of InputFault
     """
     entries: dict[str, Any] = {}
     faults = []
@@ -58,7 +58,7 @@ def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, 
                 continue
             values = tuple(numbers(text).tolist())
             if problem := values_problem(values):
-                faults.append(Fault(("uncertain", name, "column"), problem, entry.column))
+                faults.append(InputFault(("uncertain", name, "column"), problem, entry.column))
                 continue
             entry = entry.model_copy(update={"values": values})
         entries[name] = entry
@@ -73,7 +73,7 @@ def laws_of(text: str) -> dict[str, Law]:
     return {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}
 
 
-def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
+def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
     """Yield what does not suit a parameter: its law, or the parameter that it follows."""
     known = {name: entry for name, entry in entries.items() if name in model.parameter_names}
     leaders = {name: entry for name, entry in known.items() if not _followed(entry)}
@@ -89,24 +89,26 @@ def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
             problem = "is not an uncertain parameter with its own law"
             if other == name:
                 problem = "is the parameter itself"
-            yield Fault(path, f"{problem}{nearest(other, leaders)} (allowed: {allowed})", other)
+            yield InputFault(
+                path, f"{problem}{nearest(other, leaders)} (allowed: {allowed})", other
+            )
             continue
         law, there = leaders[other], model.parameter(other)
         if text := _level_problem(entry, name, known[other]):
-            yield Fault(path, text, other)
+            yield InputFault(path, text, other)
         if isinstance(entry, Tied):
             if parameter.unit != there.unit:
                 problem = f"is in another unit, {there.unit}, than '{name}', {parameter.unit}"
-                yield Fault(path, problem, other)
+                yield InputFault(path, problem, other)
             elif unsuited := law_problem(law, parameter):
-                yield Fault(path, f"'{name}' cannot follow it: {unsuited.problem}", other)
+                yield InputFault(path, f"'{name}' cannot follow it: {unsuited.problem}", other)
         elif not law_problem(law, there):  # else reported at that parameter
             low, high = support(law, there.bounds)
             if low <= 0 <= high:
                 problem = f"must not change sign or be zero: lies within {low:g} to {high:g}"
-                yield Fault(path, problem, other)
+                yield InputFault(path, problem, other)
             elif text := _product_problem(parameter, entry, law, there):
-                yield Fault(("uncertain", name), text)
+                yield InputFault(("uncertain", name), text)
 
 
 def _level_problem(entry: Law | Tied, name: str, other: Law) -> str | None:
@@ -125,7 +127,7 @@ def _followed(entry: Law | Tied) -> str | None:
     return entry.equals if isinstance(entry, Tied) else entry.times
 
 
-def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[Fault]:
+def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[InputFault]:
     """Yield what is wrong with [dependence], by itself or for this design."""
     table = tables["dependence"]
     if not table:
@@ -134,20 +136,20 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
     for name in names:
         if name not in tables["uncertain"]:
             problem = f"is not uncertain{nearest(name, entries)}"
-            yield Fault(("dependence", "parameters"), problem, name)
+            yield InputFault(("dependence", "parameters"), problem, name)
         elif name in entries and _followed(entries[name]):
             problem = "follows another parameter already; only laws of their own can be correlated"
-            yield Fault(("dependence", "parameters"), problem, name)
+            yield InputFault(("dependence", "parameters"), problem, name)
     levels = {name: entries[name].level for name in names if isinstance(entries.get(name), Law)}
     if len(set(levels.values())) > 1:
         seen = ", ".join(f"{name} is {level}" for name, level in levels.items())
         problem = f"must be inputs of one level: {seen}"
-        yield Fault(("dependence", "parameters"), problem)
+        yield InputFault(("dependence", "parameters"), problem)
     if names and ranks is not None and (wrong := matrix_problem(tuple(names), ranks)):
         yield wrong.within("dependence", "rank_correlation")
     method = tables["design"].get("method")
     if method in IMPORTED:
-        yield Fault(("dependence",), "imported rows carry their own dependence; leave it out")
+        yield InputFault(("dependence",), "imported rows carry their own dependence; leave it out")
     elif method is not None and not fed_by(DESIGNS[method], dependent=True):
         able: dict[tuple[str, ...], list[str]] = {}
         for name, design in DESIGNS.items():
@@ -162,26 +164,26 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
             "assumes independent inputs, and [dependence] says they are not; use"
             f" {', or '.join(remedies)}"
         )
-        yield Fault(("design", "method"), problem, method)
+        yield InputFault(("design", "method"), problem, method)
 
 
 def import_faults(
     model: Model, tables: Mapping[str, Any], entries: Entries, columns: Columns
-) -> Iterator[Fault]:
+) -> Iterator[InputFault]:
     """Yield why the rows of a file cannot serve as a design."""
     table = tables["design"]
     if table.get("method") not in IMPORTED:
         if "file" in table and "method" in table:
-            yield Fault(("design", "file"), "only for method = 'imported'", table["file"])
+            yield InputFault(("design", "file"), "only for method = 'imported'", table["file"])
         return
     if "file" not in table:
-        yield Fault(("design", "file"), "is missing: a CSV or netCDF file with the rows")
+        yield InputFault(("design", "file"), "is missing: a CSV or netCDF file with the rows")
     if table.get("replicates", 1) > 1:
-        yield Fault(("design", "replicates"), "must be 1 for 'imported'", table["replicates"])
+        yield InputFault(("design", "replicates"), "must be 1 for 'imported'", table["replicates"])
     for name, entry in entries.items():
         if not isinstance(entry, Tied) and entry.times is not None:
             problem = f"imported rows give '{name}' itself; leave it out"
-            yield Fault(("uncertain", name, "times"), problem, entry.times)
+            yield InputFault(("uncertain", name, "times"), problem, entry.times)
     sizes = {}
     for name, text in columns.get(table.get("file", ""), {}).items():
         if name in entries and name in model.parameter_names:
@@ -193,13 +195,13 @@ def import_faults(
                     f"'{name}' = {float(values[first])!r} in row {first + 1} is outside the"
                     f" parameter's bounds, {bounds_of(parameter)}"
                 )
-                yield Fault(("design", "file"), problem, table["file"])
+                yield InputFault(("design", "file"), problem, table["file"])
     if len(set(sizes.values())) > 1:
         text = ", ".join(f"{name} {size}" for name, size in sizes.items())
-        yield Fault(("design", "file"), f"columns of different lengths: {text}", table["file"])
+        yield InputFault(("design", "file"), f"columns of different lengths: {text}", table["file"])
     elif sizes and table.get("samples", 0) > (rows := min(sizes.values())):
         problem = f"the file has {counted(rows, 'row')}; samples must not exceed that"
-        yield Fault(("design", "samples"), problem, table["samples"])
+        yield InputFault(("design", "samples"), problem, table["samples"])
 
 
 def _product_problem(parameter: Parameter, factor: Law, law: Law, there: Parameter) -> str | None:

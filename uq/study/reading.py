@@ -7,7 +7,7 @@ from pydantic import BaseModel, ValidationError
 
 from uq.errors import InputError, first_fault_alone, nearest, one_line
 from uq.sampling.designs import IMPORTED
-from uq.sampling.input_faults import MISSING, Fault, fault_of, unknown
+from uq.sampling.input_faults import MISSING, InputFault, fault_of, unknown
 from uq.sampling.law import Law
 from uq.sampling.laws import LAWS
 from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
@@ -63,12 +63,12 @@ def parse(text: str, source: str) -> dict[str, Any]:
     return data
 
 
-def shape_faults(data: dict[str, Any]) -> list[Fault]:
+def shape_faults(data: dict[str, Any]) -> list[InputFault]:
     """Return everything that is wrong with the shape of a parsed study file."""
     design, faults = data.get("design"), []
     if isinstance(design, dict) and "samples" not in design:
         if design.get("method") not in IMPORTED:  # a file of rows has its own size
-            faults.append(Fault(("design", "samples"), MISSING))
+            faults.append(InputFault(("design", "samples"), MISSING))
     try:
         StudyFile.model_validate(data)
     except ValidationError as invalid:
@@ -76,21 +76,21 @@ def shape_faults(data: dict[str, Any]) -> list[Fault]:
     return [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
 
 
-def _is_meant(missing: Fault, other: Fault) -> bool:
+def _is_meant(missing: InputFault, other: InputFault) -> bool:
     """Return whether a missing key is the one that another fault suggests."""
     *table, key = missing.path
     beside = missing.problem.startswith(MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
 
 
-def sound_entries(data: dict[str, Any], faults: list[Fault]) -> dict[str, dict[str, Any]]:
+def sound_entries(data: dict[str, Any], faults: list[InputFault]) -> dict[str, dict[str, Any]]:
     """Return the entries without a fault of shape, so that they can be checked further.
 
     Parameters
     ----------
     data : dict
         As parsed.
-    faults : list of Fault
+    faults : list of InputFault
         What `shape_faults` found.
 
     Returns
@@ -121,7 +121,7 @@ def _remove(entries: Any, path: tuple[str | int, ...]) -> None:
         del entries[last]
 
 
-def _fault(error: dict[str, Any]) -> Fault:
+def _fault(error: dict[str, Any]) -> InputFault:
     path, value, law = list(error["loc"]), error["input"], None
     if path[0] == "uncertain" and len(path) > 2:
         # Pydantic puts into the path what kind of entry it is, and then the law's name.
@@ -130,17 +130,17 @@ def _fault(error: dict[str, Any]) -> Fault:
     match error["type"]:
         case "extra_forbidden":
             kind, known = _allowed(path, law)
-            return Fault(tuple(path), unknown(kind, str(path[-1]), known), value)
+            return InputFault(tuple(path), unknown(kind, str(path[-1]), known), value)
         case "missing":
-            return Fault(tuple(path), MISSING)
+            return InputFault(tuple(path), MISSING)
         case "union_tag_not_found":
             for key, given in value.items():
                 if meant := nearest(key, ["distribution"]):
-                    return Fault((*path, key), f"no such key{meant}", given)
-            return Fault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
+                    return InputFault((*path, key), f"no such key{meant}", given)
+            return InputFault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
         case "union_tag_invalid":
             name = error["ctx"]["tag"]
-            return Fault((*path, "distribution"), unknown("law", name, LAWS), name)
+            return InputFault((*path, "distribution"), unknown("law", name, LAWS), name)
     return fault_of({**error, "loc": path})
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from uq.text.literals import shown
 from uq.text.quantities import Written
-from uq.text.units import PREFIXED, PURE, Unit, beside, powers, time_unit, unit_of
+from uq.text.units import PREFIXED, PURE, ReadableUnit, beside, powers, time_unit, unit_of
 
 HUGE = 1e9
 """Numbers of rows beyond this are read as powers of ten."""
@@ -52,12 +52,12 @@ def quantity(value: float, units: str) -> str:
     return in_unit(value, unit_of(units, value))
 
 
-def in_unit(value: float, unit: Unit) -> str:
+def in_unit(value: float, unit: ReadableUnit) -> str:
     """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
     return beside(number(value / unit.size), unit.name)
 
 
-def in_brackets(unit: Unit) -> str:
+def in_brackets(unit: ReadableUnit) -> str:
     """Return a unit after the name of what is in it: `` [µm]``; "" for a pure number."""
     return "" if unit.name == "1" else f" [{powers(unit.name)}]"
 
@@ -91,7 +91,7 @@ def threshold(value: float, units: str) -> str:
     unit = unit_of(units, value)
     read = float(number(value / unit.size))
     if not isclose(read * unit.size, value, rel_tol=1e-12):
-        read, unit = value, Unit(units, 1.0)
+        read, unit = value, ReadableUnit(units, 1.0)
     return beside(f"{read:.15g}", unit.name)
 
 
@@ -193,7 +193,7 @@ def law(stated: Any) -> str:
     return f"{stated.distribution}({arguments})"
 
 
-def law_in_unit(stated: Any, unit: Unit) -> str:
+def law_in_unit(stated: Any, unit: ReadableUnit) -> str:
     """Return the law of an input in a unit, to six digits: ``normal: mean 250 µm, sd 25 µm``."""
 
     def words(name: str, value: Any) -> str:

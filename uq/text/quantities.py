@@ -5,7 +5,7 @@ from fractions import Fraction
 from math import pi
 
 from uq.errors import InputError, nearest
-from uq.text.units import DEGREES, PREFIXED, Unit
+from uq.text.units import DEGREES, PREFIXED, ReadableUnit
 
 _TIMES = {"min": "minutes", "h": "hours", "d": "days", "a": "years"}
 _SECONDS = {"min": 60, "h": 3600, "d": 86400, "a": 31557600}
@@ -45,13 +45,13 @@ class Written(float):
     ----------
     number : str
         As written.
-    unit : Unit
+    unit : ReadableUnit
         As written, in the spelling of tables.
     dimensions : dict of str to int
     """
 
     number: str
-    unit: Unit
+    unit: ReadableUnit
     dimensions: Dimensions
 
 
@@ -89,7 +89,7 @@ def read_quantity(text: str) -> Written:
     except OverflowError:
         raise ValueError("is too large a number") from None
     value.number = found[1]
-    value.unit = Unit(name, float(size) * (pi / 180) ** turns)
+    value.unit = ReadableUnit(name, float(size) * (pi / 180) ** turns)
     value.dimensions = dimensions
     return value
 

@@ -17,14 +17,14 @@ DEGREES = "°"
 _TIME_WORDS = ("minutes", "hours", "days", "years")
 
 
-class Unit(NamedTuple):
+class ReadableUnit(NamedTuple):
     """A unit for readers: its name, as in CF but for prefixes, and its size in the CF unit."""
 
     name: str
     size: float
 
 
-PURE = Unit("1", 1.0)
+PURE = ReadableUnit("1", 1.0)
 """The unit of a pure number."""
 
 
@@ -61,7 +61,7 @@ def time_unit(seconds: float) -> TimeUnit:
     return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
 
 
-def unit_of(units: str, typical: float) -> Unit:
+def unit_of(units: str, typical: float) -> ReadableUnit:
     """Return the unit in which a quantity is read.
 
     Parameters
@@ -74,22 +74,22 @@ def unit_of(units: str, typical: float) -> Unit:
 
     Returns
     -------
-    Unit
+    ReadableUnit
         250 µm for 0.00025 m; degrees for radians; hours, days or years for long times; ``10⁻¹⁵ m2
         N-1`` for a unit that takes no prefix. The unit itself for a pure number.
     """
     size = abs(typical) if isfinite(typical) else 0.0
     if units == "s" and size < inf and time_unit(size).name != "seconds":
-        return Unit(*time_unit(size)[:2])
+        return ReadableUnit(*time_unit(size)[:2])
     if units == "rad" and (size >= _SMALLEST_IN_DEGREES or size == 0):
-        return Unit(DEGREES, pi / 180)
+        return ReadableUnit(DEGREES, pi / 180)
     if units == "1" or size == 0 or _SMALLEST <= size < _LARGEST:
-        return Unit(units, 1.0)
+        return ReadableUnit(units, 1.0)
     power = max(3 * floor(log10(size) / 3), -300)
     name = f"10{str(power).translate(_RAISED)} {units}"
     if units.split(" ")[0] in PREFIXED and power in _PREFIXES:
         name = _PREFIXES[power] + units
-    return Unit(name, float(f"1e{power}"))
+    return ReadableUnit(name, float(f"1e{power}"))
 
 
 def typical(values: Iterable[float]) -> float:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.facts import Answer
-from uq.assess.answer.levels import Levels
+from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.remedies import Advice
 from uq.assess.answer.sample_size import MOST, bounds_unsettled
@@ -62,7 +62,7 @@ def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
     yield from told
 
 
-def _leave_to_chance(levels: Levels | None) -> Iterator[Advice]:
+def _leave_to_chance(levels: VarianceComponents | None) -> Iterator[Advice]:
     """Yield that tolerances change little, where something that differs each time decides."""
     leader = None if levels is None else levels.leader
     if levels is not None and leader is not None and leader.name == CHANCE:

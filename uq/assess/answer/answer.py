@@ -9,7 +9,7 @@ import xarray as xr
 from uq.assess.answer.advice import advise
 from uq.assess.answer.assumptions import assumptions
 from uq.assess.answer.facts import Answer
-from uq.assess.answer.levels import Levels, levels_of, starts_alike
+from uq.assess.answer.levels import VarianceComponents, levels_of, starts_alike
 from uq.assess.answer.parts import Event
 from uq.assess.answer.quantities import event, only_ranked, quantities
 from uq.assess.answer.regime_mixing import intermingled
@@ -83,7 +83,7 @@ def without_advice(findings: Findings) -> Answer:
     )
 
 
-def beside_levels(found: Answer, levels: Levels | None) -> Answer:
+def beside_levels(found: Answer, levels: VarianceComponents | None) -> Answer:
     """Return an answer that says which level decides, and if single inputs are not on it."""
     leader = None if levels is None else levels.leader
     if leader is None:
@@ -104,7 +104,7 @@ def beside_levels(found: Answer, levels: Levels | None) -> Answer:
     return replace(found, levels=levels, regimes=regimes, quantities=quantities)
 
 
-def _levels(findings: Findings, found: Answer) -> Levels | None:
+def _levels(findings: Findings, found: Answer) -> VarianceComponents | None:
     """Return which level decides what the study is about; None where that is not known."""
     if found.regimes_first:
         (first, *_) = found.regimes

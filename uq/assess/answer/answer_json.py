@@ -4,18 +4,18 @@ from collections.abc import Iterator
 from math import isnan
 from typing import Any
 
-from uq.assess.answer.contributions import Change, Contribution, Ranking
+from uq.assess.answer.contributions import AverageEffect, Contribution, Ranking
 from uq.assess.answer.earliest import Earliest
 from uq.assess.answer.facts import Answer
-from uq.assess.answer.levels import Levels
+from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.limits import Limit
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.regime_mixing import Intermingled
-from uq.assess.answer.remedies import Advice, Tightened
-from uq.assess.answer.repeat_interval import Repeated
+from uq.assess.answer.remedies import Advice, TighterTolerance
+from uq.assess.answer.repeat_interval import PredictionInterval
 from uq.assess.answer.solver_error import OwnError
 from uq.assess.answer.sufficiency import Enough
-from uq.assess.answer.tolerance_bound import Promise, Range
+from uq.assess.answer.tolerance_bound import Range, ToleranceBound
 from uq.assess.event_curve import EventCurve
 from uq.stats import estimate_json
 
@@ -83,7 +83,7 @@ def _mixing(one: Intermingled) -> dict[str, Any]:
     return {"intermingled": {"sentence": one.sentence} | numbers}
 
 
-def _levels(one: Levels) -> dict[str, Any]:
+def _levels(one: VarianceComponents) -> dict[str, Any]:
     return {
         "sentence": one.sentence,
         "target": one.target,
@@ -132,7 +132,7 @@ def _earliest(one: Earliest) -> dict[str, Any]:
     }
 
 
-def _promise(one: Promise) -> dict[str, Any]:
+def _promise(one: ToleranceBound) -> dict[str, Any]:
     low, high = one.quantiles
     numbers = {
         "coverage": one.coverage,
@@ -173,7 +173,7 @@ def _range(one: Range) -> dict[str, Any]:
     return found
 
 
-def _repeated(one: Repeated) -> dict[str, Any]:
+def _repeated(one: PredictionInterval) -> dict[str, Any]:
     ends = {"low": estimate_json.number(one.low), "high": estimate_json.number(one.high)}
     return {"sentence": one.sentence} | ({"expected": ends} if one.what else {})
 
@@ -247,7 +247,7 @@ def _contribution(one: Contribution) -> dict[str, Any]:
     }
 
 
-def _change(one: Change, name: str) -> dict[str, Any]:
+def _change(one: AverageEffect, name: str) -> dict[str, Any]:
     return {
         "sentence": one.sentence(name),
         "direction": one.direction,
@@ -265,7 +265,7 @@ def _advice(one: Advice) -> dict[str, Any]:
     return found
 
 
-def _tightened(one: Tightened) -> dict[str, Any]:
+def _tightened(one: TighterTolerance) -> dict[str, Any]:
     return {
         "inputs": list(one.inputs),
         "law": one.law,

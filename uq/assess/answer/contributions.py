@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isnan
 
-from uq.assess.answer.wording import Unit, called, called_together, joined, sentence
+from uq.assess.answer.wording import DisplayUnit, called, called_together, joined, sentence
 from uq.stats.estimate import NOTHING, Estimate
 from uq.text.numbers import capitalized
 
@@ -13,7 +13,7 @@ SMALL = 0.05
 
 
 @dataclass(frozen=True)
-class Change:
+class AverageEffect:
     """How a target changes with one input, on average.
 
     Attributes
@@ -26,7 +26,7 @@ class Change:
         How much that is in the unit of the input, where the step does not say it.
     by : Estimate
         The change of the target.
-    unit : Unit
+    unit : DisplayUnit
         Of `by`: ``%`` for relative changes, ``percentage points`` for probabilities.
     verbs : tuple of str
         What a fall and a rise of the target is called.
@@ -35,7 +35,7 @@ class Change:
     direction: int = 0
     step: str = ""
     by: Estimate = NOTHING
-    unit: Unit = field(default_factory=Unit)
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
     verbs: tuple[str, str] = ("lowers it", "raises it")
     amount: str = ""
 
@@ -66,9 +66,9 @@ class Contribution:
         Of each.
     share_of_variance : bool
         Whether an index is one.
-    changes : tuple of Change
+    changes : tuple of AverageEffect
         Of each; empty where they are not known.
-    unit : Unit
+    unit : DisplayUnit
         Of an index in the unit of the output.
     doubtful : tuple of str
         Those of the inputs that may as well have no effect.
@@ -77,8 +77,8 @@ class Contribution:
     inputs: tuple[str, ...]
     indices: tuple[Estimate, ...]
     share_of_variance: bool
-    changes: tuple[Change, ...] = ()
-    unit: Unit = field(default_factory=Unit)
+    changes: tuple[AverageEffect, ...] = ()
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
     doubtful: tuple[str, ...] = ()
 
     @property

@@ -5,7 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uq.assess.answer.wording import Unit, called, joined, sentence, share_text, unit_of_input
+from uq.assess.answer.wording import (
+    DisplayUnit,
+    called,
+    joined,
+    sentence,
+    share_text,
+    unit_of_input,
+)
 from uq.assess.earliest import (
     FEWEST,
     Apart,
@@ -41,11 +48,11 @@ class Earliest:
         How many rows count as the earliest, and of how many.
     inputs : tuple of Apart, or None
         Those whose values differ, the most different first; None where that cannot be known.
-    units : tuple of Unit
+    units : tuple of DisplayUnit
         Theirs.
     regimes : tuple of RegimeOfFirst
         Those that the earliest are in more often than all, else that of most of them.
-    unit : Unit
+    unit : DisplayUnit
         Of the lives.
     command : str
         What shows the first of them.
@@ -54,12 +61,12 @@ class Earliest:
     element: str
     rows: tuple[int, ...]
     lives: tuple[float, ...]
-    unit: Unit
+    unit: DisplayUnit
     command: str
     size: int = 0
     of: int = 0
     inputs: tuple[Apart, ...] | None = None
-    units: tuple[Unit, ...] = ()
+    units: tuple[DisplayUnit, ...] = ()
     regimes: tuple[RegimeOfFirst, ...] = ()
 
     @property
@@ -109,7 +116,9 @@ class Earliest:
         return [*filter(None, (self.sentence, f"{self.first} To see the first: {self.command}"))]
 
 
-def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates) -> Earliest | None:
+def earliest(
+    findings: Findings, element: Element, unit: DisplayUnit, part: Replicates
+) -> Earliest | None:
     """Return which rows end first, and what distinguishes them; None where none does.
 
     Parameters
@@ -117,7 +126,7 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     findings : Findings
     element : Element
         A life, in the independent rows.
-    unit : Unit
+    unit : DisplayUnit
         Of its lives.
     part : ndarray of int, shape (n,), or None
         The replicate of each independent row.
@@ -146,7 +155,7 @@ def earliest(findings: Findings, element: Element, unit: Unit, part: Replicates)
     )
 
 
-def _in_words(one: Apart, unit: Unit, is_first: bool) -> str:
+def _in_words(one: Apart, unit: DisplayUnit, is_first: bool) -> str:
     name = called(one.name)
     if one.direction == 0:
         place = "away from" if one.outwards > 0 else "near"

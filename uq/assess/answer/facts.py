@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from uq.assess.answer.levels import Levels
+from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.regime_mixing import Intermingled
 from uq.assess.answer.remedies import Advice
@@ -32,7 +32,7 @@ class Answer:
         What could not be said, and why.
     regimes_first : bool
         Whether the study is about the regimes: it names them before all other outputs.
-    levels : Levels or None
+    levels : VarianceComponents or None
         Which level decides what the study is about, where a sample has several rows.
     starts_alike : str
         That the start is the same in all rows, where it might decide the regime, or "".
@@ -54,7 +54,7 @@ class Answer:
     advice: tuple[Advice, ...]
     notes: tuple[str, ...] = ()
     regimes_first: bool = False
-    levels: Levels | None = None
+    levels: VarianceComponents | None = None
     starts_alike: str = ""
     enough: Enough = field(default_factory=Enough)
     assumptions: tuple[str, ...] = ()

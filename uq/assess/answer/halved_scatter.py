@@ -5,7 +5,7 @@ from math import sqrt
 
 import xarray as xr
 
-from uq.assess.answer.wording import Unit, called, unit_of_input
+from uq.assess.answer.wording import DisplayUnit, called, unit_of_input
 from uq.result.elements import study_file_of
 from uq.sampling.law import Law
 from uq.sampling.scipy_laws import LogUniform
@@ -66,7 +66,7 @@ def _in_words(ds: xr.Dataset, name: str, new: dict[str, float]) -> str:
     old = {key: float(getattr(law, key)) for key in new}
     if "lower" in new:
         is_factor = getattr(law, "times", None) is not None
-        unit = Unit() if is_factor else unit_of_input(ds, name)
+        unit = DisplayUnit() if is_factor else unit_of_input(ds, name)
         then = unit.between(new["lower"], new["upper"])
         return f"{then} instead of {unit.bare_between(old['lower'], old['upper'])}"
     ((key, before),) = old.items()

@@ -19,7 +19,7 @@ _MOST_NAMED = 4
 
 
 @dataclass(frozen=True)
-class Level:
+class VarianceComponent:
     """The share of the variance that a level has.
 
     Attributes
@@ -51,7 +51,7 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Levels:
+class VarianceComponents:
     """Which level decides.
 
     Attributes
@@ -71,11 +71,11 @@ class Levels:
     target: str
     of: str
     variance: str
-    levels: tuple[Level, ...]
+    levels: tuple[VarianceComponent, ...]
     another: Estimate | None = None
 
     @property
-    def leader(self) -> Level | None:
+    def leader(self) -> VarianceComponent | None:
         """The level that has most of the variance, if that is settled."""
         first = self.levels[0]
         return first if first.share.has_interval and first.share.low > 0.5 else None
@@ -103,7 +103,7 @@ class Levels:
 
 def levels_of(
     findings: Findings, target: str, of: str, ranking: Ranking | None = None
-) -> Levels | None:
+) -> VarianceComponents | None:
     """Return which level decides a target; None where that is not known.
 
     Parameters
@@ -131,14 +131,16 @@ def levels_of(
         return tuple(sorted(known.inputs_on(level), key=lambda name: place.get(name, len(place))))
 
     found = [
-        Level(level, words[level], on(level), shares[level], len(place.keys() & set(on(level))))
+        VarianceComponent(
+            level, words[level], on(level), shares[level], len(place.keys() & set(on(level)))
+        )
         for level in LEVELS
         if known.inputs_on(level) or shares[level].value > 0
     ]
     if len(found) < 2 or any(isnan(one.share.value) for one in found):
         return None
     form = FORMS.get(split_name(name)[0])
-    return Levels(
+    return VarianceComponents(
         name,
         of,
         f"the variance of its {form}" if form else "the variance",

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from math import inf, nan
 
-from uq.assess.answer.wording import Unit, called, sentence
+from uq.assess.answer.wording import DisplayUnit, called, sentence
 from uq.assess.event_curve import EventCurve
 from uq.stats.estimate import Estimate
 from uq.text.numbers import percent_range
@@ -34,7 +34,7 @@ class Limit:
         Whether the input has few values, so that nothing is averaged.
     share : Estimate
         How probable it is in the part of the input next to the limit, or in the last part.
-    unit : Unit
+    unit : DisplayUnit
         Of the input.
     why : str
         Why there is no limit, or "".
@@ -48,7 +48,7 @@ class Limit:
     is_lower: bool = False
     of_values: bool = False
     share: Estimate = field(default_factory=lambda: Estimate(nan))
-    unit: Unit = field(default_factory=Unit)
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
     why: str = ""
 
     @property
@@ -84,7 +84,7 @@ def _few(is_wanted: bool) -> str:
 
 
 def limit_of(
-    curve: EventCurve, over: str, unit: Unit, said: str, is_unwanted: bool
+    curve: EventCurve, over: str, unit: DisplayUnit, said: str, is_unwanted: bool
 ) -> Limit | None:
     """Return the range of an input over which an event is rare on average, as far as is settled.
 
@@ -94,7 +94,7 @@ def limit_of(
         The probability of the event in parts of the input.
     over : str
         The input.
-    unit : Unit
+    unit : DisplayUnit
         Of the input.
     said : str
         What happens, in words.

@@ -13,7 +13,7 @@ from uq.assess.independent_inputs import why_dependent
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.indices.given_data import MIN_ROWS
 from uq.indices.index import IndexKind, Null, RefusedError
-from uq.indices.method import Method
+from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, fed_by
 from uq.result.elements import has_independent_samples
 from uq.result.nesting import one_of_each_sample
@@ -82,7 +82,7 @@ def _with_intervals(name: str, fed: Sequence[str]) -> str:
     return next((one for one in same if METHODS[one].kinds and METHODS[one].intervals), name)
 
 
-def _has_scale(method: Method) -> bool:
+def _has_scale(method: SensitivityMethod) -> bool:
     return method.of_variance or not method.takes_numbers
 
 

@@ -10,7 +10,7 @@ from uq.text.numbers import compared, estimated
 from uq.text.symbols import readable
 
 
-class Target:
+class NumberTarget:
     """An element of an output, or what is derived from one.
 
     Parameters

@@ -6,10 +6,10 @@ from math import isnan
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.earliest import Earliest
 from uq.assess.answer.limits import Limit, limit_of
-from uq.assess.answer.repeat_interval import Repeated, repeated_quantile, repeated_share
+from uq.assess.answer.repeat_interval import PredictionInterval, repeated_quantile, repeated_share
 from uq.assess.answer.solver_error import OwnError
-from uq.assess.answer.tolerance_bound import Promise, Range
-from uq.assess.answer.wording import Unit, called_together, sentence, share_text
+from uq.assess.answer.tolerance_bound import Range, ToleranceBound
+from uq.assess.answer.wording import DisplayUnit, called_together, sentence, share_text
 from uq.assess.event_curve import EventCurve
 from uq.stats.estimate import Estimate
 from uq.text.numbers import capitalized, percent, percent_range
@@ -37,7 +37,7 @@ class Event:
         The input that decides most; "" if that is not settled.
     curve : EventCurve or None
         The probability over that input.
-    over_unit : Unit
+    over_unit : DisplayUnit
         Of that input.
     undefined : float
         Share of the rows in which the output is undefined, so that neither side holds.
@@ -54,7 +54,7 @@ class Event:
     ranking: Ranking | None = None
     over: str = ""
     curve: EventCurve | None = None
-    over_unit: Unit = field(default_factory=Unit)
+    over_unit: DisplayUnit = field(default_factory=DisplayUnit)
     undefined: float = 0.0
     is_of_single: bool = False
     limit: Limit | None = None
@@ -143,7 +143,7 @@ class Quantity:
     ----------
     name, words, meaning : str
         Of the element; in words, with and without its place within the output.
-    promise : Promise or None
+    promise : ToleranceBound or None
     range : Range or None
     events : tuple of Event
     ranking : Ranking or None
@@ -160,7 +160,7 @@ class Quantity:
     name: str
     words: str
     meaning: str
-    promise: Promise | None = None
+    promise: ToleranceBound | None = None
     range: Range | None = None
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
@@ -230,7 +230,7 @@ class Quantity:
         return next((one for one in self.events if one.sentence), None)
 
     @property
-    def repeated(self) -> Repeated:
+    def repeated(self) -> PredictionInterval:
         """What the study would find with another seed."""
         if self.first is None:
             return repeated_quantile(self.promise, self.range, self.ranking)

@@ -6,8 +6,8 @@ from math import inf, isfinite, isnan, nan
 import numpy as np
 import xarray as xr
 
-from uq.assess.answer.tolerance_bound import Known, Pile, Promise
-from uq.assess.answer.wording import Unit
+from uq.assess.answer.tolerance_bound import BoundaryAtom, SampleSupport, ToleranceBound
+from uq.assess.answer.wording import DisplayUnit
 from uq.assess.joint_bounds import SIDES
 from uq.assess.statistic import Statistic
 from uq.assess.summary import Described
@@ -31,8 +31,8 @@ def promise_of(
     element: Element,
     analysis: AnalysisTable,
     wanted: str,
-    unit: Unit,
-) -> Promise:
+    unit: DisplayUnit,
+) -> ToleranceBound:
     """Return what can be promised of an element.
 
     Parameters
@@ -45,11 +45,11 @@ def promise_of(
         What the study asks for.
     wanted : {"", "above", "below"}
         The good side of a limit.
-    unit : Unit
+    unit : DisplayUnit
 
     Returns
     -------
-    Promise
+    ToleranceBound
     """
     coverage, confidence = analysis.tolerance or (COVERAGE, CONFIDENCE)
     joint = SIDES.get(analysis.joint_bounds.get(element.output, ""), ())
@@ -80,7 +80,7 @@ def promise_of(
     elif isfinite(wrong := _contradicted(bounds, ends)):
         reason = f"counted from the rows, {unit.text(wrong)}, it lies beyond the quantile itself"
         bounds = [nan, nan]
-    return Promise(
+    return ToleranceBound(
         coverage,
         confidence,
         bounds[0],
@@ -108,7 +108,7 @@ def _ranks(element: Element, bounds: list[float]) -> tuple[int, int]:
     return first, int((values <= upper).sum()) if isfinite(upper) else 0
 
 
-def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[Pile]:
+def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[BoundaryAtom]:
     """Yield the sides on which more rows have the last value than a bound would leave out."""
     values = element.for_thresholds[element.present]
     if element.is_lifetime or not len(values) or values.min() == values.max():
@@ -117,14 +117,14 @@ def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterat
         last = values.max() if upper else values.min()
         count = int((values == last).sum())
         if matters and count > 1 and count >= (1 - coverage) * len(values):
-            yield Pile(bool(upper), float(last), count / len(values))
+            yield BoundaryAtom(bool(upper), float(last), count / len(values))
 
 
-def known_of(element: Element) -> Known:
+def known_of(element: Element) -> SampleSupport:
     """Return which values numbers are about: those of sound rows that are defined."""
     sound = ~element.failed
     share = float(element.undefined[sound].mean()) if sound.any() else 0.0
-    return Known(bool(element.failed.any()), share)
+    return SampleSupport(bool(element.failed.any()), share)
 
 
 def _recurs(element: Element) -> bool:

@@ -24,7 +24,7 @@ from uq.assess.answer.rankings import ranking_of
 from uq.assess.answer.solver_error import own_error_of
 from uq.assess.answer.sources import ASSUMED, mark_of
 from uq.assess.answer.tolerance_bound import Range
-from uq.assess.answer.wording import Unit, element_called, unit_for, unit_of_input
+from uq.assess.answer.wording import DisplayUnit, element_called, unit_for, unit_of_input
 from uq.assess.chosen_targets import chosen
 from uq.assess.event_curve import EventCurve, event_curve
 from uq.assess.findings import Findings
@@ -199,7 +199,7 @@ def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:
     return element.is_lifetime and not element.declared.success and not has_weights(ds)
 
 
-def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None:
+def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking | None:
     method = method_for(findings.ds, event=False)
     if method is None:
         return None
@@ -218,7 +218,7 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
         return found
     # Changes of the output itself are in its unit, as are indices that are not relative.
     kind = next((one for one in METHODS[method].kinds if one.key == found.kind), None)
-    of_index = unit if kind is not None and kind.unit == "output" else Unit()
+    of_index = unit if kind is not None and kind.unit == "output" else DisplayUnit()
     own = tuple(
         replace(
             one,
@@ -239,7 +239,7 @@ def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | Non
 
 
 def _events(
-    findings: Findings, described: Described, element: Element, unit: Unit
+    findings: Findings, described: Described, element: Element, unit: DisplayUnit
 ) -> Iterator[Event]:
     side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
     for one in described.parts["thresholds"]:

@@ -6,15 +6,15 @@ from math import expm1, isfinite, log1p, nan
 
 import xarray as xr
 
-from uq.assess.answer.contributions import SMALL, Change, Contribution, Ranking
+from uq.assess.answer.contributions import SMALL, AverageEffect, Contribution, Ranking
 from uq.assess.answer.measured_indices import Measured, measured_inputs
 from uq.assess.answer.repeat_interval import AGAIN
-from uq.assess.answer.wording import Unit, called, twin_of, unit_of_input
+from uq.assess.answer.wording import DisplayUnit, called, twin_of, unit_of_input
 from uq.assess.chosen_targets import chosen
 from uq.assess.effects import Effect, effects
 from uq.assess.findings import Findings
 from uq.assess.independent_inputs import independent_inputs, why_dependent
-from uq.assess.targets import FORMS, Target, split_name
+from uq.assess.targets import FORMS, IndexTarget, split_name
 from uq.errors import choices
 from uq.indices.index import S1, ST, IndexKind, Indices
 from uq.indices.methods import fed_by
@@ -221,7 +221,7 @@ def _effects(
 ) -> dict[str, Effect]:
     """Return the effects that have an interval; without one, no direction is clear."""
     rows = findings.rows
-    targets: list[Target] = list(chosen(rows, method, [name]))
+    targets: list[IndexTarget] = list(chosen(rows, method, [name]))
     if len(targets) != 1:
         return {}
     columns, part = independent_inputs(rows), replicates_of(rows)
@@ -235,7 +235,7 @@ def _contribution(
     target: str,
     moved: Mapping[str, Effect],
     verbs: tuple[str, str],
-    units: Mapping[str, Unit],
+    units: Mapping[str, DisplayUnit],
 ) -> Contribution:
     names = tuple(one.name for one in group)
     form = split_name(target)[0]
@@ -251,10 +251,12 @@ def _contribution(
     )
 
 
-def _change(effect: Effect, form: str, verbs: tuple[str, str], of_input: Unit) -> Change:
+def _change(
+    effect: Effect, form: str, verbs: tuple[str, str], of_input: DisplayUnit
+) -> AverageEffect:
     """Return the change of a target with a usual step of an input."""
     if effect.direction == 0 or effect.of_values or form == "rank":
-        return Change(effect.direction, verbs=verbs)
+        return AverageEffect(effect.direction, verbs=verbs)
     amount = ""
     if effect.logarithmic:
         size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])
@@ -262,11 +264,11 @@ def _change(effect: Effect, form: str, verbs: tuple[str, str], of_input: Unit) -
     else:
         step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)
     value, low, high = (by * one for one in effect.slope.numbers)
-    unit = Unit()
+    unit = DisplayUnit()
     if form == "log":
         value, low, high = (100 * expm1(one) for one in (value, low, high))
-        unit = Unit("%")
+        unit = DisplayUnit("%")
     elif form == "P":
         value, low, high = 100 * value, 100 * low, 100 * high
-        unit = Unit("percentage points")
-    return Change(effect.direction, step, Estimate(value, low, high), unit, verbs, amount)
+        unit = DisplayUnit("percentage points")
+    return AverageEffect(effect.direction, step, Estimate(value, low, high), unit, verbs, amount)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from math import isfinite
 
-from uq.assess.answer.tolerance_bound import Promise
-from uq.assess.answer.wording import Unit, called_together, joined
+from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.wording import DisplayUnit, called_together, joined
 from uq.stats.estimate import NOTHING, Estimate
 from uq.text.numbers import capitalized, percent, percent_interval
 
@@ -13,7 +13,7 @@ SHARE_OF = "the share of rows that "
 
 
 @dataclass(frozen=True)
-class Tightened:
+class TighterTolerance:
     """What half the scatter of an input would change.
 
     Attributes
@@ -23,7 +23,7 @@ class Tightened:
         The number that changes: ``the 5 % quantile``.
     before, after : Estimate
     is_share : bool
-    unit : Unit
+    unit : DisplayUnit
     reason : str
         Why the rows cannot show it, or "".
     effective_rows : float
@@ -33,7 +33,7 @@ class Tightened:
         Whether a larger number is better; None where that is not known.
     law : str
         What half the scatter is: ``sd 0.5 mm instead of 1``.
-    promise : Promise or None
+    promise : ToleranceBound or None
         What is promised of the same quantile now; None where an end of the interval of `after`
         could not be promised instead.
     failed : Estimate or None
@@ -45,13 +45,13 @@ class Tightened:
     before: Estimate = NOTHING
     after: Estimate = NOTHING
     is_share: bool = False
-    unit: Unit = field(default_factory=Unit)
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
     reason: str = ""
     effective_rows: float = float("nan")
     key: str = ""
     wants_more: bool | None = None
     law: str = ""
-    promise: Promise | None = None
+    promise: ToleranceBound | None = None
     failed: Estimate | None = None
 
     @property
@@ -161,12 +161,12 @@ class Advice:
     inputs : tuple of str
     rows : int or None
         How many there should be in all, where more help.
-    tightened : Tightened or None
+    tightened : TighterTolerance or None
     key : str
         Of its number, for ``uq trace``; "" if it has none.
-    alike : tuple of Tightened
+    alike : tuple of TighterTolerance
         Which other tolerances would help about as much.
-    tolerances : tuple of Tightened
+    tolerances : tuple of TighterTolerance
         All that were compared: of each tolerance, every number that it would change.
     """
 
@@ -174,10 +174,10 @@ class Advice:
     said: str
     inputs: tuple[str, ...] = ()
     rows: int | None = None
-    tightened: Tightened | None = None
+    tightened: TighterTolerance | None = None
     key: str = ""
-    alike: tuple[Tightened, ...] = ()
-    tolerances: tuple[Tightened, ...] = ()
+    alike: tuple[TighterTolerance, ...] = ()
+    tolerances: tuple[TighterTolerance, ...] = ()
 
     @property
     def also(self) -> str:
@@ -186,18 +186,18 @@ class Advice:
         return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
 
     @property
-    def own(self) -> list[Tightened]:
+    def own(self) -> list[TighterTolerance]:
         """All numbers that the tolerance which is advised would change."""
         of = None if self.tightened is None else self.tightened.inputs
         return [one for one in self.tolerances if one.inputs == of]
 
     @property
-    def sure(self) -> Tightened | None:
+    def sure(self) -> TighterTolerance | None:
         """The number of which it says what could then be promised."""
         return next((one for one in self.own if one.promised), None)
 
     @property
-    def harmed(self) -> list[Tightened]:
+    def harmed(self) -> list[TighterTolerance]:
         """The numbers that the tolerance which is advised would worsen."""
         return [one for one in self.own if one.harms]
 

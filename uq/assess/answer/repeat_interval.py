@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from math import isfinite, nan, sqrt
 
 from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.tolerance_bound import Promise, Range
-from uq.assess.answer.wording import Unit, called, joined
+from uq.assess.answer.tolerance_bound import Range, ToleranceBound
+from uq.assess.answer.wording import DisplayUnit, called, joined
 from uq.stats.estimate import Estimate
 from uq.text.numbers import percent_interval
 
@@ -16,7 +16,7 @@ MOST_NAMED = 3
 
 
 @dataclass(frozen=True)
-class Repeated:
+class PredictionInterval:
     """What the same study with another seed would most likely find.
 
     Attributes
@@ -26,7 +26,7 @@ class Repeated:
     low, high : float
         Between which it would lie with a probability of 95 %.
     is_share : bool
-    unit : Unit
+    unit : DisplayUnit
     ranking : str
         What would contribute most; "" where that is not known.
     """
@@ -35,7 +35,7 @@ class Repeated:
     low: float = nan
     high: float = nan
     is_share: bool = False
-    unit: Unit = field(default_factory=Unit)
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
     ranking: str = ""
 
     @property
@@ -86,8 +86,8 @@ def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
 
 
 def repeated_quantile(
-    promise: Promise | None, likely: Range | None, ranking: Ranking | None
-) -> Repeated:
+    promise: ToleranceBound | None, likely: Range | None, ranking: Ranking | None
+) -> PredictionInterval:
     """Return what would be found of the quantile that a promise bounds, and of the ranking.
 
     A low quantile is no larger than the upper end of the likely range, which matters where values
@@ -104,15 +104,17 @@ def repeated_quantile(
                     low = max(low, min(likely.low.value, one.low))
                 of = " of the magnitudes" if promise.of_magnitude else ""
                 what = f"the {100 * p:.3g} % quantile{of}"
-                return Repeated(what, low, high, False, promise.unit, order)
-    return Repeated(ranking=order)
+                return PredictionInterval(what, low, high, False, promise.unit, order)
+    return PredictionInterval(ranking=order)
 
 
-def repeated_share(said: str, share: Estimate, ranking: Ranking | None) -> Repeated:
+def repeated_share(said: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
     """Return what would be found of the share of rows that do what is said, and of the ranking."""
     low, high = found_again(share, False)
     known = said if isfinite(low) else ""
-    return Repeated(known, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking))
+    return PredictionInterval(
+        known, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking)
+    )
 
 
 def _ranked_again(one: Ranking | None) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import inf, isfinite, isnan
 
 from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.findings import Findings
 from uq.text.numbers import percent
 
@@ -90,7 +90,7 @@ def unsettled_share(event: Event) -> Iterator[Unsettled]:
         yield Unsettled(what, (half / goal) ** 2)
 
 
-def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
+def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Unsettled]:
     likely = quantity.range
     if likely is None:
         return

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from math import inf, isfinite, nan
 
-from uq.assess.answer.tolerance_bound import Promise
-from uq.assess.answer.wording import Unit, joined
+from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.wording import DisplayUnit, joined
 from uq.assess.scaling import population
 from uq.assess.solver_error import error_share, off_by_error, stating_none
 from uq.assess.statistic import Context
@@ -36,7 +36,7 @@ class OwnError:
         Whether quantiles are promised, for want of tolerance bounds.
     share : float
         Mean square of the errors as a share of the variance; NaN if unknown.
-    unit : Unit
+    unit : DisplayUnit
         Of the bounds.
     is_life : bool
         Whether it is of lives; the share is then of their logarithms.
@@ -50,7 +50,7 @@ class OwnError:
     worse: Sides = (nan, nan)
     are_quantiles: bool = False
     share: float = nan
-    unit: Unit = field(default_factory=Unit)
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
     is_life: bool = False
     asked: float = nan
     missed: float = nan
@@ -107,13 +107,13 @@ class OwnError:
 
 
 def own_error_of(
-    promise: Promise, described: Described, element: Element, context: Context
+    promise: ToleranceBound, described: Described, element: Element, context: Context
 ) -> OwnError | None:
     """Return what the rows' own error would do to a promise; None where no error is stated.
 
     Parameters
     ----------
-    promise : Promise
+    promise : ToleranceBound
     described : Described
         The statistics that it is from.
     element : Element
@@ -147,7 +147,9 @@ def own_error_of(
     )
 
 
-def _again(promise: Promise, are_quantiles: bool, element: Element, context: Context) -> Sides:
+def _again(
+    promise: ToleranceBound, are_quantiles: bool, element: Element, context: Context
+) -> Sides:
     """Return the bounds of other values of the same rows."""
     if not are_quantiles:
         bounds = {one.key[-1]: one.estimate.value for one in tolerance(element, context)}

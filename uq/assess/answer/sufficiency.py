@@ -7,7 +7,7 @@ from math import isfinite
 import xarray as xr
 
 from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.repeat_interval import Repeated, repeated_share
+from uq.assess.answer.repeat_interval import PredictionInterval, repeated_share
 from uq.assess.answer.sample_size import (
     MOST,
     Unsettled,
@@ -15,7 +15,7 @@ from uq.assess.answer.sample_size import (
     unsettled,
     unsettled_share,
 )
-from uq.assess.answer.wording import Unit
+from uq.assess.answer.wording import DisplayUnit
 from uq.assess.convergence import Errors, compared
 from uq.assess.findings import Findings
 from uq.assess.summary import why_no_intervals
@@ -40,9 +40,9 @@ class Enough:
         The same of everything else that it asks for.
     errors : Errors or None
         Of what it is about, where the error of the rows themselves is the larger.
-    unit : Unit
+    unit : DisplayUnit
         Of these errors.
-    again : Repeated
+    again : PredictionInterval
         What another seed would find.
     others : tuple of str
         What is not settled besides the first of the question, in sentences.
@@ -52,8 +52,8 @@ class Enough:
     question: tuple[Unsettled, ...] = ()
     besides: tuple[Unsettled, ...] = ()
     errors: Errors | None = None
-    unit: Unit = field(default_factory=Unit)
-    again: Repeated = field(default_factory=Repeated)
+    unit: DisplayUnit = field(default_factory=DisplayUnit)
+    again: PredictionInterval = field(default_factory=PredictionInterval)
     others: tuple[str, ...] = ()
 
     @property
@@ -122,7 +122,7 @@ def enough_of(
         tuple(sorted(question, key=lambda one: -one.factor)),
         tuple(sorted(besides, key=lambda one: -one.factor)),
         errors,
-        about[0].range.unit if about and about[0].range is not None else Unit(),
+        about[0].range.unit if about and about[0].range is not None else DisplayUnit(),
         _again(about, regimes),
     )
     others = [one for one in found.every if one is not next(iter(found.question), None)]
@@ -130,12 +130,12 @@ def enough_of(
     return replace(found, others=tuple(said))
 
 
-def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> Repeated:
+def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInterval:
     if regimes:
         first = regimes[0]
         ranking = None if first.is_of_single else first.ranking
         return repeated_share(f"be {first.said}", first.share, ranking)
-    return about[0].repeated if about else Repeated()
+    return about[0].repeated if about else PredictionInterval()
 
 
 def _errors(findings: Findings, one: Quantity) -> Errors | None:

@@ -9,10 +9,10 @@ import xarray as xr
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.halved_scatter import halvings, halvings_in_words
 from uq.assess.answer.parts import Quantity
-from uq.assess.answer.remedies import SHARE_OF, Advice, Tightened
+from uq.assess.answer.remedies import SHARE_OF, Advice, TighterTolerance
 from uq.assess.answer.sources import CHOSEN, mark_of
-from uq.assess.answer.tolerance_bound import Promise
-from uq.assess.answer.wording import Unit, twin_of
+from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.wording import DisplayUnit, twin_of
 from uq.assess.targets import split_name
 from uq.assess.what_if import answer as weighted
 from uq.errors import InputError, RunError
@@ -25,7 +25,9 @@ _PARTS = ("quantiles", "thresholds")
 _UNKNOWN = "the rows cannot show what it would change"
 
 
-def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iterator[Tightened]:
+def tightened(
+    ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]
+) -> Iterator[TighterTolerance]:
     """Yield what half the scatter of some inputs would change about a quantity.
 
     Parameters
@@ -41,7 +43,7 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
     if not known or not laws:
         return
     names = tuple(inputs)
-    what = Tightened(names, "", law=halvings_in_words(ds, laws))
+    what = TighterTolerance(names, "", law=halvings_in_words(ds, laws))
     changes = {
         f"uncertain.{name}.{key}": value
         for name, arguments in laws.items()
@@ -86,7 +88,7 @@ def _asked(ds: xr.Dataset, quantity: Quantity, keys: Sequence[Sequence[str]]) ->
     return asked.model_copy(update={"quantiles": some})
 
 
-def _bounding(quantity: Quantity, key: Sequence[str]) -> Promise | None:
+def _bounding(quantity: Quantity, key: Sequence[str]) -> ToleranceBound | None:
     if quantity.promise is None or key[0] != "quantiles":
         return None
     return quantity.promise.of_quantile(float(key[1]))
@@ -94,7 +96,7 @@ def _bounding(quantity: Quantity, key: Sequence[str]) -> Promise | None:
 
 def _promised(
     quantity: Quantity,
-) -> Iterator[tuple[tuple[str, ...], str, Estimate, Unit, bool | None]]:
+) -> Iterator[tuple[tuple[str, ...], str, Estimate, DisplayUnit, bool | None]]:
     """Yield the numbers that matter: key, words, number, unit, and whether more is better.
 
     No input is said to move the probability of an event that no single input decides.
@@ -105,7 +107,7 @@ def _promised(
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
         words = SHARE_OF + event.said
-        yield key, words, event.share, Unit(), quantity.wants_more
+        yield key, words, event.share, DisplayUnit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
         return
@@ -181,9 +183,9 @@ def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> lis
     return found[:MOST]
 
 
-def _shown(ds: xr.Dataset, quantity: Quantity, of: Contribution) -> Sequence[Tightened]:
+def _shown(ds: xr.Dataset, quantity: Quantity, of: Contribution) -> Sequence[TighterTolerance]:
     """Return what half the scatter of inputs would change, of as many as the rows can show."""
-    found: list[Tightened] = []
+    found: list[TighterTolerance] = []
     for inputs in dict.fromkeys((of.sure, twins(of), of.inputs[:1])):
         found = list(tightened(ds, quantity, inputs))
         if any(not one.reason for one in found):
@@ -191,7 +193,7 @@ def _shown(ds: xr.Dataset, quantity: Quantity, of: Contribution) -> Sequence[Tig
     return found
 
 
-def _is_alike(best: Tightened, other: Tightened) -> bool:
+def _is_alike(best: TighterTolerance, other: TighterTolerance) -> bool:
     """Return whether another tolerance helps about as much, or the rows cannot distinguish them."""
     if other.gain >= ABOUT * best.gain:
         return True

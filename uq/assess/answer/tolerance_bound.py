@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from math import inf, isfinite, nan
 
-from uq.assess.answer.wording import Unit, rounded, sentence, share_text
+from uq.assess.answer.wording import DisplayUnit, rounded, sentence, share_text
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import CONFIDENCE
 from uq.text.numbers import grouped, listed, percent
@@ -13,7 +13,7 @@ _ONE_END = (1 + CONFIDENCE) / 2
 
 
 @dataclass(frozen=True)
-class Known:
+class SampleSupport:
     """Which values a number is about.
 
     Attributes
@@ -35,7 +35,7 @@ class Known:
 
 
 @dataclass(frozen=True)
-class Pile:
+class BoundaryAtom:
     """Rows that share the smallest or the largest value of all, so that no bound leaves them out.
 
     Attributes
@@ -50,7 +50,7 @@ class Pile:
     value: float
     share: float
 
-    def sentence(self, unit: Unit) -> str:
+    def sentence(self, unit: DisplayUnit) -> str:
         """Return how many they are, in words."""
         which = "largest" if self.upper else "smallest"
         text = f"{percent(self.share)} of the rows share the {which} value, {unit.text(self.value)}"
@@ -58,7 +58,7 @@ class Pile:
 
 
 @dataclass(frozen=True)
-class Promise:
+class ToleranceBound:
     """A value that can be promised.
 
     Attributes
@@ -74,7 +74,7 @@ class Promise:
         The same quantiles with failed rows at either side; None where none failed.
     reason : str
         Why there is no tolerance bound, or "".
-    unit : Unit
+    unit : DisplayUnit
     is_life, of_magnitude : bool
         Whether it is a life that ends; whether it is the magnitude of an angle.
     ends : str
@@ -89,7 +89,7 @@ class Promise:
         Places of the bounds among all rows, the smallest first; 0 without one.
     rows : int
         How many rows these are.
-    piled : tuple of Pile
+    piled : tuple of BoundaryAtom
         Instead of bounds: sides on which too many rows have the last value for one.
     """
 
@@ -97,7 +97,7 @@ class Promise:
     confidence: float
     lower: float
     upper: float
-    unit: Unit
+    unit: DisplayUnit
     quantiles: tuple[Estimate, Estimate] = (NOTHING, NOTHING)
     failed: tuple[Estimate | None, Estimate | None] = (None, None)
     reason: str = ""
@@ -105,11 +105,11 @@ class Promise:
     of_magnitude: bool = False
     ends: str = "end"
     joint: tuple[str, ...] = ()
-    known: Known = field(default_factory=Known)
+    known: SampleSupport = field(default_factory=SampleSupport)
     recurs: bool = False
     ranks: tuple[int, int] = (0, 0)
     rows: int = 0
-    piled: tuple[Pile, ...] = ()
+    piled: tuple[BoundaryAtom, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -150,7 +150,7 @@ class Promise:
             cautious.append(text)
         return f"{'; '.join(cautious)}." if cautious else ""
 
-    def of_quantile(self, probability: float) -> "Promise | None":
+    def of_quantile(self, probability: float) -> "ToleranceBound | None":
         """Return the same with the bound of one quantile alone.
 
         None where there is none, or an end of the interval of the quantile would not bound it with
@@ -252,11 +252,11 @@ class Range:
     low: Estimate
     median: Estimate
     high: Estimate
-    unit: Unit
+    unit: DisplayUnit
     of_magnitude: bool = False
     ends: str = "end"
     never: Estimate = NOTHING
-    known: Known = field(default_factory=Known)
+    known: SampleSupport = field(default_factory=SampleSupport)
     is_life: bool = False
 
     @property

@@ -17,7 +17,7 @@ from uq.text.units import beside, powers, unit_of
 _TWIN = re.compile(r"(.+)_(\d+)")
 
 
-class Unit(NamedTuple):
+class DisplayUnit(NamedTuple):
     """A unit in which numbers are shown.
 
     Attributes
@@ -68,7 +68,7 @@ def rounded(value: float, towards: float = 0.0, resolution: float = 0.0) -> str:
     return f"{float(shown):.0f}" if 1e3 <= abs(float(shown)) < 1e4 else shown
 
 
-def unit_for(units: str, typical: float) -> Unit:
+def unit_for(units: str, typical: float) -> DisplayUnit:
     """Return the unit for numbers of a typical size.
 
     Parameters
@@ -81,13 +81,13 @@ def unit_for(units: str, typical: float) -> Unit:
     return _printed(*unit_of(units, typical))
 
 
-def unit_of_input(ds: xr.Dataset, name: str) -> Unit:
+def unit_of_input(ds: xr.Dataset, name: str) -> DisplayUnit:
     """Return the unit for numbers of an input of a result."""
     return _printed(*input_unit(ds, name))
 
 
-def _printed(name: str, size: float) -> Unit:
-    return Unit() if name == "1" else Unit(powers(name), size)
+def _printed(name: str, size: float) -> DisplayUnit:
+    return DisplayUnit() if name == "1" else DisplayUnit(powers(name), size)
 
 
 def called(name: str) -> str:

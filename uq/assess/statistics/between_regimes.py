@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from uq.assess.statistic import Context, Kind, Reader, Statistic
+from uq.assess.statistic import Context, Reader, Statistic, StatisticKind
 from uq.assess.targets import number_of
 from uq.result.elements import Element, output_names
 from uq.stats.clusters import Clusters
@@ -37,7 +37,9 @@ def _ends(share: Estimate, per: float) -> str:
     return percent_interval(share.low, share.high) if share.has_interval else ""
 
 
-_KIND = Kind(shown=_shown, ends=_ends, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT)
+_KIND = StatisticKind(
+    shown=_shown, ends=_ends, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT
+)
 
 
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:

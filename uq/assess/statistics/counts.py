@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from uq.assess.population import Population
-from uq.assess.statistic import COUNT, FACT, Context, Kind, Reader, Statistic
+from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
 from uq.assess.statistics.thresholds import share_of
 from uq.result.elements import Element, elements_of, output_names
 from uq.result.variables import error_name
@@ -23,7 +23,7 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
     return {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
 
 
-_EFFECTIVE = Kind(
+_EFFECTIVE = StatisticKind(
     write=_write, shown=lambda rows: f"{rows:.0f}", has_interval=False, readers=COUNT.readers
 )
 

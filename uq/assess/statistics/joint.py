@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isnan
 from typing import Any
 
-from uq.assess.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
+from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
@@ -35,7 +35,7 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     )
     is_first = context.joint_bounds[0].element == element.name
     listing = Listing(words, keeps_empty=True)
-    bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
+    bound = StatisticKind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
     for one in own:
         yield Statistic(
             ("joint_bounds", one.side),

@@ -6,7 +6,7 @@ from math import isfinite, isnan, nan
 from typing import Any
 
 from uq.assess.estimators import MEAN, SD
-from uq.assess.statistic import FACT, Context, Kind, Reader, Statistic
+from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
@@ -29,7 +29,7 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
     return found
 
 
-MOMENT = Kind(entry=_numbers, write=_write)
+MOMENT = StatisticKind(entry=_numbers, write=_write)
 SPREAD = replace(MOMENT, readers=~Reader.RUNNING)
 
 

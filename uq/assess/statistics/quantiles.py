@@ -7,7 +7,7 @@ from uq.assess.estimators import quantile_of
 from uq.assess.failed_rows import bounded
 from uq.assess.life_quantiles import B_LIVES, life_quantiles, quantile_estimate, rows_needed
 from uq.assess.population import Population
-from uq.assess.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
+from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import order_statistics
 from uq.stats.estimate import NOTHING, Estimate
@@ -15,7 +15,7 @@ from uq.stats.kaplan_meier import kaplan_meier
 
 _LIVES = Listing("B-lives: B10 is the time by which 10 % have ended", first="lifetime")
 _TIMES = Listing("Times by which a share has succeeded", first="time")
-LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
+LIFE = StatisticKind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
 _BY = (order_statistics.quantile, order_statistics.quantile_interval)
 _BY_KAPLAN_MEIER = (life_quantiles, kaplan_meier)
 _LAWS = (Population.quantile, Population)

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from uq.assess.estimators import Sample, share
+from uq.assess.estimators import SelectedRows, share
 from uq.assess.failed_rows import bounded
 from uq.assess.life_quantiles import ended_by
 from uq.assess.population import Population
-from uq.assess.statistic import Context, Kind, Listing, Reader, Statistic, entry
+from uq.assess.statistic import Context, Listing, Reader, Statistic, StatisticKind, entry
 from uq.assess.survival import survival
 from uq.result.elements import Element, Mask
 from uq.stats import estimate_json
@@ -76,8 +76,8 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 
 
 _LISTING = Listing("Probabilities, with 95 % intervals", by="threshold")
-PROBABILITY = Kind(entry=_alone, write=_write, listing=_LISTING)
-UNDEFINED = Kind(
+PROBABILITY = StatisticKind(entry=_alone, write=_write, listing=_LISTING)
+UNDEFINED = StatisticKind(
     write=lambda group: dict(group[0].facts),
     shown=lambda share: percent(share) if share else "",
     is_count=True,
@@ -162,12 +162,12 @@ def _unknown_sides(element: Element, threshold: float) -> str:
     return f"{unknown.sum()} of {unknown.size} rows were censored before that time"
 
 
-def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
-    def sample(element: Element) -> Sample | None:
+def _hits(threshold: float, place: int) -> Callable[[Element], SelectedRows | None]:
+    def sample(element: Element) -> SelectedRows | None:
         if element.law is not None:
             numbers = (element.above, element.below)[place](threshold)
-            return Sample(~element.failed, numbers)
+            return SelectedRows(~element.failed, numbers)
         sides = event(element, threshold)
-        return None if sides is None else Sample(~element.failed, sides[place].astype(float))
+        return None if sides is None else SelectedRows(~element.failed, sides[place].astype(float))
 
     return sample

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from uq.assess.life_quantiles import whenever_censored_rows_end
-from uq.assess.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
+from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
@@ -42,7 +42,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         f" lower, and {coverage} % below the upper" + ", or the magnitude's" * element.is_angle,
         keeps_empty=True,
     )
-    bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
+    bound = StatisticKind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
     bounds = {"lower": lower, "upper": upper}
     if element.is_angle:
         largest = tolerance_bounds(np.abs(element.at_most), failed, *asked)[1]

@@ -14,7 +14,7 @@ from uq.text.numbers import capitalized
 
 
 @dataclass(frozen=True)
-class Subject:
+class FigureSubject:
     """The subject of one figure.
 
     Attributes
@@ -65,7 +65,7 @@ class Entry:
     """
 
     draw: Callable[..., Figure]
-    of: Callable[[Findings], Iterator[Subject]]
+    of: Callable[[Findings], Iterator[FigureSubject]]
     caption: str = "{what}"
     section: Literal["inputs", "rows", "results", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
@@ -80,7 +80,7 @@ class Drawable:
 
     figure: str
     entry: Entry
-    subject: Subject
+    subject: FigureSubject
     findings: Findings = field(repr=False)
 
     @property

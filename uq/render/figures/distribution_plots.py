@@ -28,7 +28,7 @@ from uq.render.figures.words import as_label, label, literal, rows_in_words, typ
 from uq.result.elements import Element, analysis_of, independent_rows, named_elements
 from uq.stats.estimate_text import rounded_text
 from uq.text.numbers import minus
-from uq.text.units import Unit
+from uq.text.units import ReadableUnit
 
 _MOST_PANELS = 4
 _LINE = 0.16  # of the table [inch]
@@ -207,7 +207,12 @@ def lifetime(
 
 
 def _mark_bounds(
-    axes: Axes, ds: xr.Dataset, element: Element, found: Described | None, unit: Unit, colour: str
+    axes: Axes,
+    ds: xr.Dataset,
+    element: Element,
+    found: Described | None,
+    unit: ReadableUnit,
+    colour: str,
 ) -> bool:
     """Draw the tolerance bounds of an element, and return whether there are any."""
     if found is None or element.is_angle:
@@ -223,7 +228,7 @@ def _mark_bounds(
     return bool(drawn)
 
 
-def _mark(axes: Axes, described: Described | None, unit: Unit, colour: str) -> set[str]:
+def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: str) -> set[str]:
     """Mark the B-lives of an element with their intervals, and return the names of those known."""
     if described is None:
         return set()

@@ -15,7 +15,7 @@ from uq.render.figures.words import labelled, literal, rows_in_words
 from uq.result.elements import Element, Floats, Mask, analysis_of, flags, named_elements
 from uq.result.variables import input_unit
 from uq.text.numbers import minus, printed, threshold
-from uq.text.units import Unit, typical, unit_of
+from uq.text.units import ReadableUnit, typical, unit_of
 
 _MOST_BINS = 60
 _MOST_CURVES = 12
@@ -58,7 +58,7 @@ def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> 
     axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
 
 
-def display_unit(units: str, values: Floats) -> Unit:
+def display_unit(units: str, values: Floats) -> ReadableUnit:
     """Return the unit of an axis that shows these values of an output."""
     return unit_of(units, typical(values))
 
@@ -71,7 +71,7 @@ def input_axis(axes: Axes, ds: xr.Dataset, name: str, width: int = 44) -> float:
 
 
 def mark_thresholds(
-    axes: Axes, ds: xr.Dataset, element: Element, unit: Unit, vertical: bool = False
+    axes: Axes, ds: xr.Dataset, element: Element, unit: ReadableUnit, vertical: bool = False
 ) -> None:
     """Draw the study's thresholds of an output as lines, those of an angle on both sides.
 
@@ -83,7 +83,7 @@ def mark_thresholds(
         With the data.
     ds : xarray.Dataset
     element : Element
-    unit : Unit
+    unit : ReadableUnit
         That of the axis.
     vertical : bool
         Whether the output is on the vertical axis.
@@ -134,7 +134,7 @@ def bins(values: Floats) -> tuple[Floats, bool]:
 
 
 def shares_in_bins(
-    element: Element, kept: Mask, edges: Floats, unit: Unit, part: Mask | None = None
+    element: Element, kept: Mask, edges: Floats, unit: ReadableUnit, part: Mask | None = None
 ) -> Floats:
     """Return the share of the rows kept that lies in each bin, or that a part of them has there."""
     worth = np.ones(len(kept)) if element.weights is None else element.weights

@@ -14,7 +14,7 @@ from uq.result.elements import Floats
 from uq.text.units import unit_of
 
 
-class Scale(NamedTuple):
+class AxisScale(NamedTuple):
     """The scale and unit of an axis.
 
     Attributes
@@ -80,7 +80,7 @@ def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
     return across, up
 
 
-def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
+def scale_of(variables: Sequence[xr.DataArray]) -> AxisScale:
     """Return a suitable scale for quantities that share an axis: 0.00025 m become 0.25 mm.
 
     Parameters
@@ -90,7 +90,7 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
 
     Returns
     -------
-    Scale
+    AxisScale
 
     Raises
     ------
@@ -106,12 +106,12 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
         raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
     shown = unit_of(unit, max(_largest(one) for one in variables))
-    return Scale(1 / shown.size, shown.name)
+    return AxisScale(1 / shown.size, shown.name)
 
 
 def label_axes(
     axes: Axes, across: xr.DataArray, up: xr.DataArray, width: int = 26
-) -> tuple[Scale, Scale]:
+) -> tuple[AxisScale, AxisScale]:
     """Label both axes of a panel, and return their scales.
 
     Parameters
@@ -129,7 +129,7 @@ def label_axes(
 
 
 def families(
-    across: xr.DataArray, up: xr.DataArray, scales: Sequence[Scale]
+    across: xr.DataArray, up: xr.DataArray, scales: Sequence[AxisScale]
 ) -> Iterator[tuple[Floats, Floats, dict[str, Any]]]:
     """Yield the scaled coordinates of each curve along the last dimension, its colour and label."""
     if across.ndim == 1:

@@ -17,7 +17,7 @@ from uq.render.figures.quantities import families, find, label_axes, pair, scale
 from uq.render.figures.style import COLOURS, LINES, are_many, point_size, styled
 from uq.render.figures.words import as_label, literal, powers
 from uq.text.numbers import in_unit, minus, percent
-from uq.text.units import Unit
+from uq.text.units import ReadableUnit
 
 _MOST_CHANGES = 12  # of regime that are marked along a curve
 _WIDE, _NARROW = 60, 36  # characters of a line of the legend, of a figure and of a panel
@@ -205,6 +205,6 @@ def _basin(one: xr.Dataset, outputs: Sequence[str], width: int) -> str:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])
         rounded = float(f"{value.item():.3g}")
-        text = powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor)))
+        text = powers(in_unit(rounded, ReadableUnit(scale.unit, 1 / scale.factor)))
         known.append(minus(text))
     return as_label(", ".join([*known, percent(float(one["share"]))]), width=width)

@@ -9,7 +9,7 @@ from uq.assess.sampled_inputs import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.assess.targets import split_name
 from uq.errors import InputError
-from uq.render.figures.catalogue import Subject
+from uq.render.figures.catalogue import FigureSubject
 from uq.render.figures.convergence_plot import followed, total_indices
 from uq.render.figures.elements_plot import occurring_regimes
 from uq.render.figures.index_curve_plot import dimension_of
@@ -21,41 +21,41 @@ from uq.text.element_names import is_whole
 _MOST_INPUTS = 6
 
 
-def the_result(findings: Findings) -> Iterator[Subject]:
+def the_result(findings: Findings) -> Iterator[FigureSubject]:
     """Yield the result itself."""
-    yield Subject()
+    yield FigureSubject()
 
 
-def outputs(findings: Findings) -> Iterator[Subject]:
+def outputs(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each output with numbers."""
     if findings.rows.sizes["sample"]:
         known, ds = outputs_of(findings.ds), findings.ds
         shown = shown_outputs(ds, analysis_of(ds))
-        yield from (Subject(output) for output in shown if not known[output].is_category)
+        yield from (FigureSubject(output) for output in shown if not known[output].is_category)
 
 
-def inputs(findings: Findings) -> Iterator[Subject]:
+def inputs(findings: Findings) -> Iterator[FigureSubject]:
     """Yield the inputs with laws, as many at a time as fit a quarter of a page."""
     names = list(laws_and_values(findings.ds))
     count = -(-len(names) // _MOST_INPUTS)
     for i in range(count):
         part = f"{i + 1} of {count}" if count > 1 else ""
         own = names[i * len(names) // count : (i + 1) * len(names) // count]
-        yield Subject(part=part, keywords={"names": own})
+        yield FigureSubject(part=part, keywords={"names": own})
 
 
-def categories(findings: Findings) -> Iterator[Subject]:
+def categories(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each category that occurs, the regime among them."""
     if findings.rows.sizes["sample"]:
         shares = findings.summary.shares.items()
         occur = (name for name, of in shares if any(one.facts["count"] for one in of.values()))
-        yield from map(Subject, dict.fromkeys(name.partition("[")[0] for name in occur))
+        yield from map(FigureSubject, dict.fromkeys(name.partition("[")[0] for name in occur))
 
 
-def targets(findings: Findings) -> Iterator[Subject]:
+def targets(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each target of each sensitivity method."""
     for method, found in _indices(findings):
-        yield Subject(found.name, method, {"method": method, "found": found})
+        yield FigureSubject(found.name, method, {"method": method, "found": found})
 
 
 def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
@@ -70,28 +70,28 @@ def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
                 yield method, found
 
 
-def curves(findings: Findings) -> Iterator[Subject]:
+def curves(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each output with a dimension of three or more numbers, by each method."""
     for method, found in _indices(findings):
         inside = split_name(found.name)[1]
         output = inside.partition("[")[0]
         if is_whole(inside) and dimension_of(findings.ds, output):
-            yield Subject(output, method, {"method": method, "findings": findings})
+            yield FigureSubject(output, method, {"method": method, "findings": findings})
 
 
-def decided_events(findings: Findings) -> Iterator[Subject]:
+def decided_events(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each event that an input is known to decide."""
     for event in conclude(findings).events:
         if event.curve is not None:
-            yield Subject(event.name, keywords={"event": event})
+            yield FigureSubject(event.name, keywords={"event": event})
 
 
-def crossed_targets(findings: Findings) -> Iterator[Subject]:
+def crossed_targets(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each target whose total indices are known for fewer rows."""
     if any(outputs(findings)):
         names = findings.running["output"]
         known = total_indices(findings.running)["output"]
-        yield from map(Subject, names[names.isin(known)].unique())
+        yield from map(FigureSubject, names[names.isin(known)].unique())
 
 
 def is_lifetime(findings: Findings, name: str) -> bool:

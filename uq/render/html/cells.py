@@ -48,7 +48,7 @@ class Cell(NamedTuple):
         return bar(self.key, *self.ends, scales[self.scale])
 
 
-class Table(NamedTuple):
+class HtmlTable(NamedTuple):
     """A table; the first cell of each row names it.
 
     Attributes
@@ -108,7 +108,7 @@ def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     return Cell(text, "; ".join(filter(None, small)), key, scale=scale, ends=ends)
 
 
-def without_empty_columns(table: Table) -> Table:
+def without_empty_columns(table: HtmlTable) -> HtmlTable:
     """Return a table without its empty columns; the first column stays."""
     first, *others = zip(table.header, *table.rows, strict=True)
     filled = (one for one in others if any(cell.text not in ("", "-") for cell in one[1:]))

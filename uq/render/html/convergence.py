@@ -7,7 +7,7 @@ import pandas as pd
 from uq.assess.convergence import enough
 from uq.assess.findings import Findings
 from uq.errors import InputError
-from uq.render.html.cells import Cell, Table, without_empty_columns
+from uq.render.html.cells import Cell, HtmlTable, without_empty_columns
 from uq.render.html.outcomes import Outcome
 from uq.render.html.pictures import Picture, pictures
 from uq.text.keys import key_of
@@ -19,7 +19,7 @@ class Convergence(NamedTuple):
 
     Attributes
     ----------
-    table : Table or None
+    table : HtmlTable or None
         The sampling error and the error of the rows themselves.
     warnings : list of str
     refused : str
@@ -27,7 +27,7 @@ class Convergence(NamedTuple):
     pictures : list of Picture
     """
 
-    table: Table | None
+    table: HtmlTable | None
     warnings: list[str]
     refused: str
     pictures: list[Picture]
@@ -57,7 +57,7 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
     ]
     rows = [_row(one, line) for one, line in lines if line[["sampling", "own"]].notna().any()]
     header = ("output", "unit", "estimate", "half-width of the interval", "error of the rows")
-    table = without_empty_columns(Table("Sampling error", header, rows)) if rows else None
+    table = without_empty_columns(HtmlTable("Sampling error", header, rows)) if rows else None
     warnings = [f"{one.name}: {line['warning']}" for one, line in lines if line["warning"]]
     drawn = list(pictures(findings, "convergence"))
     return Convergence(table, warnings, findings.running.attrs.get("refused", ""), drawn)

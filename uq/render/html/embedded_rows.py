@@ -41,7 +41,7 @@ from uq.study.file import AnalysisTable
 from uq.text.literals import plain
 from uq.text.numbers import printed, threshold
 from uq.text.symbols import readable
-from uq.text.units import Unit
+from uq.text.units import ReadableUnit
 
 
 def encoded(values: Any, kind: str) -> str:
@@ -180,7 +180,7 @@ def part_of(rows: xr.Dataset, columns: int) -> xr.Dataset:
     return rows.isel(sample=np.isin(sample, chosen))
 
 
-def _input(rows: xr.Dataset, name: str, unit: Unit) -> dict[str, Any]:
+def _input(rows: xr.Dataset, name: str, unit: ReadableUnit) -> dict[str, Any]:
     variable = rows[name]
     return _column(name, called(name), *unit, variable.values) | {
         "role": "input",

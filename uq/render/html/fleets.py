@@ -7,7 +7,7 @@ from math import isfinite
 from uq.assess.findings import Findings
 from uq.assess.fleet import Fleet
 from uq.assess.fleet_numbers import Banded
-from uq.render.html.cells import Cell, Table
+from uq.render.html.cells import Cell, HtmlTable
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
 from uq.text.keys import key_of
@@ -17,13 +17,15 @@ from uq.text.units import typical, unit_of
 HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
 
 
-def fleet_table(findings: Findings) -> Table | None:
+def fleet_table(findings: Findings) -> HtmlTable | None:
     """Return the lives of fleets of a result; None where a sample has a single unit."""
     found = findings.fleets
     if not found:
         return None
     rows = [row for one in found for row in _rows(one)]
-    return Table(f"Fleets of {counted(found[0].size, 'unit')}, with 95 % intervals", HEADER, rows)
+    return HtmlTable(
+        f"Fleets of {counted(found[0].size, 'unit')}, with 95 % intervals", HEADER, rows
+    )
 
 
 def fleet_notes(findings: Findings) -> list[str]:

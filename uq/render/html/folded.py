@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable
 from markupsafe import Markup
 
 from uq.assess.answer.facts import Answer
-from uq.assess.answer.remedies import Advice, Tightened
+from uq.assess.answer.remedies import Advice, TighterTolerance
 from uq.assess.answer.wording import called_together
 from uq.render.html import keyed_sentences
 from uq.text.literals import plain
@@ -66,7 +66,7 @@ def _number(text: str) -> Markup:
     return Markup('<td class="number">{}</td>').format(_shown(text))
 
 
-def _cell(one: Tightened, above: Collection[str]) -> Markup:
+def _cell(one: TighterTolerance, above: Collection[str]) -> Markup:
     """Return a number with its interval, and with its key where no sentence above has it."""
     text = one.text(one.after)
     number = _shown(text) if one.key in above else keyed_sentences.keyed(text, one.key)

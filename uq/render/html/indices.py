@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from uq.assess.answer.number_targets import Target
+from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.findings import Findings
 from uq.assess.ranked_indices import Values, lines
 from uq.assess.sensitivities import TargetIndices, methods
@@ -16,28 +16,28 @@ from uq.assess.targets import split_name
 from uq.errors import InputError
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
 from uq.render.figures.index_plot import subject
-from uq.render.html.cells import SHARE, Cell, Table
+from uq.render.html.cells import SHARE, Cell, HtmlTable
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 from uq.text.numbers import capitalized, counted
 from uq.text.symbols import readable
 
 
-class Subject(NamedTuple):
+class IndexTable(NamedTuple):
     """The indices of one target, by one method or several.
 
     Attributes
     ----------
     name : str
     words : str
-    tables : tuple of Table
+    tables : tuple of HtmlTable
     notes : tuple of str
         Among them why a method has no indices.
     """
 
     name: str
     words: str
-    tables: tuple[Table, ...] = ()
+    tables: tuple[HtmlTable, ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
@@ -51,13 +51,13 @@ class Subject(NamedTuple):
         return output_of(self.name)
 
 
-class Method(NamedTuple):
+class MethodTable(NamedTuple):
     """The results of one method, or in ``refused`` why there are none."""
 
     name: str
     refused: str = ""
     used: str = ""
-    subjects: tuple[Subject, ...] = ()
+    subjects: tuple[IndexTable, ...] = ()
 
 
 def output_of(target: str) -> str:
@@ -65,7 +65,7 @@ def output_of(target: str) -> str:
     return re.split(r"[\[=]", split_name(target)[1])[0]
 
 
-def sensitivity_of(findings: Findings) -> list[Method]:
+def sensitivity_of(findings: Findings) -> list[MethodTable]:
     """Return the indices by each method of the study.
 
     Parameters
@@ -74,50 +74,50 @@ def sensitivity_of(findings: Findings) -> list[Method]:
 
     Returns
     -------
-    list of Method
+    list of MethodTable
     """
     return [_method(findings, name) for name in methods(findings.ds)]
 
 
-def _method(findings: Findings, name: str) -> Method:
+def _method(findings: Findings, name: str) -> MethodTable:
     try:
         found = findings.sensitivities(name)
     except InputError as error:
-        return Method(name, refused=str(error))
+        return MethodTable(name, refused=str(error))
     used = f"from {counted(found.rows_used, 'row')}"
     if found.groups_dropped:
         used += f"; {counted(found.groups_dropped, 'group')} with missing values dropped"
     subjects = (_subject(findings.ds, name, one) for one in found.targets.values())
-    return Method(name, used=used, subjects=tuple(subjects))
+    return MethodTable(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
+def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> IndexTable:
     name, indices = found.name, found.indices
     words = capitalized(readable(subject(ds, name)))
     if found.refused:
-        return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
+        return IndexTable(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    of = f"{Target(ds, name).name} by {method}"
+    of = f"{NumberTarget(ds, name).name} by {method}"
     listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
     tables = tuple(_table(caption, one, indices, traced) for caption, one in listed if one)
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
-        tables += (Table(f"Share of noise in the variance of {of}", ("", "share"), line),)
-    return Subject(name, words, tables, indices.notes)
+        tables += (HtmlTable(f"Share of noise in the variance of {of}", ("", "share"), line),)
+    return IndexTable(name, words, tables, indices.notes)
 
 
-def of_output(methods: Sequence[Method], output: str) -> list[Subject]:
+def of_output(methods: Sequence[MethodTable], output: str) -> list[IndexTable]:
     """Return the indices of an output, those of a target by all methods together.
 
     Parameters
     ----------
-    methods : sequence of Method
+    methods : sequence of MethodTable
     output : str
     """
-    found: dict[str, Subject] = {}
+    found: dict[str, IndexTable] = {}
     for one in (one for method in methods for one in method.subjects if one.output == output):
-        known = found.get(one.name, Subject(one.name, one.words))
+        known = found.get(one.name, IndexTable(one.name, one.words))
         notes = (*dict.fromkeys(known.notes + one.notes),)
         found[one.name] = known._replace(tables=known.tables + one.tables, notes=notes)
     return list(found.values())
@@ -128,7 +128,7 @@ def _table(
     values: Values,
     indices: Indices,
     traced: Callable[..., str],
-) -> Table:
+) -> HtmlTable:
     def cells(label: str, estimates: Sequence[Estimate]) -> Iterator[Cell]:
         for kind, one in zip(values, estimates, strict=True):
             dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
@@ -139,7 +139,7 @@ def _table(
         (Cell(label, BY_CORRELATION * (label in indices.by_correlation)), *cells(label, found))
         for label, found in lines(values, indices.nulls)
     ]
-    return Table(caption, ("input", *(kind.words for kind in values)), rows)
+    return HtmlTable(caption, ("input", *(kind.words for kind in values)), rows)
 
 
 def _cell(kind: IndexKind, one: Estimate, traced: str) -> Cell:

@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 
 from uq.assess.answer.sources import mark
-from uq.assess.answer.wording import Unit, unit_of_input
+from uq.assess.answer.wording import DisplayUnit, unit_of_input
 from uq.assess.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.contract import Floats
 from uq.render.figures.words import meaning_of, symbol_of, unbroken
-from uq.render.html.cells import Cell, Table, without_empty_columns
+from uq.render.html.cells import Cell, HtmlTable, without_empty_columns
 from uq.render.html.symbols import indexed
 from uq.result.elements import study_file_of
 from uq.result.variables import input_unit
@@ -23,7 +23,7 @@ from uq.text.symbols import readable, symbol
 from uq.text.units import PURE, beside, unit_of
 
 
-def input_tables(ds: xr.Dataset) -> Iterator[Table]:
+def input_tables(ds: xr.Dataset) -> Iterator[HtmlTable]:
     """Yield the tables of uncertain inputs and of rank correlations.
 
     Parameters
@@ -33,7 +33,7 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
 
     Yields
     ------
-    Table
+    HtmlTable
     """
     yield _uncertain(ds)
     study = study_file_of(ds)
@@ -46,16 +46,16 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
         ]
         source = study.dependence.source
         caption = f"Rank correlations{': ' if source else ''}{source}"
-        yield Table(caption, ("pair", "stated"), rows)
+        yield HtmlTable(caption, ("pair", "stated"), rows)
 
 
-def fixed_inputs(ds: xr.Dataset) -> Table | None:
+def fixed_inputs(ds: xr.Dataset) -> HtmlTable | None:
     """Return the table of fixed inputs, None where there are none."""
     fixed = [name for name in ds.data_vars if ds[name].attrs.get("role") == "fixed"]
     by_study = study_file_of(ds).fixed
     lines = [_fixed(ds, str(name), name in by_study) for name in fixed]
     header = ("input", "value", "known", "source")
-    return Table("Fixed inputs", header, lines) if lines else None
+    return HtmlTable("Fixed inputs", header, lines) if lines else None
 
 
 def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
@@ -67,7 +67,7 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
     return (_name(ds, name), Cell(text, key=value), *source)
 
 
-def _uncertain(ds: xr.Dataset) -> Table:
+def _uncertain(ds: xr.Dataset) -> HtmlTable:
     given, weights = laws_and_values(ds), weights_of_samples(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
@@ -75,14 +75,14 @@ def _uncertain(ds: xr.Dataset) -> Table:
         if name in given:
             law_of, _ = given[name]
             found = compare(*given[name], weights).sampled
-            unit = unit_of_input(ds, name) if law_of.times is None else Unit()
+            unit = unit_of_input(ds, name) if law_of.times is None else DisplayUnit()
             quantiles = _quantiles(name, unit, found)
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
-    return without_empty_columns(Table("Uncertain inputs", header, rows))
+    return without_empty_columns(HtmlTable("Uncertain inputs", header, rows))
 
 
-def _quantiles(name: str, unit: Unit, found: Floats) -> list[Cell]:
+def _quantiles(name: str, unit: DisplayUnit, found: Floats) -> list[Cell]:
     """Return quantiles to the digits that tell them apart."""
     step = np.ptp(found) / unit.per / 30
     places = max(0, -floor(log10(step))) if step > 0 else 0

@@ -8,7 +8,7 @@ from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.facts import Answer
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.remedies import Advice
-from uq.assess.answer.repeat_interval import Repeated
+from uq.assess.answer.repeat_interval import PredictionInterval
 from uq.assess.answer.wording import sentence, share_text
 from uq.text.keys import key_of
 from uq.text.literals import plain
@@ -63,7 +63,7 @@ def enough(one: Answer) -> Markup:
     return _again(one.enough.sentence, one.enough.again, key)
 
 
-def _again(text: str, known: Repeated, key: str) -> Markup:
+def _again(text: str, known: PredictionInterval, key: str) -> Markup:
     return keyed(text, key) if known.what else escape(plain(printed(text)))
 
 

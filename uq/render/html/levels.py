@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-from uq.assess.answer.number_targets import Target
+from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.answer.wording import called
 from uq.assess.findings import Findings
 from uq.assess.variance_by_level import SOURCES
 from uq.indices.index import S1
-from uq.render.html.cells import SHARE, Cell, Table
+from uq.render.html.cells import SHARE, Cell, HtmlTable
 from uq.result.nesting import is_nested
 from uq.result.weights import has_weights
 from uq.sampling.levels import LEVELS
@@ -16,30 +16,30 @@ from uq.stats.estimate_text import share_text
 from uq.text.keys import key_of
 
 
-class Levels(NamedTuple):
+class LevelTables(NamedTuple):
     """The shares of the variance by level.
 
     Attributes
     ----------
     size : str
         Samples, units and repeats.
-    table : Table
+    table : HtmlTable
     notes : list of str
     """
 
     size: str
-    table: Table
+    table: HtmlTable
     notes: list[str]
 
 
-def levels_of(findings: Findings) -> Levels | None:
+def levels_of(findings: Findings) -> LevelTables | None:
     """Return the shares of a result; None where no sample has several rows, or with weights."""
     if not is_nested(findings.ds) or has_weights(findings.ds):
         return None
     found = findings.levels
     rows, notes = [], []
     for name, one in found.outputs.items():
-        shown = Target(findings.ds, name).name
+        shown = NumberTarget(findings.ds, name).name
         rows.append((Cell(shown), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
         notes += [f"{sentence} ({shown})" for sentence in one.sentences]
     if (another := found.another_regime) is not None:
@@ -47,7 +47,9 @@ def levels_of(findings: Findings) -> Levels | None:
         notes.append(f"probability that a repeat ends in another regime: {said}")
     on = {level: found.inputs_on(level) for level in LEVELS}
     notes += [f"{level}: {', '.join(map(called, names))}" for level, names in on.items() if names]
-    return Levels(found.size, Table("Shares of the variance", ("output", *SOURCES), rows), notes)
+    return LevelTables(
+        found.size, HtmlTable("Shares of the variance", ("output", *SOURCES), rows), notes
+    )
 
 
 def _cell(name: str, source: str, share: Estimate) -> Cell:

@@ -13,7 +13,7 @@ from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import REGIME, Described, Shares, Summary
 from uq.contract import Output, Status
 from uq.render.figures.words import place_in_words, unbroken
-from uq.render.html.cells import SHARE, Cell, Table, cell, without_empty_columns
+from uq.render.html.cells import SHARE, Cell, HtmlTable, cell, without_empty_columns
 from uq.result.elements import elements_of, independent_rows
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
@@ -21,7 +21,7 @@ from uq.text.numbers import capitalized, percent, percent_interval, threshold
 from uq.text.units import typical, unit_of
 
 
-def status_table(ds: xr.Dataset, summary: Summary) -> Table:
+def status_table(ds: xr.Dataset, summary: Summary) -> HtmlTable:
     """Return the number and share of rows by status, its meaning, and the first message."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
@@ -32,10 +32,10 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
         cells = (count, Cell(percent(share), key=share, scale=SHARE))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "first message")
-    return without_empty_columns(Table("Status of all rows", header, rows))
+    return without_empty_columns(HtmlTable("Status of all rows", header, rows))
 
 
-def category_table(name: str, shares: Shares) -> Table:
+def category_table(name: str, shares: Shares) -> HtmlTable:
     """Return the share of each label of a category among the independent rows."""
     rows = [
         (
@@ -47,10 +47,10 @@ def category_table(name: str, shares: Shares) -> Table:
         for count in [one.facts["count"]]
     ]
     title = f"{capitalized(name)}, with 95 % intervals"
-    return Table(title, (name, "rows", "share"), rows)
+    return HtmlTable(title, (name, "rows", "share"), rows)
 
 
-def regime_tables(findings: Findings) -> list[Table]:
+def regime_tables(findings: Findings) -> list[HtmlTable]:
     """Return the share of each regime, and how intermingled they are where that is known."""
     if not findings.summary.regimes:
         return []
@@ -60,7 +60,7 @@ def regime_tables(findings: Findings) -> list[Table]:
         caption = "Boundary between the regimes, with 95 % interval"
         traced = cell(one)._replace(traced=key_of(*one.key))
         line = (Cell(one.label), traced, Cell(in_words(one)))
-        found.append(Table(caption, ("", "value", "meaning"), [line]))
+        found.append(HtmlTable(caption, ("", "value", "meaning"), [line]))
     return found
 
 
@@ -130,7 +130,7 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     return found
 
 
-def result_tables(found: list[Outcome]) -> Iterator[Table]:
+def result_tables(found: list[Outcome]) -> Iterator[HtmlTable]:
     """Yield the tables of statistics that are not empty."""
     shown = [
         (outcome, one)
@@ -144,7 +144,9 @@ def result_tables(found: list[Outcome]) -> Iterator[Table]:
         yield _table(listing, found, own)
 
 
-def _table(listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, Statistic]]) -> Table:
+def _table(
+    listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, Statistic]]
+) -> HtmlTable:
     """Lay out statistics in columns, in the order of `STATISTICS`."""
     columns = tuple(dict.fromkeys(_heading(one) for _, one in shown))
     rows: list[tuple[Cell, ...]] = []
@@ -152,7 +154,7 @@ def _table(listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, St
         own = [one for of, one in shown if of is outcome]
         rows += _rows(listing, outcome, own, columns)
     header = (listing.first, listing.by or "unit", *columns)
-    table = Table(listing.caption, header + ("note",) * bool(listing.by), rows)
+    table = HtmlTable(listing.caption, header + ("note",) * bool(listing.by), rows)
     return table if listing.keeps_empty else without_empty_columns(table)
 
 

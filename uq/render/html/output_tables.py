@@ -9,8 +9,8 @@ from uq.assess.answer.facts import Answer
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.render.html.answer import sayings
-from uq.render.html.cells import Table
-from uq.render.html.indices import Method, Subject, of_output, output_of
+from uq.render.html.cells import HtmlTable
+from uq.render.html.indices import IndexTable, MethodTable, of_output, output_of
 from uq.render.html.outcomes import Outcome, category_table, result_tables, words_used
 from uq.render.html.pictures import Picture
 from uq.result.elements import analysis_of, shown_outputs
@@ -25,20 +25,20 @@ class Group(NamedTuple):
     name, meaning : str
     said : Markup
         The answer, without what the head of the report says.
-    tables : list of Table
+    tables : list of HtmlTable
     words : list of str
         What the counts mean that occur.
     pictures : list of Picture
-    indices : list of Subject
+    indices : list of IndexTable
     """
 
     name: str
     meaning: str
     said: Markup
-    tables: list[Table]
+    tables: list[HtmlTable]
     words: list[str]
     pictures: list[Picture]
-    indices: list[Subject]
+    indices: list[IndexTable]
 
 
 def groups(
@@ -46,7 +46,7 @@ def groups(
     answer: Answer,
     found: Sequence[Outcome],
     drawn: Sequence[Picture],
-    methods: Sequence[Method],
+    methods: Sequence[MethodTable],
 ) -> Iterator[Group]:
     """Yield what is known of each output that the study asks for, the one it is about first.
 
@@ -58,7 +58,7 @@ def groups(
         The elements of all outputs.
     drawn : sequence of Picture
         Those that the head of the report does not show.
-    methods : sequence of Method
+    methods : sequence of MethodTable
     """
     ds = findings.ds
     shown = shown_outputs(ds, analysis_of(ds))
@@ -79,7 +79,7 @@ def groups(
             yield group
 
 
-def _shares(findings: Findings, name: str) -> Iterator[Table]:
+def _shares(findings: Findings, name: str) -> Iterator[HtmlTable]:
     """Yield the shares of a category, of each element."""
     for element, shares in findings.summary.categories.items():
         if element.partition("[")[0] == name and shares:

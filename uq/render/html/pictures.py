@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from uq.assess.findings import Findings
 from uq.plots import FIGURES
-from uq.render.figures.catalogue import Subject, drawables
+from uq.render.figures.catalogue import FigureSubject, drawables
 from uq.render.figures.figure import lay_out
 from uq.render.figures.style import WIDTH, styled
 from uq.render.html.paths import shortened
@@ -51,7 +51,7 @@ class Picture(NamedTuple):
     caption: str
     is_image: bool
     is_wide: bool = False
-    of: Subject = Subject()
+    of: FigureSubject = FigureSubject()
 
 
 def pictures(findings: Findings, section: str, without: Container[str] = ()) -> Iterator[Picture]:

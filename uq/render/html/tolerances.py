@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.assess.answer.tolerance_bound import Promise
+from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import called
 from uq.assess.densities import correlations
 from uq.assess.row_inputs import Inputs, inputs_of
@@ -68,7 +68,7 @@ def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] 
     }
 
 
-def promised(promise: Promise | None) -> Iterator[dict[str, Any]]:
+def promised(promise: ToleranceBound | None) -> Iterator[dict[str, Any]]:
     """Yield bounds that are promised, and that a quantile of weighted rows could replace."""
     if promise is None:
         return

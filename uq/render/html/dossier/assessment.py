@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from shlex import quote
 
 from uq.assess.findings import Findings
-from uq.render.html.cells import Cell, Table
+from uq.render.html.cells import Cell, HtmlTable
 from uq.render.html.dossier.items import Item
 from uq.render.html.inputs import fixed_inputs, input_tables
 from uq.render.html.pictures import pictures
@@ -68,13 +68,13 @@ def quantities(findings: Findings, file: str) -> Iterator[Item]:
         for one in [declared[name]]
     ]
     header = ("output", "meaning", "unit", "kind", "one for each")
-    yield Item("Quantities of interest", tables=[Table("Outputs", header, lines)])
+    yield Item("Quantities of interest", tables=[HtmlTable("Outputs", header, lines)])
     limits = [
         (Cell(name), Cell(quantity(at, declared[name].unit), key=at))
         for name, several in asked.thresholds.items()
         for at in several
     ]
-    stated = [Table("Thresholds", ("output", "threshold"), limits)] if limits else []
+    stated = [HtmlTable("Thresholds", ("output", "threshold"), limits)] if limits else []
     yield Item("Thresholds", tables=stated)
     yield Item(
         "Acceptance criteria", notes=["A study does not state which probability is allowed."]
@@ -123,7 +123,7 @@ def inputs(findings: Findings, file: str) -> Iterator[Item]:
         for name, one in study.uncertain.items()
         for origin in [study.uncertain[one.equals] if isinstance(one, Tied) else one]
     ]
-    shared = [Table("Level of each input", ("input", "level"), levels)] if is_nested(ds) else []
+    shared = [HtmlTable("Level of each input", ("input", "level"), levels)] if is_nested(ds) else []
     yield Item("Variability between units, and what all units share", tables=shared)
     learnt = str(ds.attrs.get("inspections", ""))
     yield Item("Inspections from which the laws were learnt", code=learnt)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from uq.render.html.cells import Table
-from uq.render.html.indices import Subject
+from uq.render.html.cells import HtmlTable
+from uq.render.html.indices import IndexTable
 from uq.render.html.pictures import Picture
 
 
@@ -21,9 +21,9 @@ class Item:
         Paragraphs.
     facts : sequence of tuple of str
         Names and values.
-    tables : sequence of Table
+    tables : sequence of HtmlTable
     pictures : sequence of Picture
-    subjects : sequence of Subject
+    subjects : sequence of IndexTable
         Indices.
     code : str
         Text as it stands in a file.
@@ -35,9 +35,9 @@ class Item:
     title: str
     text: Sequence[str] = ()
     facts: Sequence[tuple[str, str]] = ()
-    tables: Sequence[Table] = ()
+    tables: Sequence[HtmlTable] = ()
     pictures: Sequence[Picture] = ()
-    subjects: Sequence[Subject] = ()
+    subjects: Sequence[IndexTable] = ()
     code: str = ""
     html: Markup = Markup()
     notes: Sequence[str] = ()

@@ -13,7 +13,7 @@ from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import REGIME
 from uq.indices.methods import METHODS
 from uq.render.html.answer import fragment
-from uq.render.html.cells import Cell, Table
+from uq.render.html.cells import Cell, HtmlTable
 from uq.render.html.convergence import convergence_of
 from uq.render.html.dossier.items import Item
 from uq.render.html.fleets import fleet_notes, fleet_table
@@ -135,7 +135,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     )
 
 
-def _coverage_intervals(findings: Findings) -> Table:
+def _coverage_intervals(findings: Findings) -> HtmlTable:
     header = (
         "output",
         "unit",
@@ -147,7 +147,7 @@ def _coverage_intervals(findings: Findings) -> Table:
     )
     known = conclude(findings).quantities
     rows = [_interval(findings, one, one.range) for one in known if one.range is not None]
-    return Table("Estimates and coverage intervals", header, rows)
+    return HtmlTable("Estimates and coverage intervals", header, rows)
 
 
 def _interval(findings: Findings, one: Quantity, likely: Range) -> tuple[Cell, ...]:
@@ -171,7 +171,7 @@ def _interval(findings: Findings, one: Quantity, likely: Range) -> tuple[Cell, .
     )
 
 
-def _estimators(findings: Findings) -> list[Table]:
+def _estimators(findings: Findings) -> list[HtmlTable]:
     """Return what computes the statistics of the tables, and whom each of these cites."""
     shown = (
         (name, one)
@@ -188,7 +188,7 @@ def _estimators(findings: Findings) -> list[Table]:
         for one in map(cited, functions)
     ]
     header = ("estimator", "source", "function")
-    return [Table("Estimators", header, rows)] if rows else []
+    return [HtmlTable("Estimators", header, rows)] if rows else []
 
 
 def studies(findings: Findings, file: str) -> Iterator[Item]:
