@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from uq.errors import InputError, nearest, one_line
 from uq.files.paths import node
 from uq.machines.row_by_row import SEED
-from uq.sampling.input_faults import Fault, fault_of
+from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
 
 _LONGEST = 1_000_000  # bytes of a machine file
@@ -100,7 +100,7 @@ def _keys(annotation: Any) -> list[str]:
     return [field.alias or name for name, field in table.model_fields.items()]
 
 
-def refuse(path: Path, faults: Iterable[Fault]) -> None:
+def refuse(path: Path, faults: Iterable[InputFault]) -> None:
     """Refuse a machine file for its faults.
 
     Raises
@@ -235,56 +235,58 @@ def code_files(machine: MachineTable, folder: Path) -> list[Path]:
     return named
 
 
-def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
+def _faults(found: MachineFile, folder: Path) -> Iterator[InputFault]:
     machine = found.machine
     try:
         texts = [*machine.command, template_of(machine, folder)]
     except UnicodeDecodeError:
         problem = "is not a text in UTF-8; let the program read it from {machine_folder}"
-        yield Fault(("machine", "template"), problem, machine.template)
+        yield InputFault(("machine", "template"), problem, machine.template)
         return
     except OSError as error:
         problem = "no such file" if isinstance(error, FileNotFoundError) else one_line(error)
-        yield Fault(("machine", "template"), problem, machine.template)
+        yield InputFault(("machine", "template"), problem, machine.template)
         return
     if problem := _program_problem(machine.command[0], folder):
-        yield Fault(("machine", "command"), problem)
+        yield InputFault(("machine", "command"), problem)
     for argument in machine.command[1:]:
         if (folder / argument).is_file() and not Path(argument).is_absolute():
             problem = (
                 f"'{argument}' is beside this file, but the program runs in the folder of its row;"
                 f" write {{{FOLDER}}}/{argument}"
             )
-            yield Fault(("machine", "command"), problem)
+            yield InputFault(("machine", "command"), problem)
     for name in machine.environment:
         if not name or "=" in name:
-            yield Fault(("machine", "environment", name), "must be a name without '='")
+            yield InputFault(("machine", "environment", name), "must be a name without '='")
     if not _is_name(machine.input):
-        yield Fault(("machine", "input"), _IN_ROW, machine.input)
+        yield InputFault(("machine", "input"), _IN_ROW, machine.input)
     for name, output in found.outputs.items():
         if not _is_within(output.file):
-            yield Fault(("outputs", name, "file"), _IN_ROW, output.file)
+            yield InputFault(("outputs", name, "file"), _IN_ROW, output.file)
     try:
         nominal = {name: one.nominal for name, one in found.parameters.items()}
         filled(" ".join(texts), {**nominal, SEED: 0, FOLDER: ""})
     except ValueError as error:
-        yield Fault(("machine", "command"), f"a place in it or in the template: {error}")
+        yield InputFault(("machine", "command"), f"a place in it or in the template: {error}")
     for name in found.parameters:
         if name in (SEED, FOLDER):
-            yield Fault(("parameters", name), "is the name of another place; choose another")
+            yield InputFault(("parameters", name), "is the name of another place; choose another")
         if not any(re.search(_PLACE % name, text) for text in texts):
             problem = f"has no place {{{name}}} in command{' or template' * bool(machine.template)}"
-            yield Fault(("parameters", name), problem)
+            yield InputFault(("parameters", name), problem)
     for name, one in found.parameters.items():
         low, high = one.bounds
         if not (isfinite(one.nominal) and low <= one.nominal <= high):
-            yield Fault(("parameters", name, "nominal"), "must lie within the bounds", one.nominal)
+            yield InputFault(
+                ("parameters", name, "nominal"), "must lie within the bounds", one.nominal
+            )
     for file in machine.files:
         if not (folder / file).exists():
-            yield Fault(("machine", "files"), "no such file", file)
+            yield InputFault(("machine", "files"), "no such file", file)
     for code in machine.exit_codes:
         if not re.fullmatch(r"\d{1,3}", code):
-            yield Fault(("machine", "exit_codes", code), "must be a number between 1 and 255")
+            yield InputFault(("machine", "exit_codes", code), "must be a number between 1 and 255")
 
 
 def _program_problem(program: str, folder: Path) -> str:
