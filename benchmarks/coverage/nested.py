@@ -178,7 +178,7 @@ def integrated(repetitions):
                 y = _drawn(EFFECTS["normal"], rng, rest, (samples, units, repeats))
                 added = np.broadcast_to(np.reshape(known, (3, 1, 1, 1)), (3, *y.shape))
                 truth = np.add(rest, known) / (1 + sum(known))
-                found = nested_shares(y, known=added)
+                found = nested_shares(y, analytic=added)
                 for level, share, one in zip(PARTS, truth, found[:3], strict=True):
                     part = sum(known) / (1 + sum(known))
                     tally.estimate(f"{level}, {share:.3g}, {part:.0%} known", share, one)

@@ -58,7 +58,7 @@ def test_the_null_of_the_largest_is_passed_in_one_study_of_twenty_at_most(method
         found = of_plain_sample(method, x, rng.random(100), {})
         largest = max(index.value for index in found.values[kind].values())
         alarms += largest > found.nulls[kind].largest
-        single += largest > found.nulls[kind].one
+        single += largest > found.nulls[kind].limit
     assert alarms <= 5 and single > 20  # of sixty inputs some three pass that for one
     alone = of_plain_sample(method, {"x0": x["x0"]}, rng.random(100), {})
     assert list(alone.nulls) == [kind] and np.isnan(alone.nulls[kind].largest)

@@ -36,8 +36,8 @@ def lines(values: Values, nulls: Mapping[IndexKind, Null]) -> list[tuple[str, li
     ranked = ranking(values)
     found = [(label, [one[label] for one in values.values()]) for label in ranked]
     known = [nulls.get(kind, Null(nan)) for kind in values]
-    if any(isfinite(null.one) for null in known):
-        found.append(("(an input without effect)", [Estimate(null.one) for null in known]))
+    if any(isfinite(null.limit) for null in known):
+        found.append(("(an input without effect)", [Estimate(null.limit) for null in known]))
     if any(isfinite(null.largest) for null in known):
         label = f"(largest of {len(ranked)} such inputs)"
         found.append((label, [Estimate(null.largest) for null in known]))

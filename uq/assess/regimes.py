@@ -119,7 +119,7 @@ def _distances(inputs: dict[str, Floats], target: IndexTarget) -> list[float]:
         found = METHODS["regional"].indices(DesignSample.plain(target.values, inputs))
     except RefusedError:
         return [np.nan] * (len(inputs) + 1)
-    return [*(index.value for index in found.values[KS].values()), found.nulls[KS].one]
+    return [*(index.value for index in found.values[KS].values()), found.nulls[KS].limit]
 
 
 def _quantiles(values: Floats) -> Floats:

@@ -31,7 +31,7 @@ def _plain_target(one: TargetIndices) -> dict[str, Any]:
         entry["dummy"] = {
             key: number
             for kind, null in one.indices.nulls.items()
-            for key, number in ((kind.key, null.one), (f"{kind.key}_any", null.largest))
+            for key, number in ((kind.key, null.limit), (f"{kind.key}_any", null.largest))
             if isfinite(number)
         }
     return entry | {"notes": list(one.indices.notes)}

@@ -66,7 +66,7 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         data["by_correlation"] = (("output", "parameter"), due)
     for kind in {kind: None for one in targets for kind in one.indices.nulls}:
         nulls = [one.indices.nulls.get(kind, Null(np.nan)) for one in targets]
-        data[f"dummy_{kind.key}"] = ("output", [null.one for null in nulls])
+        data[f"dummy_{kind.key}"] = ("output", [null.limit for null in nulls])
         if np.isfinite([null.largest for null in nulls]).any():
             data[f"dummy_{kind.key}_any"] = ("output", [null.largest for null in nulls])
     return xr.Dataset(data, coords, {"method": found.method})

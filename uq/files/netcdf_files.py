@@ -32,7 +32,7 @@ _BASIC_AND_COUNT = 5
 
 
 def most_bytes(path: Path) -> int:
-    """Return how large the values of a file may be [bytes], by the space that it has on the disk.
+    """Return the largest size allowed for the values of a file [bytes], from its space on the disk.
 
     A sparse file has less than its size. File systems that report no space are taken at the size.
     """
@@ -51,7 +51,7 @@ def refuse_tricks(path: Path) -> None:
     Raises
     ------
     ValueError
-        With what is wrong: data in other files, links, groups, types or filters of its own, more
+        With the fault: data in other files, links, groups, types or filters of its own, more
         values than its space on the disk can hold.
     OSError
         When it is no netCDF file, or cannot be read.
@@ -189,12 +189,12 @@ def _values(
     with _closing(space_of(owner), library.H5Sclose) as space:
         count = _done(library.H5Sget_simple_extent_npoints(space))
     with _closing(type_of(owner), library.H5Tclose) as kind:
-        size, of = library.H5Tget_size(kind), library.H5Tget_class(kind)
-        if of not in _NUMBERS and of != _TEXT:
+        size, type_class = library.H5Tget_size(kind), library.H5Tget_class(kind)
+        if type_class not in _NUMBERS and type_class != _TEXT:
             raise ValueError(f"{label} has neither numbers nor text")
-        if of != _TEXT and size not in _NUMBERS[of]:
+        if type_class != _TEXT and size not in _NUMBERS[type_class]:
             raise ValueError(f"{label} has numbers of {size} bytes, which netCDF has not")
-        if of == _TEXT and library.H5Tis_variable_str(kind) > 0:
+        if type_class == _TEXT and library.H5Tis_variable_str(kind) > 0:
             size = max((most - _SLACK) // _INFLATION, 1)  # all may be one and the same long text
     _refuse_size(count * size, most)
     return count, size

@@ -21,7 +21,7 @@ _LONGEST = 225  # bytes in a name: the folder of rows beside a result appends an
 
 
 def node(path: Path) -> str:
-    """Return what a path is instead of a file, such as "a device"; "" if nothing is wrong."""
+    """Return the kind of a path that is not a file, such as "a device"; "" if nothing is wrong."""
     try:
         kind = stat.S_IFMT(path.stat().st_mode)
     except OSError as error:
@@ -60,8 +60,8 @@ def file_behind(path: Path, option: str = "-o") -> Path:
             return file
         case "a folder":
             raise InputError(f"{path}: is a folder; give the name of a file in it")
-        case what:
-            raise InputError(f"{path}: is {what}, not a file; choose another place with {option}")
+        case kind:
+            raise InputError(f"{path}: is {kind}, not a file; choose another place with {option}")
 
 
 def cache_path(name: str) -> Path:

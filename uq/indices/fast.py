@@ -39,10 +39,10 @@ def fast_indices(sample: DesignSample) -> Indices:
     """
     y, whole = sample.grouped, sample.whole
     parameters = [label.removeprefix("curve_") for label in sample.blocks]
-    for name, own in zip(parameters, whole.T, strict=True):
-        if not own.any():
+    for name, complete in zip(parameters, whole.T, strict=True):
+        if not complete.any():
             raise RefusedError(f"none of {len(whole)} curves for {name} has a value in each row")
-    moves = np.array([[not sample.is_constant(curve) for curve in own] for own in y])
+    moves = np.array([[not sample.is_constant(curve) for curve in curves] for curves in y])
     if sample.random and not (moves & whole).any(axis=0).all():
         raise RefusedError(ALL_NOISE)
     if not sample.random and not moves[whole].all():
@@ -55,15 +55,15 @@ def fast_indices(sample: DesignSample) -> Indices:
     scatter = dict.fromkeys(indices, 0.0)
     for i, name in enumerate(parameters):
         moving = y[whole[:, i] & moves[:, i], i]
-        own = np.array([_orders(curve, omega) for curve in moving])
+        shares = np.array([_orders(curve, omega) for curve in moving])
         spread = moving.var(axis=1).reshape(len(moving), -1).sum(axis=1)
         weights = spread if sample.random else None
-        for kind, column in zip(indices, own.T, strict=True):
+        for kind, column in zip(indices, shares.T, strict=True):
             indices[kind][name] = Estimate(float(np.average(column, weights=weights)))
             if len(column) > 1:
                 scatter[kind] = max(scatter[kind], float(column.std(ddof=1)))
-    found = " and ".join(f"{kind.key} by {sd:.2g}" for kind, sd in scatter.items() if sd)
-    seen = f": between replicates {found} at most (standard deviation)" if found else ""
+    deviations = " and ".join(f"{kind.key} by {sd:.2g}" for kind, sd in scatter.items() if sd)
+    seen = f": between replicates {deviations} at most (standard deviation)" if deviations else ""
     notes = [
         "no intervals: the method's own error, from representing an input by a few harmonics, does"
         f" not show in the scatter{seen}"
@@ -80,12 +80,12 @@ def fast_indices(sample: DesignSample) -> Indices:
 def _orders(curve: Floats, omega: int) -> Floats:
     """Return S1 and ST from the output along a curve, shape (points,) or (points, e).
 
-    Those of several elements are weighted by their variance.
+    Indices of several elements are averaged, weighted by their variance.
     """
     from SALib.analyze.fast import compute_orders
 
     elements = curve.reshape(len(curve), -1).T
-    moving = elements[[not is_constant(one) for one in elements]]
-    own = [compute_orders(one, len(one), HARMONICS, omega) for one in moving]
+    moving = elements[[not is_constant(element) for element in elements]]
+    orders = [compute_orders(element, len(element), HARMONICS, omega) for element in moving]
     weights = moving.var(axis=1)
-    return np.average(own, axis=0, weights=weights / weights.sum())
+    return np.average(orders, axis=0, weights=weights / weights.sum())

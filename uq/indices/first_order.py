@@ -116,7 +116,7 @@ def first_order_indices(sample: DesignSample) -> Indices:
 
 
 def _refuse_more_than_all(left: Estimate) -> None:
-    """Refuse indices that leave less than nothing to be explained."""
+    """Refuse indices whose sum significantly exceeds 1."""
     if left.high < 0:
         total, low, high = (1 - end for end in (left.value, left.high, left.low))
         raise RefusedError(
@@ -126,18 +126,19 @@ def _refuse_more_than_all(left: Estimate) -> None:
 
 
 def _without_effect(y: Floats, part: Part) -> Floats:
-    """Return the indices of inputs without effect."""
+    """Return the first-order indices of inputs without effect."""
     every = variance(y, part)
     orders = np.random.default_rng(0).random((DUMMIES, len(y))).argsort(axis=1)
     parts = [None if part is None else part[order] for order in orders]
     left = [
-        ordered_residual_variance(y[order], of) for order, of in zip(orders, parts, strict=True)
+        ordered_residual_variance(y[order], replicate)
+        for order, replicate in zip(orders, parts, strict=True)
     ]
     return 1 - np.array(left) / every
 
 
 class _OfRows(NamedTuple):
-    """Indices of k inputs, and what their errors are estimated from.
+    """Indices of k inputs, with the variances and covariances of their errors.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ def pooled_with_intervals(
     estimate: Callable[[Floats], Values],
     pooled: Floats,
     replicates: Sequence[Floats],
-    what: str,
+    noun: str,
     lacking: str = "",
     confidence: float = CONFIDENCE,
 ) -> tuple[dict[IndexKind, dict[str, Estimate]], tuple[str, ...]]:
@@ -43,9 +43,9 @@ def pooled_with_intervals(
     pooled : ndarray
         All whole groups.
     replicates : sequence of ndarray
-        Those of each replicate.
-    what : str
-        What a sentence calls the indices.
+        Groups of each replicate.
+    noun : str
+        Name of the indices in messages.
     lacking : str
         Why single replicates give no estimates, or "".
     confidence : float, optional
@@ -58,20 +58,20 @@ def pooled_with_intervals(
     """
     notes: tuple[str, ...] = ()
     if len(replicates) == 1:
-        notes = (f"no intervals: with replicates = 1 nothing shows the scatter of the {what}",)
+        notes = (f"no intervals: with replicates = 1 nothing shows the scatter of the {noun}",)
     elif lacking:
         notes = (f"no intervals: {lacking}",)
-    scatter = [] if notes else [estimate(own) for own in replicates]
+    scatter = [] if notes else [estimate(replicate) for replicate in replicates]
 
     def with_interval(kind: IndexKind, label: str, value: float) -> Estimate:
-        estimates = np.array([own[kind][label] for own in scatter])
+        estimates = np.array([values[kind][label] for values in scatter])
         return Estimate(value, *scatter_interval(value, estimates, confidence), lacking)
 
-    found = {
+    indices = {
         kind: {label: with_interval(kind, label, value) for label, value in values.items()}
         for kind, values in estimate(pooled).items()
     }
-    return found, notes
+    return indices, notes
 
 
 def with_difference(
@@ -113,7 +113,7 @@ def effective_rows(deviations: Floats) -> float:
 def one_more_row(
     deviations: Floats, groups: int, replicates: int, confidence: float = CONFIDENCE
 ) -> float:
-    """Return by how much one more row, as extreme as the most extreme, widens an interval.
+    """Return the half-width that one more row, as extreme as the most extreme, adds to an interval.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def beside_nulls(
     measure: Measure,
     correction: Callable[[Floats, Floats], Floats] | None = None,
 ) -> Callable[[DesignSample], Indices]:
-    """Return the estimate of indices with the null of inputs without effect.
+    """Return an estimator of indices that also gives their null, from inputs without effect.
 
     Parameters
     ----------
@@ -188,21 +188,23 @@ def beside_nulls(
         dummies = DUMMIES if sample.nulls or correction else 0
         columns = np.column_stack([*x.values(), rng.random((len(sample.values), dummies))])
         raw, notes = measure(columns, sample)
-        idle = {kind: one[len(x) :] for kind, one in raw.items()}
-        found: dict[IndexKind, dict[str, Estimate]] = {kind: {} for kind in raw}
+        idle = {kind: values[len(x) :] for kind, values in raw.items()}
+        indices: dict[IndexKind, dict[str, Estimate]] = {kind: {} for kind in raw}
         notes = (*notes, *_no_slices(list(x), raw))
         for i, (name, column) in enumerate(x.items()):
-            own = idle
-            sliced = not all(np.isnan(one[i]) for one in raw.values())
+            null_values = idle
+            sliced = not all(np.isnan(values[i]) for values in raw.values())
             if sliced and dummies and has_many_equal(column):
                 shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
-                own, _ = measure(shuffled, sample)
-                reached = {kind: corrected(one, one) for kind, one in own.items()}
-                notes = (*notes, _ownnull_of(name, reached))
-            for kind, one in raw.items():
-                found[kind][name] = Estimate(float(corrected(one[i], own[kind])))
-        reached = {kind: corrected(one, one) for kind, one in idle.items() if dummies}
-        return Indices(found, notes, {kind: null_of(one, len(x)) for kind, one in reached.items()})
+                null_values, _ = measure(shuffled, sample)
+                reached = {kind: corrected(values, values) for kind, values in null_values.items()}
+                notes = (*notes, _shuffled_note(name, reached))
+            for kind, values in raw.items():
+                indices[kind][name] = Estimate(float(corrected(values[i], null_values[kind])))
+        reached = {kind: corrected(values, values) for kind, values in idle.items() if dummies}
+        return Indices(
+            indices, notes, {kind: null_of(values, len(x)) for kind, values in reached.items()}
+        )
 
     return estimate
 
@@ -213,7 +215,7 @@ def null_of(reached: Floats, inputs: int) -> Null:
 
 
 def largest_of(inputs: int, idle: Floats) -> float:
-    """Return what the largest of several inputs without effect exceeds once in twenty, or less.
+    """Return an upper 95 % limit of the largest index of several inputs without effect.
 
     Parameters
     ----------
@@ -230,25 +232,28 @@ def largest_of(inputs: int, idle: Floats) -> float:
     """
     scale = float(idle.std(ddof=1)) * np.sqrt(6) / np.pi
     quantile = -np.log(-np.log(0.95 ** (1 / inputs)))
-    found = idle.mean() + scale * (quantile - np.euler_gamma)
-    return float(max(found, idle.max()))
+    gumbel_quantile = idle.mean() + scale * (quantile - np.euler_gamma)
+    return float(max(gumbel_quantile, idle.max()))
 
 
 def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[str]:
-    """Return which inputs have all rows in one slice; refuse if that is all of them."""
+    """Return a note on each input whose rows are all in one slice; refuse if all inputs are so."""
     reasons = [
         f"{name} has too few rows of any value but one: no {' or '.join(lost)}"
         for i, name in enumerate(names)
-        if (lost := [kind.key for kind, one in raw.items() if np.isnan(one[i])])
+        if (lost := [kind.key for kind, values in raw.items() if np.isnan(values[i])])
     ]
-    if all(np.isnan(one[: len(names)]).all() for one in raw.values()):
+    if all(np.isnan(values[: len(names)]).all() for values in raw.values()):
         raise RefusedError("; ".join(reasons))
     return reasons
 
 
-def _ownnull_of(name: str, own: Mapping[IndexKind, Floats]) -> str:
-    known = {kind.key: one.max() for kind, one in own.items() if np.isfinite(one).all()}
-    reached = ", ".join(f"{kind} = {one:.2g}" for kind, one in known.items())
+def _shuffled_note(name: str, null_values: Mapping[IndexKind, Floats]) -> str:
+    """Return a note on the indices of an input with many equal values after shuffling."""
+    maxima = {
+        kind.key: values.max() for kind, values in null_values.items() if np.isfinite(values).all()
+    }
+    reached = ", ".join(f"{kind} = {maximum:.2g}" for kind, maximum in maxima.items())
     return (
         f"{name} has many equal values: shuffled {DUMMIES} times, and so without effect, it reaches"
         f" {reached}"

@@ -80,8 +80,8 @@ def hdmr_indices(sample: DesignSample) -> Indices:
     shared = np.array([sum(v for pair, v in second.items() if i in pair) for i in range(k)])
     kinds = {S1: share[:k], ST: share[:k] + shared, SHAPLEY: share[:k] + shared / 2}
     values = {
-        kind: {name: Estimate(float(v)) for name, v in zip(x, own, strict=False)}
-        for kind, own in kinds.items()
+        kind: {name: Estimate(float(v)) for name, v in zip(x, shares, strict=False)}
+        for kind, shares in kinds.items()
     }
     values[S2] = {
         f"{names[i]},{names[j]}": Estimate(float(v)) for (i, j), v in second.items() if names[j]
@@ -90,12 +90,12 @@ def hdmr_indices(sample: DesignSample) -> Indices:
         f"polynomials of degree {degree} in one and in two inputs explain {explained:.1%} of the"
         " variance of rows held out; half of the inputs without effect exceed the null"
     )
-    nulls = {kind: Null(float(own[-1]), exceeded=0.5) for kind, own in kinds.items()}
+    nulls = {kind: Null(float(shares[-1]), exceeded=0.5) for kind, shares in kinds.items()}
     return Indices(values, (note,), nulls)
 
 
 def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:
-    """Return the degree that explains most of the rows held out, 0 for none, and how much."""
+    """Return the degree that explains most of the held-out variance (0: none), and its share."""
     half, k = len(y) // 2, x.shape[1]
     best, explained = 0, float("-inf")
     for degree in degrees:
@@ -120,7 +120,7 @@ def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
         For an input with a single value.
     """
     counts = [len(np.unique(column)) for column in x.T]
-    fewest, name = min(zip(counts, names, strict=True), key=lambda one: one[0])
+    fewest, name = min(zip(counts, names, strict=True), key=lambda pair: pair[0])
     if fewest == 1:
         raise RefusedError(
             f"{name} has the same value in all of {len(x)} rows: no polynomial can be fitted"

@@ -1,4 +1,4 @@
-"""Dependence measured by kernels: what decides an event, and what matters given that it happens.
+"""Kernel measures of dependence (HSIC): of an event, and of an output given an event.
 
 The Hilbert-Schmidt independence criterion (HSIC) is zero only if an input and what it is compared
 with are independent. It is computed by OpenTURNS, which is imported when it is first used.
@@ -78,21 +78,24 @@ def conditional_indices(sample: DesignSample) -> Indices:
         OpenTURNS is not installed.
     """
     ranked = replace(sample, values=mid_ranks(sample.values))
-    found = _indices(ranked)
+    indices = _indices(ranked)
     note = f"of the {len(sample.values)} rows in which it happens; there inputs may be dependent"
-    return replace(found, notes=(note, *found.notes))
+    return replace(indices, notes=(note, *indices.notes))
 
 
 def _indices(sample: DesignSample) -> Indices:
-    found = beside_nulls(one_kind(HSIC, _normalised))(sample)
+    indices = beside_nulls(one_kind(HSIC, _normalised))(sample)
     p_values = {name: Estimate(_p_value(x, sample.values)) for name, x in sample.inputs.items()}
-    return replace(found, values={P: p_values, **found.values})
+    return replace(indices, values={P: p_values, **indices.values})
 
 
 def _normalised(x: Floats, y: Floats) -> Floats:
     """Return the normalised HSIC of each column of inputs; NaN for a constant one."""
     return np.array(
-        [_estimator(one, y).getR2HSICIndices()[0] if np.ptp(one) else np.nan for one in x.T]
+        [
+            _estimator(column, y).getR2HSICIndices()[0] if np.ptp(column) else np.nan
+            for column in x.T
+        ]
     )
 
 

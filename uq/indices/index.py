@@ -54,19 +54,19 @@ SHAPLEY = IndexKind("shapley", "Shapley effect", "variance")
 
 @dataclass(frozen=True)
 class Null:
-    """The indices of inputs without effect, by the same estimate.
+    """Limits of the index of inputs without effect, by the same estimator.
 
     Attributes
     ----------
-    one : float
-        A limit for one of them.
+    limit : float
+        The index of a single input without effect exceeds it with probability `exceeded`.
     largest : float
-        What the largest of as many inputs as there are exceeds once in twenty; NaN if not known.
+        Upper 95 % limit of the largest index if no input has an effect; NaN if not estimated.
     exceeded : float
-        Share of inputs without effect that exceed `one`.
+        Share of inputs without effect that exceed `limit`.
     """
 
-    one: float
+    limit: float
     largest: float = nan
     exceeded: float = 0.05
 
@@ -111,7 +111,7 @@ class Indices:
 
 
 BY_CORRELATION = "by correlation alone"
-"""What stands beside the index of such an input."""
+"""Label beside the index of an input whose share is due to correlation alone."""
 
 
 class RefusedError(Exception):

@@ -66,7 +66,7 @@ def _random_balance(order: NDArray[np.intp], y: Floats, total: float) -> float:
 
 
 def _correlation_ratio(column: Floats, y: Floats, total: float) -> float:
-    """Return one less the variance of y within slices of an input over that of all.
+    """Return the bias-corrected correlation ratio: 1 - variance within slices / total variance.
 
     References
     ----------
@@ -77,9 +77,9 @@ def _correlation_ratio(column: Floats, y: Floats, total: float) -> float:
 
     def ratio(number: NDArray[np.intp]) -> float:
         counts = np.bincount(number)
-        means = [np.bincount(number, one) / counts for one in elements]
+        means = [np.bincount(number, element) / counts for element in elements]
         pairs = zip(elements, means, strict=True)
-        within = sum(float(((one - mean[number]) ** 2).sum()) for one, mean in pairs)
+        within = sum(float(((element - mean[number]) ** 2).sum()) for element, mean in pairs)
         return 1 - within / (n - len(counts)) / (n * total / (n - 1))
 
     return float(by_slices(column[:, None], even_cuts(n, _VALUE_SLICES), ratio)[0])
@@ -124,8 +124,8 @@ def delta(x: Floats, y: Floats) -> Floats:
 
     def area(number: NDArray[np.intp]) -> float:
         parts = [scores[number == k] for k in range(number.max() + 1)]
-        areas = [np.trapezoid(np.abs(_density(one, grid) - anywhere), grid) for one in parts]
-        return float(np.dot([len(one) for one in parts], areas) / (2 * n))
+        areas = [np.trapezoid(np.abs(_density(part, grid) - anywhere), grid) for part in parts]
+        return float(np.dot([len(part) for part in parts], areas) / (2 * n))
 
     return by_slices(x, even_cuts(n, slices), area)
 
@@ -218,8 +218,8 @@ def as_event(values: Floats) -> Mask:
 def _distance(column: Floats, happens: Mask) -> float:
     values, place = np.unique(column, return_inverse=True)
     if len(values) > MOST_CATEGORIES:
-        found = scipy.stats.ks_2samp(column[happens], column[~happens], method="asymp")
-        return float(found.statistic)
+        test = scipy.stats.ks_2samp(column[happens], column[~happens], method="asymp")
+        return float(test.statistic)
     inside, outside = (
         np.bincount(place[side], minlength=len(values)) / side.sum() for side in (happens, ~happens)
     )

@@ -121,8 +121,8 @@ class SensitivityMethod:
             note = (
                 f"from {self.most_rows} of {kept} rows, chosen at random: all would take too long"
             )
-        found = self.estimate(sample.rows(rows))
-        return replace(found, notes=(note, *found.notes) if note else found.notes)
+        indices = self.estimate(sample.rows(rows))
+        return replace(indices, notes=(note, *indices.notes) if note else indices.notes)
 
     def refuse_few_groups(self, sample: DesignSample) -> None:
         """Refuse a sample in which too few groups have a value in each row."""

@@ -200,12 +200,12 @@ def for_dependent_inputs() -> tuple[str, ...]:
 def kinds_with_intervals(design: Design) -> dict[str, tuple[IndexKind, str]]:
     """Return the indices of single inputs that groups of rows estimate: key -> kind and method.
 
-    Those of a plain sample are no means over groups, which a run with `until` could forecast.
+    Indices of a plain sample are excluded: a run with `until` can forecast only means over groups.
     """
-    found: dict[str, tuple[IndexKind, str]] = {}
+    kinds: dict[str, tuple[IndexKind, str]] = {}
     for name in fed_by(design):
         method = METHODS[name]
         for kind in method.kinds if method.intervals and method.layout is not PLAIN else ():
             if not kind.of_pairs:
-                found.setdefault(kind.key, (kind, name))
-    return found
+                kinds.setdefault(kind.key, (kind, name))
+    return kinds

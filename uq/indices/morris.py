@@ -54,21 +54,21 @@ def morris_indices(sample: DesignSample) -> Indices:
     # A step within one of several discrete values changes no input, and has no effect.
     effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), sample.direction) / STEP
 
-    replicates = [own[rows] for own, rows in zip(effects, whole, strict=True)]
+    replicates = [replicate[rows] for replicate, rows in zip(effects, whole, strict=True)]
     rounding = ROUNDING * np.abs(y[whole]).max()
-    few = any(len(own) < 2 for own in replicates)
+    few = any(len(replicate) < 2 for replicate in replicates)
     lacking = "some replicates have fewer than two whole trajectories" if few else ""
 
     def measures(effects: Floats) -> Values:  # of shape (n, d); no sigma below rounding
         sigma = effects.std(axis=0, ddof=1)
-        found = {
+        statistics = {
             MU: effects.mean(axis=0),
             SIGMA: np.where(sigma > rounding, sigma, 0.0),
             MU_STAR: np.abs(effects).mean(axis=0),
         }
         return {
-            kind: dict(zip(sample.inputs, (unit * own).tolist(), strict=True))
-            for kind, own in found.items()
+            kind: dict(zip(sample.inputs, (unit * values).tolist(), strict=True))
+            for kind, values in statistics.items()
         }
 
     return Indices(*pooled_with_intervals(measures, effects[whole], replicates, "effects", lacking))

@@ -1,4 +1,4 @@
-"""Parts of the variance that paths show, with a polynomial as control variate."""
+"""Parts of the variance estimated from paths, with a polynomial as control variate."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from uq.indices.sample import DesignSample
 from uq.stats.intervals import ROUNDING
 
 MIN_SEEN = 10
-"""With fewer paths it is not known whether an input has an effect of its own."""
+"""With fewer paths an effect of the input itself cannot be excluded."""
 
 
 def parts_of(sample: DesignSample, y: Floats) -> Floats:
-    """Return what the steps of each input add to half the square of the change along each path.
+    """Return the contribution of each input to half the squared change along each path.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ def parts_of(sample: DesignSample, y: Floats) -> Floats:
 
 
 def changes_alone(sample: DesignSample) -> Mask:
-    """Return along which whole path each input changes the output by itself, shape (n, d).
+    """Return the mask of whole paths along which each input alone changes the output, shape (n, d).
 
-    It can do so where it is the first to change: all others then keep their values.
+    An input shows this where it is the first to change: all others then keep their values.
     """
     y = sample.grouped[sample.whole]
     moved = np.abs(y[:, 1] - y[:, 0]) > ROUNDING * np.abs(y).max()
@@ -45,7 +45,7 @@ def changes_alone(sample: DesignSample) -> Mask:
 def paths_without_effect(sample: DesignSample, name: str) -> int:
     """Return how many paths show that a correlated input has no effect of its own; else 0.
 
-    Only paths along which the output changes say something.
+    Only paths along which the output changes are informative.
     """
     if not sample.correlated.get(name):
         return 0
@@ -71,7 +71,7 @@ MOST_NUMBERS = 30_000_000
 
 
 def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
-    """Replace what a polynomial's parts are on the paths by what they are.
+    """Correct the parts of the variance by a polynomial as control variate.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
 
 
 def _errors(sample: DesignSample, parts: Floats) -> Floats:
-    """Return the parts of a polynomial on each path, less what they are."""
+    """Return the parts of a polynomial estimated on each path, less their exact values."""
     errors = np.zeros_like(parts)
     y = sample.grouped[sample.whole]
     n, rows = y.shape[:2]
@@ -123,24 +123,24 @@ def _errors(sample: DesignSample, parts: Floats) -> Floats:
     folds = [np.arange(n) % FOLDS == i for i in range(FOLDS)]
     squares = np.stack([_products_of(values[fold], values[fold]) for fold in folds])
     sums = np.stack([_products_of(values[fold], y[fold]) for fold in folds])
-    for fold, own, sum_ in zip(folds, squares, sums, strict=True):
-        others = squares.sum(axis=0) - own, sums.sum(axis=0) - sum_
+    for fold, fold_squares, fold_sums in zip(folds, squares, sums, strict=True):
+        others = squares.sum(axis=0) - fold_squares, sums.sum(axis=0) - fold_sums
         weights = np.linalg.lstsq(*others, rcond=None)[0]
         control[fold] = values[fold] @ weights
         errors[fold] -= shapley_values(weights[1:], terms, sample.matrix)
     return errors + parts_of(sample, control)
 
 
-def _products_of(one: Floats, other: Floats) -> Floats:
-    """Return the sums over rows of the products of columns."""
-    return np.asarray(np.tensordot(one, other, axes=((0, 1), (0, 1))))
+def _products_of(left: Floats, right: Floats) -> Floats:
+    """Return the cross products of columns, summed over paths and rows."""
+    return np.asarray(np.tensordot(left, right, axes=((0, 1), (0, 1))))
 
 
 def _used(sample: DesignSample) -> list[int]:
-    """Return the places of the inputs that the polynomial is about.
+    """Return the places of the inputs of the polynomial.
 
-    Not of those that never change the output by themselves: if they have no effect, paths show that
-    exactly.
+    Inputs that never change the output by themselves are excluded: if they have no effect, paths
+    show that exactly.
     """
-    known = np.isfinite(sample.scores[0, 0, 0])
-    return np.flatnonzero(known & changes_alone(sample).any(axis=0)).tolist()
+    has_scores = np.isfinite(sample.scores[0, 0, 0])
+    return np.flatnonzero(has_scores & changes_alone(sample).any(axis=0)).tolist()

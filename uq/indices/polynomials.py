@@ -39,7 +39,7 @@ class Form(NamedTuple):
 
 
 def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, ...]:
-    """Return the products of some scores up to the highest degree with at most so many of them.
+    """Return the products of scores up to the highest degree with at most `most` products.
 
     Parameters
     ----------
@@ -51,17 +51,17 @@ def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, 
     Returns
     -------
     tuple of tuple of int
-        Without products that belong to more than `MOST_TOGETHER` inputs: their own, and those
-        correlated with these.
+        Without products that belong to more than `MOST_TOGETHER` inputs: its factors, and inputs
+        correlated with them.
     """
-    found: tuple[Term, ...] = ()
+    terms: tuple[Term, ...] = ()
     for degree in range(1, DEGREE + 1):
         if comb(len(places) + degree, degree) - 1 > most:
             break
         more = combinations_with_replacement(places, degree)
         groups = _groups(matrix)
-        found += tuple(one for one in more if len(_inputs_of(one, groups)) <= MOST_TOGETHER)
-    return found
+        terms += tuple(term for term in more if len(_inputs_of(term, groups)) <= MOST_TOGETHER)
+    return terms
 
 
 def products(z: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
@@ -76,25 +76,25 @@ def products(z: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (..., terms)
-        Those of different degree are uncorrelated, and have mean zero. Of independent scores they
-        are products of Hermite polynomials. Scaled to a variance of the order of one.
+        Products of different degree are uncorrelated, and have mean zero. Of independent scores
+        they are products of Hermite polynomials. Scaled to a variance of the order of one.
     """
-    known: dict[Term, Floats] = {(): np.ones(z.shape[:-1])}
+    cache: dict[Term, Floats] = {(): np.ones(z.shape[:-1])}
 
     def product(term: Term) -> Floats:
-        if term not in known:
-            one, rest = term[0], term[1:]
-            found = z[..., one] * product(rest)
+        if term not in cache:
+            first, rest = term[0], term[1:]
+            value = z[..., first] * product(rest)
             for i, other in enumerate(rest):
-                if matrix[one, other]:
-                    found = found - matrix[one, other] * product(rest[:i] + rest[i + 1 :])
-            known[term] = found
-        return known[term]
+                if matrix[first, other]:
+                    value = value - matrix[first, other] * product(rest[:i] + rest[i + 1 :])
+            cache[term] = value
+        return cache[term]
 
-    found = np.empty((*z.shape[:-1], len(terms)))
+    values = np.empty((*z.shape[:-1], len(terms)))
     for i, term in enumerate(terms):
-        found[..., i] = product(term) * _scale(term)
-    return found
+        values[..., i] = product(term) * _scale(term)
+    return values
 
 
 def shapley_values(weights: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
@@ -122,11 +122,11 @@ def shapley_values(weights: Floats, terms: Sequence[Term], matrix: Floats) -> Fl
     .. [1] S. Janson, "Gaussian Hilbert Spaces", Cambridge University Press (1997), theorems 3.9
        and 4.9.
     """
-    found = np.zeros(len(matrix))
+    effects = np.zeros(len(matrix))
     for form in _forms(tuple(terms), matrix.tobytes()):
-        own = weights[form.terms]
-        found[form.inputs] += np.einsum("itu,tu->i", form.matrices, own @ own.T)
-    return found
+        form_weights = weights[form.terms]
+        effects[form.inputs] += np.einsum("itu,tu->i", form.matrices, form_weights @ form_weights.T)
+    return effects
 
 
 @lru_cache(maxsize=8)
@@ -137,28 +137,30 @@ def _forms(terms: tuple[Term, ...], matrix: bytes) -> list[Form]:
     groups, together = _groups(square), defaultdict[tuple[int, ...], list[int]](list)
     for i, term in enumerate(terms):
         together[_inputs_of(term, groups)].append(i)
-    return [_form(terms, own, inputs, square) for inputs, own in together.items()]
+    return [_form(terms, indices, inputs, square) for inputs, indices in together.items()]
 
 
-def _form(terms: tuple[Term, ...], own: list[int], inputs: tuple[int, ...], matrix: Floats) -> Form:
-    """Return the form of some products, by the sets of their inputs: L. S. Shapley (1953)."""
+def _form(
+    terms: tuple[Term, ...], indices: list[int], inputs: tuple[int, ...], matrix: Floats
+) -> Form:
+    """Return the form of a group of products, by subsets of their inputs: L. S. Shapley (1953)."""
     d = len(inputs)
-    found = np.zeros((d, len(own), len(own)))
+    matrices = np.zeros((d, len(indices), len(indices)))
     for size in range(1, d + 1):
-        for some in combinations(range(d), size):
-            known = [inputs[i] for i in some]
-            explained = _explained([terms[i] for i in own], known, matrix)
+        for subset in combinations(range(d), size):
+            given = [inputs[i] for i in subset]
+            explained = _explained([terms[i] for i in indices], given, matrix)
             share = np.full(d, -1 / (d - size) / comb(d, size) if size < d else 0.0)
-            share[list(some)] = 1 / size / comb(d, size)
-            found += share[:, None, None] * explained
-    return Form(own, list(inputs), found)
+            share[list(subset)] = 1 / size / comb(d, size)
+            matrices += share[:, None, None] * explained
+    return Form(indices, list(inputs), matrices)
 
 
-def _explained(terms: list[Term], known: list[int], matrix: Floats) -> Floats:
-    """Return the covariances of the means of products given some scores."""
-    shared = matrix[:, known] @ np.linalg.solve(matrix[np.ix_(known, known)], matrix[known])
+def _explained(terms: list[Term], given: list[int], matrix: Floats) -> Floats:
+    """Return the covariances of the conditional means of products, given scores."""
+    shared = matrix[:, given] @ np.linalg.solve(matrix[np.ix_(given, given)], matrix[given])
     scale = np.array([_scale(term) for term in terms])
-    found = np.zeros((len(terms), len(terms)))
+    covariances = np.zeros((len(terms), len(terms)))
     degrees = np.array([len(term) for term in terms])
     for degree in set(degrees.tolist()):
         rows = np.flatnonzero(degrees == degree)
@@ -168,22 +170,22 @@ def _explained(terms: list[Term], known: list[int], matrix: Floats) -> Floats:
             prod(pairs[..., i, j] for i, j in enumerate(order))
             for order in permutations(range(degree))
         )
-        found[np.ix_(rows, rows)] = sum(ways)
-    return np.asarray(found * scale * scale[:, None])
+        covariances[np.ix_(rows, rows)] = sum(ways)
+    return np.asarray(covariances * scale * scale[:, None])
 
 
 def _scale(term: Term) -> float:
-    """Return one over the standard deviation that the product has if scores are independent."""
+    """Return the reciprocal standard deviation of a product of independent scores."""
     return 1 / sqrt(prod(factorial(term.count(place)) for place in set(term)))
 
 
 def _groups(matrix: Floats) -> Floats:
-    """Return the number of each input's group: of those correlated, directly or through others."""
+    """Return the group of each input: inputs correlated directly or through others share one."""
     from scipy.sparse.csgraph import connected_components
 
     return np.asarray(connected_components(matrix != 0, directed=False)[1])
 
 
 def _inputs_of(term: Term, groups: Floats) -> tuple[int, ...]:
-    """Return the inputs that a product, or the mean of it given others, depends on."""
+    """Return the inputs on which a product, or its conditional mean given others, depends."""
     return tuple(np.flatnonzero(np.isin(groups, groups[list(term)])).tolist())

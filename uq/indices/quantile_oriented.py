@@ -50,7 +50,7 @@ def quantile_indices(
     .. [1] J.-C. Fort, T. Klein, N. Rachdi, "New sensitivity analysis subordinated to a contrast",
        Commun. Stat. Theory Methods 45, 4349-4364 (2016).
     """
-    y, found, notes = sample.values, {}, []
+    y, indices, notes = sample.values, {}, []
     for name, p in sample.quantiles.items():
         rows = max(_ROWS_IN_SLICE, int(np.ceil(_ROWS_BEYOND / min(p, 1 - p))))
         if len(y) < MIN_SLICES * rows:
@@ -63,10 +63,10 @@ def quantile_indices(
         else:
             cuts = even_cuts(len(y), min(len(y) // rows, MOST_SLICES))
             remains = by_slices(x, cuts, partial(_remains, y, p), rows)
-            found[IndexKind(name, name)] = 1 - remains / whole
-    if not found:
+            indices[IndexKind(name, name)] = 1 - remains / whole
+    if not indices:
         raise RefusedError("; ".join(notes))
-    return found, tuple(notes)
+    return indices, tuple(notes)
 
 
 def without_optimism(raw: Floats, idle: Floats) -> Floats:

@@ -25,7 +25,7 @@ Part = NDArray[np.integer] | None
 
 
 class Residual(NamedTuple):
-    """The residual variance, and what its error is estimated from.
+    """The residual variance, with the terms from which its error is estimated.
 
     Attributes
     ----------
@@ -184,7 +184,7 @@ def _extrapolated(y: Floats, part: Part) -> _Extrapolated:
 
 
 def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
-    """Return how much each row counts, relative to one with two partners at each lag.
+    """Return the weight of each row, relative to a row with two partners at each lag.
 
     Near the ends of the order rows count a quarter less, and those they meet a quarter more.
     """
@@ -223,7 +223,7 @@ def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
 
 
 def _used(part: Part, lag: int) -> float:
-    """Return the share of the pairs of rows some places apart that are of two replicates."""
+    """Return the share of pairs of rows at this lag that belong to two replicates."""
     return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
 
 
@@ -258,7 +258,7 @@ def _unbent(
 
 
 def _half_square(y: Floats, part: Part, lag: int) -> float:
-    """Return half the mean squared difference of rows some places apart."""
+    """Return half the mean squared difference of rows at this lag."""
     steps = y[lag:] - y[:-lag]
     if part is None:  # the counts of both ends make up for the pairs that are lacking
         first, last = steps[:lag].ravel(), steps[-lag:].ravel()

@@ -1,4 +1,4 @@
-"""What a sensitivity method works on: one output and the rows of its design."""
+"""The data of a sensitivity method: one output and the rows of its design."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -78,17 +78,17 @@ class DesignSample:
 
     @cached_property
     def whole(self) -> Mask:
-        """Which groups have a value in each of their rows, shape (R, N)."""
-        known = np.isfinite(self.grouped)
-        return np.asarray(known.all(axis=tuple(range(2, known.ndim))))
+        """Mask of groups with a value in each of their rows, shape (R, N)."""
+        finite = np.isfinite(self.grouped)
+        return np.asarray(finite.all(axis=tuple(range(2, finite.ndim))))
 
     def is_constant(self, values: Floats) -> bool:
-        """Whether each element is constant over these values of some rows, the last axis (e,)."""
+        """Return whether each element is constant over rows; the last axis of values is (e,)."""
         elements = self.values.shape[1] if self.values.ndim > 1 else 1
-        return all(is_constant(one) for one in values.reshape(-1, elements).T)
+        return all(is_constant(element) for element in values.reshape(-1, elements).T)
 
     def rows(self, kept: NDArray[np.intp]) -> Self:
-        """Return some rows of a plain sample."""
+        """Return the selected rows of a plain sample."""
         return replace(
             self,
             values=self.values[kept],

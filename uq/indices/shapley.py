@@ -15,7 +15,7 @@ MIN_PATHS = 32
 """With fewer paths Student's law does not give the interval of a mean."""
 
 EXACT = 1e-9
-"""The least half-width of an interval: what rounding may leave of an effect known by formula."""
+"""The least half-width of an interval: the rounding error of an exact effect."""
 
 
 def shapley_indices(sample: DesignSample) -> Indices:
@@ -79,9 +79,9 @@ def shapley_indices(sample: DesignSample) -> Indices:
     names, single = list(sample.inputs), np.eye(plain.shape[1])
     contrasts = dict(zip(names, single, strict=True))
     if sample.difference:
-        one, other = (contrasts[name] for name in sample.difference)
-        contrasts[" - ".join(sample.difference)] = one - other
-    found, alike = {}, []
+        first, second = (contrasts[name] for name in sample.difference)
+        contrasts[" - ".join(sample.difference)] = first - second
+    effects, alike = {}, []
     for name, contrast in contrasts.items():
         share, error = float(shares @ contrast), errors @ contrast
         # Where every path shows the same, scatter is rounding.
@@ -89,19 +89,19 @@ def shapley_indices(sample: DesignSample) -> Indices:
         alike += [name] * certain
         low, high = scatter_interval(share, error, sample.confidence)
         ends = np.fmin(low, share - EXACT), np.fmax(high, share + EXACT)
-        found[name] = Estimate(share, *(UNKNOWN if certain else ends))
+        effects[name] = Estimate(share, *(UNKNOWN if certain else ends))
     idle = {name: paths for name in names if (paths := paths_without_effect(sample, name))}
     notes = tuple(
         f"{name} does not change the output by itself in any of {paths} paths: its share is due to"
         f" its correlation with {choices(sample.correlated[name])}"
         for name, paths in idle.items()
     )
-    inert = [name for name in alike if found[name].value == 0 and name not in idle]
+    inert = [name for name in alike if effects[name].value == 0 and name not in idle]
     if inert:
         notes += (f"no effect in any row, hence no interval: {', '.join(inert)}",)
-    if others := [name for name in alike if found[name].value != 0]:
+    if others := [name for name in alike if effects[name].value != 0]:
         notes += (f"the same share along each path, hence no interval: {', '.join(others)}",)
-    return Indices({SHAPLEY: found}, notes, by_correlation=tuple(idle))
+    return Indices({SHAPLEY: effects}, notes, by_correlation=tuple(idle))
 
 
 def _linearised(parts: Floats, leverage: Floats | float = 0.0) -> tuple[Floats, Floats]:

@@ -31,7 +31,7 @@ Estimates = Callable[[Sequence[str], Floats], Values]
 def sobol_indices(sample: DesignSample, estimates: Estimates | None = None) -> Indices:
     """Estimate first-order, total and, where the design has them, second-order indices.
 
-    Those of a whole output are aggregated [5]_: parts of the variance are summed over its elements.
+    Indices of a whole output are aggregated [5]_: parts of the variance are summed over elements.
 
     Parameters
     ----------
@@ -84,11 +84,13 @@ def sobol_indices(sample: DesignSample, estimates: Estimates | None = None) -> I
     y = (y - independent.mean(axis=(0, 1))) / np.sqrt(independent.var(axis=(0, 1)).sum())
 
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
-    few = any(len(own) < 2 or sample.is_constant(own[:, ends]) for own in replicates)
+    few = any(
+        len(replicate) < 2 or sample.is_constant(replicate[:, ends]) for replicate in replicates
+    )
     lacking = "in some replicates too few rows differ" if few else ""
     of_blocks = partial(estimates or _estimates, sample.blocks)
     estimate = with_difference(of_blocks, sample.difference)
-    found, notes = pooled_with_intervals(
+    pooled, notes = pooled_with_intervals(
         estimate, y[whole], replicates, "indices", lacking, sample.confidence
     )
     independent = y[whole][:, ends].reshape(-1, *y.shape[3:])
@@ -102,13 +104,15 @@ def sobol_indices(sample: DesignSample, estimates: Estimates | None = None) -> I
         )
     indices = {
         kind: {label: widened(estimate, more) for label, estimate in values.items()}
-        for kind, values in found.items()
+        for kind, values in pooled.items()
     }
     noise = indices.pop(_NOISE, {}).get("")
     inert = [name for name, total in indices[ST].items() if total.value == 0]
     if inert:
         notes += (f"no effect in any row, hence no interval: {', '.join(inert)}",)
-    alike = [name for name, one in indices[ST].items() if not (name in inert or one.has_interval)]
+    alike = [
+        name for name, total in indices[ST].items() if not (name in inert or total.has_interval)
+    ]
     if alike and given:
         notes += (f"the same ST in each replicate, hence no interval: {', '.join(alike)}",)
     return Indices(indices, notes, noise=noise)
@@ -122,20 +126,20 @@ def _estimates(blocks: Sequence[str], y: Floats) -> Values:
     """Return each index from groups y, shape (n, blocks) or (n, blocks, e)."""
     block = dict(zip(blocks, np.moveaxis(y, 1, 0), strict=True))
     a, b, names = block["A"], block["B"], _parameters(blocks)
-    found = {
+    indices = {
         S1: {name: first_order(a, block[f"AB_{name}"], b) for name in names},
         ST: {name: total_order(a, block[f"AB_{name}"], b) for name in names},
     }
     if NOISE in block:
-        found[_NOISE] = {"": total_order(a, block[NOISE], b)}
+        indices[_NOISE] = {"": total_order(a, block[NOISE], b)}
     if any(label.startswith("BA_") for label in block):
-        found[S2] = {
-            f"{one},{other}": second_order(
-                a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b
+        indices[S2] = {
+            f"{first},{second}": second_order(
+                a, block[f"AB_{first}"], block[f"AB_{second}"], block[f"BA_{first}"], b
             )
-            for one, other in combinations(names, 2)
+            for first, second in combinations(names, 2)
         }
-    return found
+    return indices
 
 
 def first_order(a: Floats, ab: Floats, b: Floats) -> float:
@@ -145,7 +149,7 @@ def first_order(a: Floats, ab: Floats, b: Floats) -> float:
     al. 2014). The product of A and B, of mean zero, is a control variate: by chance, B correlates
     with AB_i as far as it does with A and A is like AB_i, by 1 - ST (Glen & Isaacs 2012).
     """
-    a, ab, b = (one - one.mean(axis=0) for one in (a, ab, b))
+    a, ab, b = (block - block.mean(axis=0) for block in (a, ab, b))
     apart, spread = np.mean((a - ab) ** 2, axis=0) / 2, np.var(np.r_[a, ab], axis=0)
     alike = 1 - np.divide(apart, spread, out=np.zeros_like(apart), where=spread > 0)
     return _share(np.mean(b * (ab - alike * a), axis=0), b, ab)
@@ -159,12 +163,12 @@ def total_order(a: Floats, ab: Floats, b: Floats) -> float:
 def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
     """Return S2 from the blocks A, AB_i, AB_j, BA_i and B: Saltelli (2002)."""
     parts = (ba * ab_other - a * b, b * (ab - a), b * (ab_other - a))
-    both, one, other = (_share(np.mean(part, axis=0), a, b) for part in parts)
-    return both - one - other
+    both, first, second = (_share(np.mean(part, axis=0), a, b) for part in parts)
+    return both - first - second
 
 
 def _share(part: Floats, a: Floats, b: Floats) -> float:
-    """Return a part of the variance over all of it; 0 where there is none but by rounding."""
+    """Return a part of the variance over the total variance; 0 if the total is only rounding."""
     variance = np.var(np.r_[a, b], axis=0).sum()
     return float(part.sum() / variance) if variance > np.finfo(float).eps else 0.0
 
@@ -192,4 +196,4 @@ def pilot(sample: DesignSample) -> dict[IndexKind, float]:
         # A ratio of means, whose error is that of a difference.
         spread[S1].append(np.std(product - product.mean() * (b**2 + ab**2) / 2))
         spread[ST].append(np.std(apart))
-    return {kind: max(of) for kind, of in spread.items()}
+    return {kind: max(deviations) for kind, deviations in spread.items()}

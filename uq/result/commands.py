@@ -10,7 +10,7 @@ from uq.study.model_files import file_with, shortened
 
 _FILE = "result_file"
 _MODEL = "model_reference"
-_NEAR = 3  # folders: the current one, that of the result, and the one above
+_NEAR = 3  # folders: the current one, the result's, and the one above
 
 
 def named(ds: xr.Dataset, file: str) -> xr.Dataset:
@@ -20,7 +20,7 @@ def named(ds: xr.Dataset, file: str) -> xr.Dataset:
 
 
 def file_of(ds: xr.Dataset) -> str:
-    """Return the file of a result as a shell reads it, OUT where it is not known."""
+    """Return the file of a result as a shell reads it, OUT if it is not recorded."""
     return shlex.quote(str(ds.encoding.get(_FILE, "OUT")))
 
 

@@ -18,7 +18,7 @@ class RowLaw(Protocol):
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """What it integrates."""
+        """The integrated inputs."""
 
     @property
     def spread(self) -> float:
@@ -99,12 +99,12 @@ class Element:
 
     @property
     def never(self) -> Mask:
-        """Where a life is known never to end."""
+        """Mask of rows whose life never ends."""
         return np.isposinf(self.values) & ~self.censored
 
     @cached_property
     def present(self) -> Mask:
-        """Where there is a value."""
+        """Mask of rows with a value."""
         return ~np.isnan(self.values)
 
     def unknown_sides(self, threshold: float) -> Mask:
@@ -113,7 +113,7 @@ class Element:
 
     @property
     def is_plain(self) -> bool:
-        """Whether each row counts once, with a life known to the digit."""
+        """Whether each row counts once, with an exact life."""
         return self.law is None and self.weights is None
 
     @property

@@ -1,4 +1,4 @@
-"""The elements of a result's outputs, and what the result says of its rows."""
+"""The elements of a result's outputs, and the independence and weights of its rows."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
@@ -37,12 +37,12 @@ from uq.text.element_names import MOST_PLACES, Place, is_whole, place_of, whole_
 
 
 def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
-    """Return the [analysis] of the study in a result, only that of one output if it is named."""
-    found = study_file_of(ds).analysis
+    """Return the [analysis] of the study in a result, restricted to one output if it is named."""
+    analysis = study_file_of(ds).analysis
     if output is None:
-        return found
-    thresholds = {name: at for name, at in found.thresholds.items() if name == output}
-    return found.model_copy(update={"outputs": (output,), "thresholds": thresholds})
+        return analysis
+    thresholds = {name: at for name, at in analysis.thresholds.items() if name == output}
+    return analysis.model_copy(update={"outputs": (output,), "thresholds": thresholds})
 
 
 def study_file_of(ds: xr.Dataset) -> StudyFile:
@@ -90,8 +90,10 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
         return EvenReplicates(rows["replicate"].values, inputs_of(rows))
     place = nesting_of(rows)
     are_samples = has_independent_samples(rows)
-    of = place.sample if are_samples else rows["replicate"].values
-    return Clusters(of, place.samples, are_samples, _learnt(rows, of) if together else None)
+    cluster = place.sample if are_samples else rows["replicate"].values
+    return Clusters(
+        cluster, place.samples, are_samples, _learnt(rows, cluster) if together else None
+    )
 
 
 def inputs_of(rows: xr.Dataset) -> Floats:
@@ -101,10 +103,10 @@ def inputs_of(rows: xr.Dataset) -> Floats:
 
 
 def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> SharedInfluence:
-    """Return what rows with weights have learnt of the law of an input that all units share."""
+    """Return the influence of the law of an input that all units share, in weighted rows."""
     pulls = rows[LAW_PULLS]
-    some = pulls.values * (len(part) / pulls.attrs[ROWS])
-    return SharedInfluence(some, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
+    scaled_pulls = pulls.values * (len(part) / pulls.attrs[ROWS])
+    return SharedInfluence(scaled_pulls, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
 
 
 def are_independent(ds: xr.Dataset) -> bool:
@@ -149,10 +151,10 @@ def labels(variable: xr.DataArray) -> xr.DataArray:
     codes, words = zip(*flags(variable), strict=True)
     order = np.argsort(codes)
     places = np.searchsorted(codes, variable.values, sorter=order)
-    found = variable.copy(data=np.array(words)[order][places])
-    known = " ".join(word for code, word in flags(variable) if code >= 0)
-    found.attrs = {"long_name": variable.attrs["long_name"], "flag_meanings": known}
-    return found
+    labelled = variable.copy(data=np.array(words)[order][places])
+    meanings = " ".join(word for code, word in flags(variable) if code >= 0)
+    labelled.attrs = {"long_name": variable.attrs["long_name"], "flag_meanings": meanings}
+    return labelled
 
 
 def category_codes(ds: xr.Dataset, name: str) -> dict[str, NDArray[np.int8]]:
@@ -183,8 +185,8 @@ def category_codes(ds: xr.Dataset, name: str) -> dict[str, NDArray[np.int8]]:
     return {label: values[(slice(None), *index)] for label, index, _ in chosen}
 
 
-def _no_such_element(name: str, known: Collection[str]) -> InputError:
-    return InputError(f"no such element '{name}'{nearest(name, known)} (allowed: {choices(known)})")
+def _no_such_element(name: str, names: Collection[str]) -> InputError:
+    return InputError(f"no such element '{name}'{nearest(name, names)} (allowed: {choices(names)})")
 
 
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
@@ -199,9 +201,9 @@ def output_names(ds: xr.Dataset) -> tuple[str, ...]:
 
 
 def thinned_outputs(ds: xr.Dataset) -> dict[str, int]:
-    """Return the number of elements of outputs of which only some are described.
+    """Return the number of elements of each output that is described at selected elements only.
 
-    Those have more than `MOST_PLACES`, and the study does not name them.
+    These outputs have more than `MOST_PLACES` elements, and the study does not name them.
     """
     sizes = {
         name: prod(ds.sizes[dim] for dim in output.dims) for name, output in outputs_of(ds).items()
@@ -221,7 +223,7 @@ def notes_on_places(ds: xr.Dataset) -> list[str]:
 
 
 def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
-    """Yield the elements of some outputs in order, skipping categories.
+    """Yield the elements of outputs in order, skipping categories.
 
     Parameters
     ----------
@@ -230,7 +232,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> 
     outputs : sequence of str
         Names of outputs.
     every : bool
-        Whether also those of `thinned_outputs`.
+        Whether to yield all elements of `thinned_outputs`, too.
 
     Yields
     ------
@@ -251,12 +253,12 @@ def _elements_at(
     ds: xr.Dataset, output: str, where: Callable[[Mapping[str, Any]], Iterable[Place]]
 ) -> Iterator[Element]:
     """Yield elements of an output, unless it is a category; `where` picks their places on axes."""
-    known, flag = outputs_of(ds), censored_name(output)
-    if output not in known:
+    outputs, flag = outputs_of(ds), censored_name(output)
+    if output not in outputs:
         raise InputError(
-            f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
+            f"no such output '{output}'{nearest(output, outputs)} (allowed: {choices(outputs)})"
         )
-    declared = known[output]
+    declared = outputs[output]
     if not declared.is_category:
         axes = {dim: ds[dim].values for dim in declared.dims}
         censored = ds.variables[flag] if flag in ds else None
@@ -286,18 +288,18 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     """
     output = name.partition("[")[0]
     whole = name == output or is_whole(name)
-    one = [] if whole else list(_elements_at(ds, output, partial(place_of, name)))
-    if one:
-        return one
-    found = list(elements_of(ds, [output], every=True))
-    if not found:
+    matches = [] if whole else list(_elements_at(ds, output, partial(place_of, name)))
+    if matches:
+        return matches
+    elements = list(elements_of(ds, [output], every=True))
+    if not elements:
         raise InputError(
             f"'{output}' is a category, not a number; 'uq summary' shows the shares of its labels,"
             f" and 'uq sensitivity --output {output}' what determines them"
         )
-    if name == output or (name == whole_name(output) and len(found) > 1):
-        return found
-    raise _no_such_element(name, [element.name for element in found])
+    if name == output or (name == whole_name(output) and len(elements) > 1):
+        return elements
+    raise _no_such_element(name, [element.name for element in elements])
 
 
 def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
@@ -308,15 +310,15 @@ def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
     InputError
         Also when the output is not a lifetime.
     """
-    found = named_elements(ds, name)
-    if not found[0].is_lifetime:
-        lives = [one for one, output in outputs_of(ds).items() if output.is_lifetime]
+    elements = named_elements(ds, name)
+    if not elements[0].is_lifetime:
+        lives = [life for life, output in outputs_of(ds).items() if output.is_lifetime]
         raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
-    return found
+    return elements
 
 
 def weights_of(rows: xr.Dataset) -> Smoothed | None:
-    """Return the weights that inspections have given the rows of a result, None if none have.
+    """Return the weights of rows from inspections, None if rows have no weights.
 
     Parameters
     ----------

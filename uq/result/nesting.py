@@ -46,9 +46,9 @@ class Nesting(NamedTuple):
 
     def table(self, values: ArrayLike) -> Floats:
         """Return one number per row as shape (samples, units, repeats), NaN for missing rows."""
-        found = np.full((self.samples, self.units, self.repeats), np.nan)
-        found[self.sample, self.unit, self.repeat] = values
-        return found
+        table = np.full((self.samples, self.units, self.repeats), np.nan)
+        table[self.sample, self.unit, self.repeat] = values
+        return table
 
     def means(self, values: ArrayLike, weights: ArrayLike | None = None) -> Floats:
         """Return the mean of each sample, shape (samples,), NaN where no row has a value.
@@ -61,10 +61,10 @@ class Nesting(NamedTuple):
             Of each row.
         """
         values = np.asarray(values, dtype=float)
-        known = np.isfinite(values)
-        worth = np.where(known, 1.0 if weights is None else np.asarray(weights, float), 0.0)
+        finite = np.isfinite(values)
+        worth = np.where(finite, 1.0 if weights is None else np.asarray(weights, float), 0.0)
         total = np.bincount(self.sample, worth, self.samples)
-        sums = np.bincount(self.sample, worth * np.where(known, values, 0.0), self.samples)
+        sums = np.bincount(self.sample, worth * np.where(finite, values, 0.0), self.samples)
         return np.divide(sums, total, out=np.full(self.samples, np.nan), where=total > 0)
 
 
@@ -140,17 +140,19 @@ def levels_that_vary(ds: xr.Dataset, without: Collection[str] = ()) -> Sequence[
     ----------
     ds : xarray.Dataset
     without : collection of str
-        Inputs that do not count, nor those that equal them.
+        Inputs to ignore, as well as the inputs that equal them.
     """
-    found = {level for law_of, level in _placed(ds).values() if law_of not in without}
+    levels = {level for law_of, level in _placed(ds).values() if law_of not in without}
     if ds.attrs.get("random"):
-        found.add(CHANCE)
-    return [level for level in LEVELS if level in found]
+        levels.add(CHANCE)
+    return [level for level in LEVELS if level in levels]
 
 
 def _placed(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
-    """Return of each input the one that it equals (or itself), and the level."""
+    """Return the leader of each input (the input that it equals, or itself) and its level."""
     entries = study_of_result(ds.attrs["study"]).uncertain
-    leaders = {name: one.equals if isinstance(one, Tied) else name for name, one in entries.items()}
-    laws = {name: one for name, one in entries.items() if not isinstance(one, Tied)}
+    leaders = {
+        name: entry.equals if isinstance(entry, Tied) else name for name, entry in entries.items()
+    }
+    laws = {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}
     return {name: (leader, laws[leader].level) for name, leader in leaders.items()}

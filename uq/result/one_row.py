@@ -54,7 +54,7 @@ class Row(NamedTuple):
 
     @property
     def ending(self) -> tuple[Status, str]:
-        """The status, and what happened in words."""
+        """The status, and its explanation in words."""
         status = Status(self.status.item())
         return status, self.failures.get(status.label, status.meaning)
 

@@ -43,7 +43,7 @@ class Preview:
         self._counts = np.zeros(len(self._regimes), dtype=np.int64)
 
     def add(self, chunk: "Chunk") -> None:
-        """Include some rows."""
+        """Include the rows of a chunk."""
         if self._regimes:
             codes = chunk.columns["regime"]
             self._counts += np.bincount(codes[codes >= 0], minlength=len(self._counts))
@@ -65,8 +65,8 @@ class Preview:
         """Share of each regime that occurs, the largest first."""
         total = int(self._counts.sum())
         pairs = zip(self._regimes, self._counts.tolist(), strict=True)
-        found = {name: count / total for name, count in pairs if count}
-        return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+        shares = {name: count / total for name, count in pairs if count}
+        return dict(sorted(shares.items(), key=lambda pair: -pair[1]))
 
 
 class _Thinned:

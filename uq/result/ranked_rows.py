@@ -1,4 +1,4 @@
-"""The rows by which inputs are ranked: some of a large plain design."""
+"""The rows by which inputs are ranked: a part of a large plain design."""
 
 import numpy as np
 import xarray as xr
@@ -36,9 +36,9 @@ def ranked_rows(ds: xr.Dataset) -> xr.Dataset:
     return first_samples(ds, max(RANKED * samples // rows, 1)).load()
 
 
-def ranked_in_words(ds: xr.Dataset, of: xr.Dataset) -> str:
-    """Return which rows of a result are ranked: ``by the first 50 000 rows``; "" for all."""
-    if ds is of:
+def ranked_in_words(ds: xr.Dataset, ranked: xr.Dataset) -> str:
+    """Return a phrase for the rows that are ranked: ``by the first 50 000 rows``; "" for all."""
+    if ds is ranked:
         return ""
     count = grouped(ds.sizes["sample"])
     if DESIGNS[ds.attrs["design"]].imported:

@@ -32,13 +32,13 @@ def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
         raise InputError("this result has no regimes; leave the regime out")
     codes = {label: code for code, label in flags(ds["regime"]) if code >= 0}
     if regime not in codes:
-        near, known = nearest(regime, list(codes)), ", ".join(codes)
-        raise InputError(f"no such regime '{regime}'{near} (allowed: {known})")
-    found = ds["regime"].values == codes[regime]
-    if not found.any():
-        there = np.unique(ds["regime"].values)
-        occurring = [label for label, code in codes.items() if code in there]
+        near, allowed = nearest(regime, list(codes)), ", ".join(codes)
+        raise InputError(f"no such regime '{regime}'{near} (allowed: {allowed})")
+    in_regime = ds["regime"].values == codes[regime]
+    if not in_regime.any():
+        present = np.unique(ds["regime"].values)
+        occurring = [label for label, code in codes.items() if code in present]
         raise InputError(
             f"no row is in the regime '{regime}' (there are rows in: {choices(occurring)})"
         )
-    return ds.isel(sample=np.flatnonzero(found | ((ds["regime"].values < 0) & failed(ds))))
+    return ds.isel(sample=np.flatnonzero(in_regime | ((ds["regime"].values < 0) & failed(ds))))

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from uq.study.row_sampling import Rows
 
 UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
-"""What netCDF4 and xarray raise for damaged files."""
+"""Exceptions that netCDF4 and xarray raise for damaged files."""
 
 _IN_MEMORY_BYTES = 200_000_000
 
@@ -155,9 +155,9 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     True
     """
     path = Path(path)
-    if what := node(path):
+    if kind := node(path):
         inside = _others(path / "_") if os.path.isdir(path) else ""
-        raise InputError(f"{path}: is {what}, not a result{inside}; {remedy}")
+        raise InputError(f"{path}: is {kind}, not a result{inside}; {remedy}")
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
     try:
@@ -165,7 +165,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
         check(ds, path)
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
-    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    ds.attrs.pop(CHECKSUM, None)  # it belongs to the file, not to the Dataset
     for variable in ds.variables.values():
         if variable.attrs.get("kind") == "lifetime":
             # The assumption when files did not state it.
@@ -203,7 +203,7 @@ def _of_the_system(error: Exception) -> str:
 
 
 def _legible(ds: xr.Dataset) -> xr.Dataset:
-    """Return a Dataset of which no text can control a terminal."""
+    """Return a Dataset whose texts cannot control a terminal."""
     owners: list[Any] = [ds, *ds.variables.values()]
     for owner in owners:
         for name, value in owner.attrs.items():
@@ -220,8 +220,8 @@ def _legible(ds: xr.Dataset) -> xr.Dataset:
 
 def _others(path: Path) -> str:
     """List the results in the folder of a path that is not a result."""
-    there = sorted(one.name for one in path.parent.glob("*.nc"))
-    return nearest(path.name, there) or (f" (there: {choices(there)})" if there else "")
+    names = sorted(file.name for file in path.parent.glob("*.nc"))
+    return nearest(path.name, names) or (f" (there: {choices(names)})" if names else "")
 
 
 def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
@@ -250,7 +250,7 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
 
 
 def refuse_empty(ds: xr.Dataset) -> None:
-    """Refuse a result of which no row was kept; 'uq run' writes none such.
+    """Refuse a result without rows; 'uq run' never writes one.
 
     Raises
     ------

@@ -51,9 +51,9 @@ def lowest_row(ds: xr.Dataset, name: str) -> Choice:
     InputError
         When there is no such output, or no row has a value.
     """
-    found = list(_ordered(ds, name))
+    candidates = list(_ordered(ds, name))
     # Of several elements the lowest value; which of two equal ones does not matter.
-    element, order = min(found, key=lambda one: _rank(one[0], one[1][0]))
+    element, order = min(candidates, key=lambda pair: _rank(pair[0], pair[1][0]))
     place = order[0]
     earlier = int((element.censored & (element.values < element.values[place])).sum())
     words = f"the lowest {element.name}"
@@ -63,7 +63,7 @@ def lowest_row(ds: xr.Dataset, name: str) -> Choice:
 
 
 def lowest_rows(ds: xr.Dataset, name: str, most: int) -> list[tuple[int, float]]:
-    """Return the rows in which one element is lowest, each with its value: those that ended only.
+    """Return the rows in which one element is lowest, each with its value; only rows that ended.
 
     Parameters
     ----------
@@ -117,9 +117,11 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
     rows = independent_rows(ds)
     (element, order), *others = _ordered(rows, name)
     if others:
-        names = ", ".join(f"'{one.name}'" for one in (element, *(other for other, _ in others)))
+        names = ", ".join(
+            f"'{candidate.name}'" for candidate in (element, *(other for other, _ in others))
+        )
         raise InputError(f"'{name}' has several elements; choose one of {names}")
-    first, last = (quantile(one, probability) for one in (element.at_least, element.at_most))
+    first, last = (quantile(values, probability) for values in (element.at_least, element.at_most))
     if np.isnan(first):
         needed = rows_to_reach(probability)
         least = needed if needed < _MANY else f"more than {_MANY:g}"
@@ -136,14 +138,14 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
 def _ordered(ds: xr.Dataset, name: str) -> Iterator[tuple[Element, NDArray[np.intp]]]:
     """Yield elements, each with the places of its rows, lowest first: ended, censored, never."""
     unsound = failed(ds)
-    found = False
+    has_values = False
     for element in named_elements(ds, name):
-        known = np.flatnonzero(element.present & ~unsound)
-        if len(known):
-            found = True
+        places = np.flatnonzero(element.present & ~unsound)
+        if len(places):
+            has_values = True
             state = element.censored + 2 * element.never
-            yield element, known[np.lexsort((element.values[known], state[known]))]
-    if not found:
+            yield element, places[np.lexsort((element.values[places], state[places]))]
+    if not has_values:
         raise InputError(f"no row has a value of '{name}'")
 
 

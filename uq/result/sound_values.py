@@ -59,7 +59,7 @@ def _are_labels(values: NDArray[Any]) -> bool:
 def _pieces(
     variable: xr.DataArray, complete: NDArray[np.bool_]
 ) -> Iterator[tuple[NDArray[Any], NDArray[np.bool_]]]:
-    """Yield the values of some rows at a time, and which of them are complete."""
+    """Yield the values of rows block by block, and the mask of complete rows."""
     for first in range(0, len(complete), _ROWS):
         rows = slice(first, first + _ROWS)
         yield variable[rows].values, complete[rows]

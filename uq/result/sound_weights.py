@@ -1,4 +1,4 @@
-"""Whether what inspections have left in a result is sound: its weights, and its attributes."""
+"""Checks of the weights and attributes that inspections have written to a result."""
 
 import json
 from collections.abc import Iterator
@@ -59,11 +59,11 @@ _TOGETHER = (
     (LAW_PULLS, LAW_FOLLOWS),
     (LAW_PULLS, LAW_SCORES),
 )
-"""Variables of which the first needs the second."""
+"""Pairs of variables: the first needs the second."""
 
 
 def weight_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield what is wrong with the weights of rows and what they rest on."""
+    """Yield the faults of the weights of rows and of the variables behind them."""
     if has_rounds(ds):
         yield from _round_faults(ds)
     if not has_weights(ds):
@@ -124,7 +124,7 @@ def _attribute_faults(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _round_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield what is wrong with rows that a sampler has added."""
+    """Yield the faults of rows that a sampler has added."""
     if fault := _shape_fault(ds, IMPORTANCE, (_SAMPLE,)):
         yield fault
     elif not _are_weights(ds[IMPORTANCE].values):

@@ -89,7 +89,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _place_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield what is wrong with the numbers of rows and their places in the design."""
+    """Yield the faults of the numbers of rows and their places in the design."""
     numbers = ds["sample"].values
     if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
         yield "'sample' does not number the rows in order"
@@ -102,7 +102,7 @@ def _place_faults(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _repeated_places(ds: xr.Dataset) -> str:
-    """Return that rows share one place in the design, or ""; those of a sampler may."""
+    """Return a fault if rows share a place in the design, else ""; added rows may share one."""
     if has_rounds(ds):
         return ""
     place = np.zeros(ds.sizes["sample"], dtype=np.int64)
@@ -114,7 +114,7 @@ def _repeated_places(ds: xr.Dataset) -> str:
 
 
 def _rerun_faults(variable: xr.DataArray) -> Iterator[str]:
-    """Yield what is wrong with the settings of rows that were computed again."""
+    """Yield the faults of the settings of rows that were computed again."""
     if variable.dims != ("sample",) or variable.dtype.kind not in "iu":
         yield "'rerun' is not one integer per row"
     if fault := _flag_fault(variable):
@@ -136,7 +136,7 @@ def _study_faults(ds: xr.Dataset) -> Iterator[str]:
     try:
         study = read_toml(ds.attrs["study"])
     except (ValueError, OverflowError, RecursionError):
-        return  # who needs the study says what is wrong with it
+        return  # reported by whoever needs the study
     analysis = _table(study, "analysis")
     shown = analysis.get("outputs", [])
     named = (
@@ -188,7 +188,7 @@ def _are_exponents(text: Any) -> bool:
 
 
 def _nesting_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield what is wrong with samples of several rows."""
+    """Yield the faults of samples of several rows."""
     if "world" not in ds.variables:
         return
     for place, size in (("world", ""), ("unit", "units"), ("repeat", "repeats")):

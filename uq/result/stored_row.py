@@ -23,10 +23,10 @@ def place_of(ds: xr.Dataset, number: int) -> int:
     """
     refuse_empty(ds)
     numbers = ds["sample"].values
-    found = (numbers == number).nonzero()[0]
-    if not len(found):
+    places = (numbers == number).nonzero()[0]
+    if not len(places):
         raise InputError(f"no such row: {number} (allowed: {numbers.min()} to {numbers.max()})")
-    return int(found[0])
+    return int(places[0])
 
 
 def stored_row(ds: xr.Dataset, place: int) -> Row:
@@ -43,17 +43,17 @@ def stored_row(ds: xr.Dataset, place: int) -> Row:
     Row
         Its model declares what the result says, and cannot compute; its seed is 0.
     """
-    one = ds.isel(sample=[place]).load()
-    outputs = outputs_of(one)
-    columns = {name: one[name].values for name in outputs}
-    flags = [flag for name in outputs if (flag := censored_name(name)) in one]
-    columns |= {flag: one[flag].values.astype(bool) for flag in flags}
+    row = ds.isel(sample=[place]).load()
+    outputs = outputs_of(row)
+    columns = {name: row[name].values for name in outputs}
+    flags = [flag for name in outputs if (flag := censored_name(name)) in row]
+    columns |= {flag: row[flag].values.astype(bool) for flag in flags}
     values = {
         str(name): float(variable.values.reshape(-1)[0])
-        for name, variable in one.data_vars.items()
+        for name, variable in row.data_vars.items()
         if variable.attrs.get("role") in ("input", "fixed")
     }
-    axes = {dim: one[dim].values.tolist() for output in outputs.values() for dim in output.dims}
+    axes = {dim: row[dim].values.tolist() for output in outputs.values() for dim in output.dims}
     model = Model(
         name=str(ds.attrs["model"]),
         title=str(ds.attrs["title"]),
@@ -64,7 +64,7 @@ def stored_row(ds: xr.Dataset, place: int) -> Row:
         batch=_refused,
         coordinates=lambda settings: axes,
     )
-    return Row(model, _Nothing(), values, 0, columns, one["status"].values, {})
+    return Row(model, _Nothing(), values, 0, columns, row["status"].values, {})
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = 1
 
 Columns = Mapping[str, NDArray[Any]]
-"""What ``batch`` returns: output name -> (n, *dims), ``<name>_censored`` -> (n, *dims)."""
+"""Columns returned by ``batch``: output name -> (n, *dims), ``<name>_censored`` -> (n, *dims)."""
 
 
 def parameter_variable(
@@ -122,7 +122,7 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
 
 def is_category(ds: xr.Dataset, name: str) -> bool:
     """Whether a result has a category of this name."""
-    return name in (known := outputs_of(ds)) and known[name].is_category
+    return name in (outputs := outputs_of(ds)) and outputs[name].is_category
 
 
 def coordinates(model: Model, settings: Any) -> dict[str, Any]:
@@ -141,7 +141,7 @@ def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> d
     sample = ("sample",)
     numbers = np.arange(len(rows.x)) if numbers is None else numbers
     block = {"long_name": "block of the design"} | _flags(block_labels(study), np.int16)
-    found = {
+    variables = {
         "sample": (sample, numbers, {"long_name": "row"}),
         "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
         "group": (sample, rows.group, {"long_name": "base point of the design"}),
@@ -152,10 +152,10 @@ def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> d
         within = numbers % design.rows_of_a_sample
         unit, repeat = np.divmod(within, design.repeats)
         world = rows.group * design.replicates + rows.replicate
-        found["world"] = (sample, world, {"long_name": "sample, whose units share inputs"})
-        found["unit"] = (sample, unit.astype(np.int32), {"long_name": "unit of the sample"})
-        found["repeat"] = (sample, repeat.astype(np.int32), {"long_name": "repeat of the unit"})
-    return found
+        variables["world"] = (sample, world, {"long_name": "sample, whose units share inputs"})
+        variables["unit"] = (sample, unit.astype(np.int32), {"long_name": "unit of the sample"})
+        variables["repeat"] = (sample, repeat.astype(np.int32), {"long_name": "repeat of the unit"})
+    return variables
 
 
 def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) -> dict[str, Any]:
@@ -189,7 +189,7 @@ def study_attributes(study: "Study") -> dict[str, Any]:
 
 
 def model_attributes(model: Model) -> dict[str, Any]:
-    """Return the attributes of every Dataset that a model computed."""
+    """Return the attributes common to all Datasets that a model computes."""
     return {
         "Conventions": "CF-1.11",
         "schema_version": SCHEMA_VERSION,
@@ -204,6 +204,6 @@ def error_name(output: str) -> str:
     return f"{output}_error"
 
 
-def is_error(name: str, known: Collection[str]) -> bool:
-    """Return whether an output states the error of another of those known."""
-    return name in {error_name(one) for one in known}
+def is_error(name: str, outputs: Collection[str]) -> bool:
+    """Return whether an output states the error of another output."""
+    return name in {error_name(output) for output in outputs}

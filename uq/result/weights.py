@@ -27,7 +27,7 @@ LAW_SCORES = "learnt_law_scores"
 the attribute of the first: of how many rows they are; and quantiles of the law."""
 
 MOST = "largest_possible"
-"""Its attribute: the largest weight that a row can have, where that is known."""
+"""Its attribute: the largest weight that a row can have, if it is recorded."""
 
 
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
@@ -61,7 +61,7 @@ def has_rounds(ds: xr.Dataset) -> bool:
 
 
 def row_weights(ds: xr.Dataset) -> Floats | None:
-    """Return the weights of some rows of a result, of mean 1; None where rows have none.
+    """Return the weights of rows of a result, of mean 1; None if rows have no weights.
 
     Raises
     ------
@@ -77,25 +77,25 @@ def row_weights(ds: xr.Dataset) -> Floats | None:
 
 
 def largest_weight(ds: xr.Dataset) -> float:
-    """Return the largest weight that a row can have, infinite where that is not known."""
+    """Return the largest weight that a row can have, infinite if it is not recorded."""
     return float(ds[WEIGHT].attrs.get(MOST, np.inf)) if has_weights(ds) else np.inf
 
 
 def stand_for_any_unit(ds: xr.Dataset) -> bool:
-    """Whether no inspection is of the units of a result: inputs of their own have their laws."""
+    """Return whether rows stand for any unit: no inspection concerns the units of a result."""
     return not has_weights(ds) or not (ds.attrs.keys() & {OF_UNIT, ONLY_INSPECTED})
 
 
-def sample_weights(rows: xr.Dataset, place: Nesting, what: str) -> Floats | None:
-    """Return the weights of samples whose units were not inspected; None where rows have none.
+def sample_weights(rows: xr.Dataset, place: Nesting, question: str) -> Floats | None:
+    """Return the weights of samples whose units were not inspected; None if rows have no weights.
 
     Parameters
     ----------
     rows : xarray.Dataset
         The independent rows of a result, or samples of several rows.
     place : Nesting
-        Theirs.
-    what : str
+        The nesting of these rows.
+    question : str
         The question that needs them, such as ``fleets``.
 
     Returns
@@ -112,28 +112,30 @@ def sample_weights(rows: xr.Dataset, place: Nesting, what: str) -> Floats | None
     if weights is None:
         return None
     if unit := rows.attrs.get(OF_UNIT, ""):
-        raise InputError(f"no {what}: these rows stand for unit '{unit}'; use the whole posterior")
+        raise InputError(
+            f"no {question}: these rows stand for unit '{unit}'; use the whole posterior"
+        )
     if why := rows.attrs.get(ONLY_INSPECTED, ""):
-        raise InputError(f"no {what}: {why}")
+        raise InputError(f"no {question}: {why}")
     table = place.table(weights).reshape(place.samples, -1)
     least, most = np.nanmin(table, axis=1), np.nanmax(table, axis=1)
     if (most - least > _SAME * most).any():
         raise InputError(
-            f"no {what}: the inspections weight each unit of a sample separately, since units"
+            f"no {question}: the inspections weight each unit of a sample separately, since units"
             " differ in more than an integrated input; use 'uq summary' for a single unit, or the"
             " result before 'uq update'"
         )
     return np.asarray(most / most.mean())
 
 
-def refuse_weights(ds: xr.Dataset, what: str) -> None:
+def refuse_weights(ds: xr.Dataset, question: str) -> None:
     """Refuse a question that weighted rows cannot answer.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
-    what : str
+    question : str
         The question, such as ``uq twin``.
 
     Raises
@@ -143,6 +145,6 @@ def refuse_weights(ds: xr.Dataset, what: str) -> None:
     """
     if has_weights(ds):
         raise InputError(
-            f"{what}: not with rows that inspections have weighted; ask it of the result before"
+            f"{question}: not with rows that inspections have weighted; ask it of the result before"
             " 'uq update'"
         )

@@ -68,7 +68,7 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
         taken = np.take_along_axis(np.broadcast_to(values, order.shape), order, axis=-1)
         return taken.reshape(-1, order.shape[-1])
 
-    rows = _Rows.of(
+    rows = _Rows.in_order(
         normal_correlations(ranks),
         order.reshape(-1, order.shape[-1]),
         ordered(np.where(changed, -np.inf, low[:, None])),
@@ -104,7 +104,7 @@ class _Rows:
     u: Floats
 
     @classmethod
-    def of(
+    def in_order(
         cls, matrix: Floats, order: NDArray[np.intp], low: Floats, high: Floats, u: Floats
     ) -> Self:
         """Return rows whose inputs are drawn in an order, shape (n, k): the place of each."""
@@ -113,12 +113,12 @@ class _Rows:
         return cls(np.asarray(factors), which.ravel(), low, high, u)
 
     def part(self, rows: NDArray[np.intp], u: Floats) -> Self:
-        """Return some of these rows, for another draw."""
+        """Return a subset of these rows, for another draw."""
         return type(self)(self.factors, self.order[rows], self.low[rows], self.high[rows], u)
 
     @property
     def intervals(self) -> Mask:
-        """Which scores are known to lie in an interval, shape (n, k)."""
+        """Mask of the scores that are restricted to an interval, shape (n, k)."""
         return (self.low < self.high) & ~(np.isneginf(self.low) & np.isposinf(self.high))
 
     @property
@@ -128,11 +128,11 @@ class _Rows:
 
     def scores(self) -> Floats:
         """Draw the scores."""
-        found, _ = self.drawn()
+        scores, _ = self.drawn()
         several = np.flatnonzero(self.intervals.sum(axis=1) > 1)
         if len(several):
-            found[several] = self.part(several, self.u[several]).accepted()
-        return found
+            scores[several] = self.part(several, self.u[several]).accepted()
+        return scores
 
     def drawn(self) -> tuple[Floats, Floats]:
         """Draw each score between its ends, given those before it.
@@ -162,8 +162,8 @@ class _Rows:
     def accepted(self) -> Floats:
         """Draw rows with several intervals, by rejection."""
         k = self.u.shape[1]
-        found, seed, largest = np.empty_like(self.u), hashed(self.u), self.largest_chance()
-        pending, tried = np.arange(len(found)), 0
+        scores, seed, largest = np.empty_like(self.u), hashed(self.u), self.largest_chance()
+        pending, tried = np.arange(len(scores)), 0
         while len(pending):
             times = max(1, _AT_ONCE // len(pending))
             rows = np.repeat(pending, times)
@@ -174,13 +174,13 @@ class _Rows:
             good = (draws[k] * largest[rows] < chance).reshape(-1, times)
             done = good.any(axis=1)
             best = good.argmax(axis=1)[done]
-            found[pending[done]] = proposed.reshape(-1, times, k)[done, best]
+            scores[pending[done]] = proposed.reshape(-1, times, k)[done, best]
             pending, tried = pending[~done], tried + times
-        return found
+        return scores
 
     def largest_chance(self) -> Floats:
         """Return an upper bound of the chance of a draw, shape (n,)."""
-        found, inverse = np.ones(len(self.u)), np.linalg.inv(self.factors)
+        bound, inverse = np.ones(len(self.u)), np.linalg.inv(self.factors)
         for i in range(1, self.u.shape[1]):
             rows = np.flatnonzero(self.later[:, i])
             low, high, order = self.low[rows], self.high[rows], self.order[rows]
@@ -195,8 +195,8 @@ class _Rows:
             mean = np.clip((low[:, i] + high[:, i]) / 2, least, most)
             near = np.where(np.isfinite(mean), mean, 0.0)
             _, share = _between((low[:, i] - near) / sd, (high[:, i] - near) / sd, 0.5)
-            found[rows] *= np.where(near == mean, share, 1.0)
-        return found
+            bound[rows] *= np.where(near == mean, share, 1.0)
+        return bound
 
 
 def _between(low: Floats, high: Floats, u: Floats | float) -> tuple[Floats, Floats]:
@@ -207,6 +207,6 @@ def _between(low: Floats, high: Floats, u: Floats | float) -> tuple[Floats, Floa
     least, most = np.where(upper, -high, low), np.where(upper, -low, high)
     below = ndtr(least)
     share = ndtr(most) - below
-    found = ndtri(below + np.where(upper, 1 - u, u) * share)
-    found = np.where(np.isfinite(found), found, most)  # too far out to have a probability
-    return np.where(upper, -found, found), share
+    quantile = ndtri(below + np.where(upper, 1 - u, u) * share)
+    quantile = np.where(np.isfinite(quantile), quantile, most)  # too far out to have a probability
+    return np.where(upper, -quantile, quantile), share

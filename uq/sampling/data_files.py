@@ -52,15 +52,15 @@ def columns_of_files(
     for path, file, column in _named(tables):
         try:
             if file in tables["data"]:
-                found = _kept(tables["data"][file], column)
+                text = _kept(tables["data"][file], column)
             else:
-                found = _as_text(_read(folder, file, column))
+                text = _as_text(_read(folder, file, column))
         except ValueError as error:
             fault = InputFault(path, str(error), file)
             if fault not in faults:  # one for all columns of a file that cannot be read
                 faults.append(fault)
         else:
-            columns.setdefault(file, {})[column] = found
+            columns.setdefault(file, {})[column] = text
     return columns, faults
 
 
@@ -90,9 +90,9 @@ def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
 @lru_cache(maxsize=128)
 def numbers(text: str) -> Floats:
     """Return the numbers of a column, read-only."""
-    found = np.array(text.split(), dtype=float)
-    found.setflags(write=False)
-    return found
+    values = np.array(text.split(), dtype=float)
+    values.setflags(write=False)
+    return values
 
 
 def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:
@@ -126,8 +126,8 @@ def _read(folder: Path | None, file: str, column: str) -> Floats:
     if folder is None:
         raise ValueError("the text of this study does not contain the file's numbers")
     path = folder / file
-    if what := node(path):
-        raise ValueError(f"is {what}, not a file")
+    if kind := node(path):
+        raise ValueError(f"is {kind}, not a file")
     if not path.is_file():
         names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
         raise ValueError(f"no such file in {folder.absolute()}{nearest(path.name, names)}")
@@ -213,7 +213,7 @@ def _read_netcdf(path: Path, column: str) -> Floats:
 
 
 def _no_column(column: str, names: list[str]) -> str:
-    known = ", ".join(names) or "none"
+    listing = ", ".join(names) or "none"
     if column in names:
-        return f"has several columns '{column}'; give each its own name (its columns: {known})"
-    return f"has no column '{column}'{nearest(column, names)} (its columns: {known})"
+        return f"has several columns '{column}'; give each its own name (its columns: {listing})"
+    return f"has no column '{column}'{nearest(column, names)} (its columns: {listing})"

@@ -34,9 +34,9 @@ def normal_correlations(ranks: Matrix) -> Floats:
     K. Pearson, "On further methods of determining correlation", Drapers' Company Research Memoirs,
     Biometric Series IV (1907).
     """
-    found = 2 * np.sin(np.pi / 6 * np.array(ranks))
-    np.fill_diagonal(found, 1.0)
-    return found
+    correlations = 2 * np.sin(np.pi / 6 * np.array(ranks))
+    np.fill_diagonal(correlations, 1.0)
+    return correlations
 
 
 def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
@@ -92,13 +92,13 @@ def correlated(u: Points, ranks: Matrix) -> Points:
     factor = np.linalg.cholesky(normal_correlations(ranks))
     # Sums of contiguous columns: a matrix product may round a row according to its place.
     z = [ndtri(np.ascontiguousarray(column)) for column in u.T]
-    found = u.copy()
+    points = u.copy()
     for i in range(1, len(z)):
         mixed = factor[i, 0] * z[0]
         for j in range(1, i + 1):
             mixed = mixed + factor[i, j] * z[j]
-        found[:, i] = ndtr(mixed)
-    return inside(found)
+        points[:, i] = ndtr(mixed)
+    return inside(points)
 
 
 def _is_definite(matrix: Floats) -> bool:
@@ -106,12 +106,12 @@ def _is_definite(matrix: Floats) -> bool:
 
 
 def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
-    """Return how to correct a matrix: by one entry if possible, else by weakening all of them.
+    """Return a correction of a matrix: one entry if possible, else weaker correlations.
 
     Given all others, the range of one entry is the part explained by the other inputs plus or minus
     the unexplained part: a partial correlation from -1 to 1.
     """
-    matrix, found = normal_correlations(ranks), []
+    matrix, corrections = normal_correlations(ranks), []
     k = len(matrix)
     for i, j in combinations(range(k), 2):
         rest = np.array([other for other in range(k) if other not in (i, j)], dtype=int)
@@ -125,9 +125,9 @@ def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
         thousandths = 6000 / np.pi * np.arcsin(np.clip(ends, -1, 1) / 2)
         low, high = np.clip([np.ceil(thousandths[0]), np.floor(thousandths[1])], -999, 999) / 1000
         if low < high:
-            found.append((max(low - ranks[i][j], ranks[i][j] - high), i, j, low, high))
-    if found:
-        _, i, j, low, high = min(found)
+            corrections.append((max(low - ranks[i][j], ranks[i][j] - high), i, j, low, high))
+    if corrections:
+        _, i, j, low, high = min(corrections)
         between = f"between {low:.3f} and {high:.3f}"
         which = f"that of '{names[i]}' with '{names[j]}', {ranks[i][j]!r},"
         return f"given the others, {which} must lie {between}"

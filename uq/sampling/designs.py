@@ -86,8 +86,8 @@ IMPORTED = tuple(name for name, design in DESIGNS.items() if design.imported)
 
 
 def several(key: str, method: str, count: int = 2) -> str:
-    """Return how samples get several ``units`` or ``repeats``: what to write into [design]."""
+    """Return the remedy in [design] that gives samples several ``units`` or ``repeats``."""
     if DESIGNS[method].nests:
         return f"set {key} = {count}"
-    able = " or ".join(f"'{name}'" for name, one in DESIGNS.items() if one.nests)
+    able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.nests)
     return f"set {key} = {count} and method = {able}, since samples of '{method}' have one row"

@@ -70,13 +70,13 @@ def _dotted(path: tuple[str | int, ...]) -> str:
     return "".join(parts).removeprefix(".")
 
 
-def unknown(kind: str, name: str, known: Iterable[str]) -> str:
-    """Return what is wrong with a name that does not exist, with the nearest one and all others."""
-    return f"no such {kind}{nearest(name, known)} (allowed: {', '.join(known)})"
+def unknown(kind: str, name: str, allowed: Iterable[str]) -> str:
+    """Return the problem of an unknown name, with the nearest name and all that are allowed."""
+    return f"no such {kind}{nearest(name, allowed)} (allowed: {', '.join(allowed)})"
 
 
 def fault_of(
-    error: dict[str, Any], known: Callable[[Sequence[Any]], Iterable[str]] | None = None
+    error: dict[str, Any], allowed_at: Callable[[Sequence[Any]], Iterable[str]] | None = None
 ) -> InputFault:
     """Return an error of pydantic as a fault.
 
@@ -84,14 +84,16 @@ def fault_of(
     ----------
     error : dict
         One of ``ValidationError.errors()``.
-    known : callable, optional
+    allowed_at : callable, optional
         Place of an unknown key -> names that it may have.
     """
     path, kind = tuple(error["loc"]), error["type"]
     if kind == "missing":
         return InputFault(path, MISSING)
-    if kind == "extra_forbidden" and known is not None:
+    if kind == "extra_forbidden" and allowed_at is not None:
         table = "key" if len(path) > 1 else "table"
-        return InputFault(path, unknown(table, str(path[-1]), list(known(path))), error["input"])
+        return InputFault(
+            path, unknown(table, str(path[-1]), list(allowed_at(path))), error["input"]
+        )
     reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
     return InputFault(path, reason or error["msg"], error["input"])

@@ -1,4 +1,4 @@
-"""What all laws of an uncertain parameter share."""
+"""The base class of all laws of an uncertain parameter."""
 
 from abc import abstractmethod
 from math import inf
@@ -15,7 +15,7 @@ LIST = Field(strict=False)
 """Of a tuple, whose items stay strict: TOML has lists only."""
 
 STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-"""What every table of a study file asks of its keys and values."""
+"""Requirements on the keys and values of every table of a study file."""
 
 
 def _known_level(level: str) -> str:
@@ -82,11 +82,11 @@ class Law(BaseModel):
 
     @model_validator(mode="after")
     def _check_either(self) -> Self:
-        names = {name for some in self.either for name in some}
+        names = {name for arguments in self.either for name in arguments}
         if names and names & self.model_fields_set not in map(set, self.either):
             name = vars(self)["distribution"]
             article = "an" if name[0] in "aeiou" else "a"
-            choice = ", or ".join(" and ".join(some) for some in self.either)
+            choice = ", or ".join(" and ".join(arguments) for arguments in self.either)
             raise ValueError(f"{article} {name} law takes either {choice}")
         return self
 

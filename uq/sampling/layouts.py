@@ -1,4 +1,4 @@
-"""How the rows of a design belong together: what its sensitivity methods need to know of it.
+"""Grouping of the rows of a design, as its sensitivity methods need it.
 
 Rows of a random model that a design compares with each other share a seed: their difference is then
 the effect of the input at that seed, not of noise.
@@ -21,12 +21,12 @@ NOISE = "noise"
 
 @dataclass(frozen=True)
 class Layout:
-    """How rows are grouped.
+    """Grouping of the rows of a design.
 
     Attributes
     ----------
     group : tuple of str
-        What an estimate can use of it, where it is one and where several: "only 3 *whole paths*".
+        Name of the unit that estimates use, singular and plural: "only 3 *whole paths*".
     labels : callable
         ``labels(parameters, second_order, random)`` -> the names of the blocks of rows, in order.
     shared_seeds : callable
@@ -54,7 +54,7 @@ def own_seeds(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Pl
 
 
 def _of_ends(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
-    """Give A and what is mixed into it the seed of A; the others, with the noise block, that of B.
+    """Give A and its mixtures the seed of A; the other blocks, noise included, the seed of B.
 
     First-order and second-order indices are products of rows of both sides, total ones differences
     of rows of one.

@@ -24,7 +24,7 @@ MAX_ROWS_OF_A_SAMPLE = 1_000_000
 
 
 def coordinates(levels: Sequence[str], units: int, repeats: int) -> NDArray[np.intp]:
-    """Return which coordinate of a sample's point gives each input of its rows.
+    """Return the coordinate of a sample's point that gives each input of its rows.
 
     Parameters
     ----------
@@ -45,18 +45,18 @@ def coordinates(levels: Sequence[str], units: int, repeats: int) -> NDArray[np.i
 @lru_cache(maxsize=4)
 def _coordinates(levels: tuple[str, ...], units: int, repeats: int) -> NDArray[np.intp]:
     kind = np.array(levels)
-    own, chance = np.flatnonzero(kind == OWN), np.flatnonzero(kind == CHANCE)
+    unit_inputs, repeat_inputs = np.flatnonzero(kind == OWN), np.flatnonzero(kind == CHANCE)
     places = np.tile(np.arange(len(levels)), (units, repeats, 1))
-    first, count = len(levels), (units - 1) * len(own)
-    places[1:, :, own] = first + np.arange(count).reshape(units - 1, 1, len(own))
+    first, count = len(levels), (units - 1) * len(unit_inputs)
+    places[1:, :, unit_inputs] = first + np.arange(count).reshape(units - 1, 1, len(unit_inputs))
     rows = places.reshape(-1, len(levels))
-    first, count = first + count, (len(rows) - 1) * len(chance)
-    rows[1:, chance] = first + np.arange(count).reshape(len(rows) - 1, len(chance))
+    first, count = first + count, (len(rows) - 1) * len(repeat_inputs)
+    rows[1:, repeat_inputs] = first + np.arange(count).reshape(len(rows) - 1, len(repeat_inputs))
     rows.setflags(write=False)
     return rows
 
 
 def dimension(levels: Sequence[str], units: int, repeats: int) -> int:
     """Return the number of coordinates of a sample's point."""
-    own, chance = (sum(level == name for level in levels) for name in (OWN, CHANCE))
-    return len(levels) + (units - 1) * own + (units * repeats - 1) * chance
+    per_unit, per_repeat = (sum(level == name for level in levels) for name in (OWN, CHANCE))
+    return len(levels) + (units - 1) * per_unit + (units * repeats - 1) * per_repeat

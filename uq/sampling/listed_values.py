@@ -63,9 +63,9 @@ class Steps(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _steps(values: tuple[float, ...], weights: tuple[float, ...] | None) -> Steps:
-    found, place = np.unique(values, return_inverse=True)
+    distinct, place = np.unique(values, return_inverse=True)
     cumulated = np.cumsum(np.bincount(place, weights))
-    return Steps(found, cumulated / cumulated[-1])
+    return Steps(distinct, cumulated / cumulated[-1])
 
 
 class Listed(Law):
@@ -82,8 +82,8 @@ class Listed(Law):
     def nearest(self, x: Floats) -> Floats:
         """Return the value nearest to each of x, which undoes rounding."""
         values = self.frozen().values
-        found = values[np.searchsorted((values[1:] + values[:-1]) / 2, x)]
-        return np.asarray(found)
+        nearest = values[np.searchsorted((values[1:] + values[:-1]) / 2, x)]
+        return np.asarray(nearest)
 
 
 class DiscreteChoice(Listed):

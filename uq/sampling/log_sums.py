@@ -133,9 +133,9 @@ class Sum:
         low, high = self.ends[piece], self.ends[piece + 1]
         x = (2 * inside - low - high) / (high - low)
         coefficients = np.moveaxis(self.coefficients[piece], -1, 0)
-        found = chebyshev.chebval(x, coefficients, tensor=False)
-        found = np.where(value <= self.ends[0], 0.0, found)
-        return np.clip(np.where(value >= self.ends[-1], 1.0, found), 0.0, 1.0)
+        probability = chebyshev.chebval(x, coefficients, tensor=False)
+        probability = np.where(value <= self.ends[0], 0.0, probability)
+        return np.clip(np.where(value >= self.ends[-1], 1.0, probability), 0.0, 1.0)
 
     def at(self, z: Floats) -> Floats:
         """Return the quantiles at the probabilities of standard normal quantiles, by bisection."""
@@ -148,7 +148,7 @@ class Sum:
 
     def _pieces(self, nodes: int) -> list[tuple[float, float, Floats]]:
         """Return ends and coefficients of polynomials, halved until each is accurate."""
-        found = []
+        pieces = []
         waiting = [(low, high, 0) for low, high in zip(self.breaks, self.breaks[1:], strict=False)]
         test = np.array([-0.97, -0.31, 0.44, 0.99])
         while waiting:
@@ -163,20 +163,21 @@ class Sum:
                 middle = (low + high) / 2
                 waiting += [(low, middle, depth + 1), (middle, high, depth + 1)]
             else:
-                found.append((low, high, c))
-        return sorted(found, key=lambda piece: piece[0])
+                pieces.append((low, high, c))
+        return sorted(pieces, key=lambda piece: piece[0])
 
     def _exactly(self, value: Floats, nodes: int) -> Floats:
         """Return the probability of less than each value, shape (k,), by quadrature."""
         kinks = value[:, None] - self._first.breaks
-        own = self._second.breaks
+        breaks = self._second.breaks
         places = np.sort(
-            np.hstack([np.clip(kinks, own[0], own[-1]), np.tile(own, (len(value), 1))]), axis=1
+            np.hstack([np.clip(kinks, breaks[0], breaks[-1]), np.tile(breaks, (len(value), 1))]),
+            axis=1,
         )
         at, density = normal_rule(special.ndtri(self._second.below(places)), nodes)
         inner = self._first.below(value[:, None, None] - self._second.at(at))
-        found: Floats = (density * inner).sum(axis=(1, 2))
-        return found
+        probability: Floats = (density * inner).sum(axis=(1, 2))
+        return probability
 
 
 def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
@@ -204,7 +205,7 @@ def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
 def law_of_sum(terms: list[LogTerm]) -> Term:
     """Return the law of a sum of independent terms, the widest of which is exact."""
     widest, *others = sorted(terms, key=lambda term: -term.spread)
-    found: Term = widest
+    total: Term = widest
     for term in others:
-        found = Sum(found, term)
-    return found
+        total = Sum(total, term)
+    return total

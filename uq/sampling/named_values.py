@@ -13,10 +13,10 @@ from uq.contract import Model, Parameter
 from uq.errors import nearest, one_line
 
 
-def unknown_name(kind: str, name: str, model: Model, known: tuple[str, ...]) -> str:
+def unknown_name(kind: str, name: str, model: Model, names: tuple[str, ...]) -> str:
     """Return that a model has no such parameter, setting or output."""
-    allowed = f" (allowed: {', '.join(known)})" if known else ", which has none"
-    return f"no such {kind} of model '{model.name}'{nearest(name, known) or allowed}"
+    allowed = f" (allowed: {', '.join(names)})" if names else ", which has none"
+    return f"no such {kind} of model '{model.name}'{nearest(name, names) or allowed}"
 
 
 def parameter_problem(model: Model, name: str, value: Any) -> str | None:
@@ -75,7 +75,7 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
     settings : object or None
         None if anything is wrong.
     problems : dict of str to str
-        Setting -> what is wrong with it; under ``""`` what is wrong with the combination.
+        Setting -> its problem; under ``""`` the problem of the combination.
     """
     types = setting_types(model)
     values, problems = {}, {}
@@ -99,7 +99,7 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
 def fault_lines(
     label: str, given: Mapping[str, Any], problems: Mapping[str, str | None]
 ) -> list[str]:
-    """Return what is wrong with given values as error lines, each value named after the label."""
+    """Return the problems of given values as error lines, each value named after the label."""
     return [
         f"{label}{name} = {given[name]!r}: {problem}" if name in given else problem
         for name, problem in problems.items()
@@ -148,9 +148,9 @@ def _type_in_words(model: Model, name: str, kind: Any) -> str:
 
 
 def _kind_in_words(kind: Any) -> str:
-    one = {int: "a whole number", float: "a number", bool: "true or false", str: "a text"}
-    if kind in one:
-        return one[kind]
+    scalars = {int: "a whole number", float: "a number", bool: "true or false", str: "a text"}
+    if kind in scalars:
+        return scalars[kind]
     if not get_args(kind):
         return "of the right type"
     first, *others = get_args(kind)

@@ -194,8 +194,8 @@ def _condition(law: Law, bounds: tuple[float, float]) -> _Condition:
     low, high = map(float, _tightened(law, *bounds))
     if isinstance(law, Listed):  # rounding must not end between the values
         low, high = law.between(low, high) or (low, high)
-    found = _shares(law, low, high)
-    return _Condition(found.parent, *map(float, found[1:]))
+    condition = _shares(law, low, high)
+    return _Condition(condition.parent, *map(float, condition[1:]))
 
 
 def _tightened(law: Law, low: Any, high: Any) -> tuple[Any, Any]:
@@ -258,11 +258,13 @@ def outside_share(law: Law, low: Any, high: Any) -> Any:
         None if it cannot be computed.
     """
     parent, lower, upper = law.parent()
-    own = _shares(law, lower, upper)
+    truncated = _shares(law, lower, upper)
     ends = _shares(law, *_tightened(law, low, high))
     with np.errstate(all="ignore"):
-        kept = np.maximum(own.not_above - own.below, own.not_below - own.above)
-        outside = ((ends.below - own.below) + (ends.above - own.above)) / kept
+        kept = np.maximum(
+            truncated.not_above - truncated.below, truncated.not_below - truncated.above
+        )
+        outside = ((ends.below - truncated.below) + (ends.above - truncated.above)) / kept
         extreme = min(parent.sf(lower), parent.cdf(upper)) < _LEAST_KEPT or not kept > 0
     return None if extreme or np.isnan(outside).any() else np.minimum(outside, 1.0)
 

@@ -77,8 +77,8 @@ def uniform(state: NDArray[np.uint64], number: NDArray[np.int64]) -> Points:
     -------
     ndarray, shape (n,)
     """
-    found = splitmix64(state + number.astype(np.uint64) * _GAMMA)
-    return np.asarray(((found >> np.uint64(11)) + 0.5) * 2.0**-53)
+    bits = splitmix64(state + number.astype(np.uint64) * _GAMMA)
+    return np.asarray(((bits >> np.uint64(11)) + 0.5) * 2.0**-53)
 
 
 def drawn_at_once(draw: Callable[[int, int, int, int], Points]) -> Callable[..., Points]:
@@ -260,13 +260,13 @@ def morris_trajectories(
        Softw. 37, 103-109 (2012).
     """
     edges = np.linspace(0, samples, -(-samples // _BUNDLE) + 1).astype(int)
-    found = [np.empty((0, replicates, d + 1, d))]
+    trajectories = [np.empty((0, replicates, d + 1, d))]
     for bundle, (first, last) in enumerate(pairwise(edges)):
         if first < stop and start < last:
             size = int(last - first)
             parts = [_bundle(seed, i, bundle, d, size, pool) for i in range(replicates)]
-            found.append(np.stack(parts, axis=1)[max(start - first, 0) : stop - first])
-    return np.concatenate(found)
+            trajectories.append(np.stack(parts, axis=1)[max(start - first, 0) : stop - first])
+    return np.concatenate(trajectories)
 
 
 @lru_cache(maxsize=256)

@@ -32,7 +32,7 @@ class SharedInfluence:
     follows : ndarray, shape (m, terms)
         The terms at the value of the input in each of them.
     errors : ndarray, shape (n,), optional
-        What the law adds to the influence of each on the mean at hand.
+        Contribution of the law to the influence of each on the mean at hand.
     """
 
     pulls: Floats
@@ -41,12 +41,12 @@ class SharedInfluence:
     follows: Floats
     errors: Floats | None = None
 
-    def some(self, rows: Any) -> "SharedInfluence":
-        """Return the same for some of the rows at hand."""
+    def subset(self, rows: Any) -> "SharedInfluence":
+        """Return the same for a subset of the rows at hand."""
         return replace(self, row=self.row[rows], follows=self.follows[rows])
 
     def going_with(self, joint: Floats) -> "SharedInfluence":
-        """Return the same for a mean that goes with the terms in another way than row by row.
+        """Return the same for a mean of this covariance with the terms, not computed by row.
 
         Parameters
         ----------
@@ -66,9 +66,9 @@ class SharedInfluence:
         errors = self.errors
         if errors is None:
             errors = self.pulls @ (influence @ self.follows / len(influence))
-        found = errors.copy()
-        found[self.row] += influence * (len(found) / len(influence))
-        return found
+        total = errors.copy()
+        total[self.row] += influence * (len(total) / len(influence))
+        return total
 
 
 class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
@@ -84,7 +84,7 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
     are_samples : bool
         Whether the parts are samples, not replicates of a design.
     together : SharedInfluence or None
-        What else makes the rows depend on each other.
+        Dependence of the rows beyond their parts.
     """
 
     samples: int
@@ -93,43 +93,43 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
 
     def __new__(
         cls,
-        of: ArrayLike,
+        part: ArrayLike,
         samples: int,
         are_samples: bool = True,
         together: SharedInfluence | None = None,
     ) -> Self:
         """Mark the part of each row, shape (n,)."""
-        marked = np.asarray(of, dtype=np.int64).view(cls)
+        marked = np.asarray(part, dtype=np.int64).view(cls)
         marked.samples, marked.are_samples, marked.together = samples, are_samples, together
         return marked
 
     def __array_finalize__(self, other: Any) -> None:
-        """Keep the number of samples where some rows are taken."""
+        """Keep the number of samples in a subset of the rows."""
         self.samples = getattr(other, "samples", 0)
         self.are_samples = getattr(other, "are_samples", True)
         self.together = None
 
     def with_together(self, together: SharedInfluence) -> Self:
-        """Return the same parts, which depend on each other in another way."""
-        found = self.copy()
-        found.together = together
-        return found
+        """Return the same parts with this dependence between them."""
+        parts = self.copy()
+        parts.together = together
+        return parts
 
     def __getitem__(self, rows: Any) -> Any:
-        """Return the parts of some rows."""
-        found = super().__getitem__(rows)
-        if self.together is not None and isinstance(found, Clusters):
-            found.together = self.together.some(rows)
-        return found
+        """Return the parts of a subset of the rows."""
+        parts = super().__getitem__(rows)
+        if self.together is not None and isinstance(parts, Clusters):
+            parts.together = self.together.subset(rows)
+        return parts
 
 
-def linearised_means(values: NDArray[Any], of: NDArray[np.integer]) -> Floats:
-    """Return what each part says of the mean of all rows, shape (parts,).
+def linearised_means(values: NDArray[Any], part: NDArray[np.integer]) -> Floats:
+    """Return the linearised mean of each independent part, shape (parts,).
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-    of : ndarray of int, shape (n,)
+    part : ndarray of int, shape (n,)
         The part of each row.
 
     Returns
@@ -142,29 +142,29 @@ def linearised_means(values: NDArray[Any], of: NDArray[np.integer]) -> Floats:
     ----------
     .. [1] W. G. Cochran, "Sampling techniques", 3rd ed., Wiley (1977), 2.11.
     """
-    counts = np.bincount(of)
-    there = counts > 0
+    counts = np.bincount(part)
+    occupied = counts > 0
     mean = float(values.mean())
-    pull = np.bincount(of, weights=values.astype(float)) - counts * mean
-    return mean + np.count_nonzero(there) * pull[there] / len(values)
+    pull = np.bincount(part, weights=values.astype(float)) - counts * mean
+    return mean + np.count_nonzero(occupied) * pull[occupied] / len(values)
 
 
-def dealt(of: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return rows dealt into at most 32 groups of independent parts, for what is not a mean.
+def dealt(part: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Deal rows into at most 32 groups of independent parts, for estimates other than means.
 
     Parameters
     ----------
-    of : ndarray of int, shape (n,)
+    part : ndarray of int, shape (n,)
         The part of each row.
 
     Returns
     -------
     ndarray of int, shape (n,)
-        `of` itself unless samples are its parts.
+        `part` itself unless it is a `Clusters`.
     """
-    if not isinstance(of, Clusters):
-        return of
-    _, place = np.unique(np.asarray(of), return_inverse=True)
+    if not isinstance(part, Clusters):
+        return part
+    _, place = np.unique(np.asarray(part), return_inverse=True)
     parts = int(place.max(initial=-1)) + 1
     groups = min(parts, max(ENOUGH_SAMPLES, min(MOST_GROUPS, parts // ENOUGH_SAMPLES)))
     return place * groups // max(parts, 1)

@@ -101,18 +101,20 @@ def controlled_share(hits: Mask, kept: Mask, *, control: Floats, many: Floats) -
     n, count = len(hits), int(hits[kept].sum())
     plain = float(hits[kept].mean())
     rarer = min(count, int(kept.sum()) - count)
-    known = ~np.isnan(control)
-    oriented = _orientation(hits[kept & known], control[kept & known])
-    beyond = _limit(oriented * control[known], count)
+    has_control = ~np.isnan(control)
+    oriented = _orientation(hits[kept & has_control], control[kept & has_control])
+    beyond = _limit(oriented * control[has_control], count)
     if rarer < FEWEST or beyond is None:
         return Controlled(Estimate(plain, *intervals.share_interval(hits[kept])), 1.0)
-    here, there = (1.0 * (oriented * some > beyond) for some in (control, many))
+    exceeding, many_exceeding = (
+        1.0 * (oriented * quantity > beyond) for quantity in (control, many)
+    )
     errors = np.where(kept, hits - plain, 0.0) / kept.mean()
     padded = np.append(errors, np.array([1, 1, 0, 0]) - plain)
-    cases = np.append(here, [1.0, 0.0, 1.0, 0.0])[:, None]
+    cases = np.append(exceeding, [1.0, 0.0, 1.0, 0.0])[:, None]
     weight = np.append(np.ones(n), np.full(4, 0.5))
     slope, reduction = _regressed(padded, cases, weight, len(many))
-    value = float(np.clip(plain - slope[0] * (here.mean() - there.mean()), 0.0, 1.0))
+    value = float(np.clip(plain - slope[0] * (exceeding.mean() - many_exceeding.mean()), 0.0, 1.0))
     reduction = 1 + (reduction - 1) * rarer / (rarer + _AGAINST)
     ends = intervals.binomial_interval(value, reduction * kept.sum())
     return Controlled(Estimate(value, *ends), reduction)

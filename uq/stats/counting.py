@@ -1,4 +1,4 @@
-"""How many units of a fleet have ended, from the probabilities of the units of its world."""
+"""The number of units of a fleet that have ended, from the probabilities of a world's units."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ _MOST_NUMBERS = 10_000_000
 
 
 def more_than(ended: Floats, size: int, allow: int, are_alike: bool) -> Floats:
-    """Return the probability that more than some of a fleet of a world's units have ended.
+    """Return the probability that more than `allow` of a fleet of a world's units have ended.
 
     Parameters
     ----------
@@ -52,29 +52,29 @@ def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
     """
     samples, units, repeats = lives.shape
     blocks = -(-lives.size * units * repeats // _MOST_NUMBERS)
-    found = []
+    probabilities = []
     for block in np.array_split(lives, max(blocks, 1)):
         table = block.reshape(len(block), 1, -1) if are_alike else block
         order, ended = _one_by_one(table)
         each = np.zeros(order.shape)
         steps = np.diff(more_than(ended, size, allow, are_alike), axis=1, prepend=0.0)
         np.put_along_axis(each, order, steps, axis=1)
-        found.append(each)
-    whole = np.nan_to_num(np.concatenate(found)).reshape(lives.shape)
+        probabilities.append(each)
+    whole = np.nan_to_num(np.concatenate(probabilities)).reshape(lives.shape)
     return np.where(np.isnan(lives), 0.0, whole)
 
 
 def _one_by_one(lives: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return the order of the lives of each world, and which part of its units each leaves ended.
+    """Return the order of the lives of each world, and the share of each unit ended with each life.
 
     Shapes (samples, lives) and (samples, units, lives).
     """
     samples, units, repeats = lives.shape
-    known = np.isfinite(lives) | np.isposinf(lives)
-    count = known.sum(axis=2)
+    present = np.isfinite(lives) | np.isposinf(lives)
+    count = present.sum(axis=2)
     order = np.argsort(lives.reshape(samples, -1), axis=1)
     sample, place = np.indices(order.shape)
-    parts = known / np.maximum(count, 1)[..., None]
+    parts = present / np.maximum(count, 1)[..., None]
     ended = np.zeros((samples, units, units * repeats))
     ended[sample, order // repeats, place] = np.take_along_axis(
         parts.reshape(samples, -1), order, axis=1
@@ -85,7 +85,7 @@ def _one_by_one(lives: Floats) -> tuple[NDArray[np.intp], Floats]:
 
 
 def at_most(ended: Floats, size: int, allow: int) -> Floats:
-    """Return the probability that at most some of a fleet of a world's units have ended.
+    """Return the probability that at most `allow` of a fleet of a world's units have ended.
 
     Parameters
     ----------
@@ -102,32 +102,34 @@ def at_most(ended: Floats, size: int, allow: int) -> Floats:
     samples, units, nodes = ended.shape
     rows = np.sort(np.moveaxis(ended, 1, 2).reshape(samples * nodes, units), axis=1)
     counts = np.isfinite(rows).sum(axis=1)
-    found = np.full(len(rows), np.nan)
+    probability = np.full(len(rows), np.nan)
     for count in np.unique(counts[counts >= size]):
-        of = rows[counts == count, :count]
-        certain = bool(np.isin(of, (0.0, 1.0)).all())
-        found[counts == count] = (_of_certain if certain else _of_any)(of, size, min(allow, size))
-    return found.reshape(samples, nodes)
+        group = rows[counts == count, :count]
+        certain = bool(np.isin(group, (0.0, 1.0)).all())
+        probability[counts == count] = (_of_certain if certain else _of_any)(
+            group, size, min(allow, size)
+        )
+    return probability.reshape(samples, nodes)
 
 
 def _of_certain(ended: Floats, size: int, allow: int) -> Floats:
-    """Return it of units that have ended or have not: the hypergeometric law."""
+    """Return `at_most` for units that have ended or have not: the hypergeometric law."""
     units = ended.shape[1]
     count = np.arange(units + 1.0)
-    some = np.arange(allow + 1.0)[:, None]
-    each = _log_choose(count, some) + _log_choose(units - count, size - some)
+    in_fleet = np.arange(allow + 1.0)[:, None]
+    each = _log_choose(count, in_fleet) + _log_choose(units - count, size - in_fleet)
     table = np.exp(each - _log_choose(units, size)).sum(axis=0)
     return np.asarray(np.minimum(table, 1.0)[ended.sum(axis=1).astype(int)])
 
 
 def _log_choose(n: Floats | float, k: Floats | float) -> Floats:
     n, k = np.asarray(n, float), np.asarray(k, float)
-    found: Floats = special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)
-    return found
+    logarithm: Floats = special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)
+    return logarithm
 
 
 def _of_any(ended: Floats, size: int, allow: int) -> Floats:
-    """Return it of units with any probabilities.
+    """Return `at_most` for units with any probabilities.
 
     The mean over fleets of r of the first m units, of which unit m is in a share r / m: a recursion
     over m of weighted means, in which nothing cancels.

@@ -36,12 +36,12 @@ class Estimate:
     @property
     def finite(self) -> "Estimate":
         """The same, with NaN for every number that is not finite."""
-        value, low, high = (one if isfinite(one) else nan for one in self.numbers)
+        value, low, high = (number if isfinite(number) else nan for number in self.numbers)
         return Estimate(value, low, high, self.reason, self.assumes)
 
     def over(self, size: float) -> "Estimate":
         """Return the same in units of this size."""
-        value, low, high = (one / size for one in self.numbers)
+        value, low, high = (number / size for number in self.numbers)
         return replace(self, value=value, low=low, high=high)
 
     @property

@@ -22,15 +22,15 @@ def ends(estimate: Estimate) -> dict[str, float | None]:
 
 
 def whole(estimate: Estimate) -> dict[str, Any]:
-    """Return value and interval, why any of the three is null, and what they assume."""
-    found: dict[str, Any] = numbers(estimate)
+    """Return value and interval, why any of the three is null, and their assumptions."""
+    entry: dict[str, Any] = numbers(estimate)
     for name in ("value", "low", "high"):
-        found |= flag("" if name == "value" else f"{name}_", estimate, name)
+        entry |= flag("" if name == "value" else f"{name}_", estimate, name)
     if estimate.reason:
-        found["reason"] = estimate.reason
+        entry["reason"] = estimate.reason
     if estimate.assumes:
-        found["assumes"] = estimate.assumes
-    return found
+        entry["assumes"] = estimate.assumes
+    return entry
 
 
 def flag(prefix: str, estimate: Estimate, name: str) -> dict[str, bool]:
@@ -42,9 +42,9 @@ def flag(prefix: str, estimate: Estimate, name: str) -> dict[str, bool]:
 
 def failed(bounds: Estimate | None) -> dict[str, Any]:
     """Return the ends of an interval with the failed rows at best and at worst."""
-    found: dict[str, Any] = {}
+    entry: dict[str, Any] = {}
     if bounds is not None:
         for name in ("low", "high"):
-            found[f"failed_{name}"] = number(getattr(bounds, name))
-            found |= flag(f"failed_{name}_", bounds, name)
-    return found
+            entry[f"failed_{name}"] = number(getattr(bounds, name))
+            entry |= flag(f"failed_{name}_", bounds, name)
+    return entry

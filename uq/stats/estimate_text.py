@@ -16,7 +16,7 @@ def value_text(
     estimate : Estimate
     end : {"value", "low", "high"}
     per : float
-        What the number is divided by: the length of a unit.
+        Divisor of the number: the length of a unit.
     resolution : float
         Of the digits, as `number` takes it, before the division.
 
@@ -55,7 +55,7 @@ def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
     ----------
     estimate : Estimate
     per : float
-        What the numbers are divided by: the length of a unit.
+        Divisor of the numbers: the length of a unit.
 
     Returns
     -------
@@ -67,12 +67,12 @@ def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
         text = f"{value / per:.3g}" if isfinite(value) else value_text(estimate, per=per)
         return text, interval_text(estimate, per)
     decimals = -floor(log10((high - low) / per / 3))
-    text, *ends = (_rounded(one / per, decimals) for one in estimate.numbers)
+    text, *ends = (_rounded(unrounded / per, decimals) for unrounded in estimate.numbers)
     return text, " to ".join(ends)
 
 
 def _rounded(value: float, decimals: int) -> str:
-    rounded = round(value, decimals) + 0.0  # no minus sign before what is zero
+    rounded = round(value, decimals) + 0.0  # no minus sign before zero
     return f"{rounded:.{decimals}f}" if 0 <= decimals <= 6 else number(rounded)
 
 

@@ -102,6 +102,6 @@ def _wrong(wide: float, freedom: int, checks: int) -> float:
 
 
 def _later(values: Floats, check: int) -> Floats:
-    """Return what holds at a later check, for each limit at the first."""
+    """Return the values at the limits of a later check, for each limit at the first."""
     place = np.minimum(np.arange(len(values)) + check * _STEPS, len(values) - 1)
     return np.asarray(values[place])

@@ -108,7 +108,7 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
 
 
 def no_weights(rows: int, why: str) -> Smoothed:
-    """Return what stands for weights of rows that can have none."""
+    """Return unit weights for rows that cannot be weighted, with the reason."""
     return Smoothed(np.ones(rows), inf, rows, 0.0, impossible=why)
 
 
@@ -118,7 +118,7 @@ def carries_little(most: float, rows: int) -> bool:
 
 
 def rows_to_carry_little(most: float) -> float:
-    """Return of how many rows none can carry more than a hundredth, given the largest weight."""
+    """Return the number of rows from which none can carry more than a hundredth of all weight."""
     return most / _LITTLE
 
 
@@ -128,12 +128,12 @@ def of_samples(weights: Floats) -> Smoothed:
 
 
 def quality(weights: Smoothed | None) -> dict[str, float]:
-    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
+    """Return the effective number of rows, and the Pareto shape of their weights."""
     return {} if weights is None else {"effective_rows": weights.effective, "pareto_k": weights.k}
 
 
 def worth_in_words(weights: Smoothed) -> str:
-    """Return of how many samples of equal weight they are worth."""
+    """Return the number of samples and their effective number in words."""
     return f"{weights.rows} samples, worth {weights.effective:.0f} of equal weight"
 
 

@@ -286,17 +286,17 @@ def scattered_share_interval(
         return np.full(np.shape(share), np.nan), np.full(np.shape(share), np.nan)
     variance = estimates.var(axis=0, ddof=1) / count
     # A survival curve may reach 0 while that of a censored replicate does not.
-    known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
-    worth = at * (1 - at) / np.where(known, variance, np.nan)
+    estimable = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
+    worth = at * (1 - at) / np.where(estimable, variance, np.nan)
     wide = student(upper_probability(confidence), count - 1)
-    found = _wilson(share, worth, wide)
+    wilson = _wilson(share, worth, wide)
     if rows is None:
-        return found
-    limit = rows if samples is None else np.where(known, rows, np.minimum(rows, samples))
+        return wilson
+    limit = rows if samples is None else np.where(estimable, rows, np.minimum(rows, samples))
     worth = np.fmin(worth * (normal(upper_probability(confidence)) / wide) ** 2, limit)
     few = are_few(share, rows if samples is None else worth)
     low, high = exact_interval(share, worth, confidence)
-    return np.where(few, low, found[0]), np.where(few, high, found[1])
+    return np.where(few, low, wilson[0]), np.where(few, high, wilson[1])
 
 
 def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:

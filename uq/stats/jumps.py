@@ -49,14 +49,14 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
 
     inputs: Floats
 
-    def __new__(cls, of: ArrayLike, inputs: Floats) -> Self:
+    def __new__(cls, replicate: ArrayLike, inputs: Floats) -> Self:
         """Mark the replicate of each row, shape (n,)."""
-        marked = np.asarray(of, dtype=np.int64).view(cls)
+        marked = np.asarray(replicate, dtype=np.int64).view(cls)
         marked.inputs = inputs
         return marked
 
     def __array_finalize__(self, other: Any) -> None:
-        """Keep no inputs of rows that may be others."""
+        """Drop the inputs, which may belong to other rows."""
         self.inputs = np.empty((0, 0))
 
     def __getitem__(self, rows: Any) -> Any:
@@ -216,8 +216,8 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
         size = float(explained[which, place] / neighbours.norms[place])
         # Near an end polynomials follow a step, and hardly anything of it is left in the residual.
         heights = (
-            _step(of[neighbours.order[which]], place, neighbours, noise)
-            for of in (residual, values)
+            _step(response[neighbours.order[which]], place, neighbours, noise)
+            for response in (residual, values)
         )
         sizes.append(min(size, max(heights)))
         behind = np.zeros(n)

@@ -166,16 +166,16 @@ def sd_interval(
     values, size = sized(values)
     squares = (values - values.mean()) ** 2
     variance = standard_deviation(values, replicate) ** 2
-    found = squares if replicate is None else by_replicate(squares, replicate)
+    mean_squares = squares if replicate is None else by_replicate(squares, replicate)
     if parts_are_independent(replicate):
-        low, high = _relative_ends(found / variance, confidence)
+        low, high = _relative_ends(mean_squares / variance, confidence)
         return size * float(np.sqrt(variance * low)), size * float(np.sqrt(variance * high))
     logarithm = float(np.log(variance))
     if isinstance(replicate, Clusters):  # a few rows each: their logarithms scatter too much
-        low, high = np.exp(scatter_interval(logarithm, found / variance, confidence))
-        high += found.max() / max(len(found), replicate.samples)
-    elif (found > 0).all():
-        low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
+        low, high = np.exp(scatter_interval(logarithm, mean_squares / variance, confidence))
+        high += mean_squares.max() / max(len(mean_squares), replicate.samples)
+    elif (mean_squares > 0).all():
+        low, high = np.exp(scatter_interval(logarithm, np.log(mean_squares), confidence))
         low, high = beyond_jumps(variance, (low, high), squares, replicate, confidence)
         low, high = max(low, 0.0), high + squares.max() / n
     else:

@@ -61,10 +61,10 @@ def quantile(values: Floats, probability: float) -> float:
         return float(np.quantile(values, probability, method="median_unbiased"))
     # Infinity times zero is NaN: numpy interpolates towards a huge number instead.
     finite = values[np.isfinite(values)]
-    found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
-    if found > finite.max(initial=-huge):
+    estimate = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
+    if estimate > finite.max(initial=-huge):
         return np.inf
-    return float(found) if found >= finite.min(initial=huge) else -np.inf
+    return float(estimate) if estimate >= finite.min(initial=huge) else -np.inf
 
 
 def quantile_interval(
@@ -201,7 +201,9 @@ def joint_bounds(
     outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
     if outside < len(values):
         return bounds
-    descending = [iter(np.argsort(-one, kind="stable").tolist()) for one in values]
+    descending = [
+        iter(np.argsort(-output_values, kind="stable").tolist()) for output_values in values
+    ]
     left = np.ones(n, dtype=bool)
     for cut in range(outside):
         place = cut % len(values)
@@ -225,12 +227,12 @@ def rows_for_bound(coverage: float, confidence: float, failed: int = 0, bounds: 
 def rows_still_needed(
     rows: int, failed: int, coverage: float, confidence: float, bounds: int = 1
 ) -> float:
-    """Return how many rows bounds need if no more fail than have failed.
+    """Return the number of rows required for bounds if no further row fails.
 
     Parameters
     ----------
     rows : int
-        There are, the failed ones included.
+        Number of rows so far, the failed ones included.
     failed, coverage, confidence, bounds
         As for `rows_for_bound`.
 

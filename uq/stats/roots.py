@@ -1,18 +1,18 @@
-"""Where a function of one variable changes its sign."""
+"""Roots of a function of one variable."""
 
 from collections.abc import Callable
 from math import sqrt
 
 
-def root(of: Callable[[float], float], ends: tuple[float, float], tolerance: float) -> float:
-    """Return where a function changes its sign between two places.
+def root(function: Callable[[float], float], ends: tuple[float, float], tolerance: float) -> float:
+    """Return the root of a function that changes its sign between two places.
 
     By Chandrupatla's method, as `scipy.optimize.elementwise.find_root` does, whose import takes
     longer than most summaries.
 
     Parameters
     ----------
-    of : callable
+    function : callable
     ends : tuple of float
         At which its signs differ, or one of its values is zero.
     tolerance : float
@@ -33,7 +33,7 @@ def root(of: Callable[[float], float], ends: tuple[float, float], tolerance: flo
     function without using derivatives", Advances in Engineering Software 28 (1997) 145-149.
     """
     a, b = ends
-    at_a, at_b = of(a), of(b)
+    at_a, at_b = function(a), function(b)
     if at_a == 0 or at_b == 0:
         return a if at_a == 0 else b
     if not at_a * at_b < 0:
@@ -41,7 +41,7 @@ def root(of: Callable[[float], float], ends: tuple[float, float], tolerance: flo
     share = 0.5
     while True:
         x = a + share * (b - a)
-        at_x = of(x)
+        at_x = function(x)
         # The root lies between a, the newest place, and b; c is the place before.
         if (at_x > 0) == (at_a > 0):
             c, at_c = a, at_a

@@ -1,4 +1,4 @@
-"""How heavy the tails of an output are, and thus which of its moments exist.
+"""Heaviness of the tails of an output, and thus the moments that exist.
 
 Beyond a high threshold the values of almost any law follow a generalised Pareto law [1]_, whose
 shape k states how fast the tail decays: P(Y > y) ~ y^(-1/k) for k > 0. The variance exists where
@@ -121,12 +121,12 @@ def heavier_tail(values: Floats) -> Tail | None:
         return None
     upper = np.sort(np.partition(values, -size - 1)[-size - 1 :])
     lower = np.sort(-np.partition(values, size)[: size + 1])
-    found = [
+    tails = [
         tail
         for side, extreme in (("upper", upper), ("lower", lower))
         if (tail := _tail(extreme, side)) is not None
     ]
-    return max(found, key=lambda tail: tail.k, default=None)
+    return max(tails, key=lambda tail: tail.k, default=None)
 
 
 def lacks_variance(values: Floats) -> bool:

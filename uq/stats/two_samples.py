@@ -28,9 +28,9 @@ def difference(first: Estimate, second: Estimate, correlation: float) -> Estimat
        comparison of eleven methods", Stat. Med. 17, 873-890 (1998).
     """
 
-    def reach(one: float, other: float) -> float:
-        # Negative only by rounding: it is at least (one - other)^2.
-        return float(np.sqrt(max(one**2 + other**2 - 2 * correlation * one * other, 0.0)))
+    def reach(margin: float, other: float) -> float:
+        # Negative only by rounding: it is at least (margin - other)^2.
+        return float(np.sqrt(max(margin**2 + other**2 - 2 * correlation * margin * other, 0.0)))
 
     value = second.value - first.value
     down = reach(second.value - second.low, first.high - first.value)
@@ -47,7 +47,7 @@ def ratio(first: Estimate, second: Estimate, correlation: float) -> Estimate:
         return float(np.log(number)) if number > 0 else np.nan
 
     below, above = (
-        Estimate(logarithm(one.value), logarithm(one.low), logarithm(one.high))
-        for one in (first, second)
+        Estimate(logarithm(estimate.value), logarithm(estimate.low), logarithm(estimate.high))
+        for estimate in (first, second)
     )
     return Estimate(*np.exp(difference(below, above, correlation).numbers).tolist())

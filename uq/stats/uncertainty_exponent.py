@@ -1,4 +1,4 @@
-"""How intermingled basins are: the uncertainty exponent of the boundary between them."""
+"""The uncertainty exponent of the boundary between basins: how intermingled they are."""
 
 from typing import NamedTuple
 
@@ -121,11 +121,11 @@ def _close_pairs(
     inside = np.asarray(np.abs(points - 0.5).max(axis=1) < 0.5 - FARTHEST)
     if kind is not None:
         points = np.column_stack([points, kind[:rows]])  # other kinds are farther than any pair
-    found = scipy.spatial.cKDTree(points).query_pairs(FARTHEST, p=np.inf, output_type="ndarray")
-    distance = np.abs(np.subtract(*points[found.T])).max(axis=1)
-    weight = inside[found].sum(axis=1).astype(float)
+    pairs = scipy.spatial.cKDTree(points).query_pairs(FARTHEST, p=np.inf, output_type="ndarray")
+    distance = np.abs(np.subtract(*points[pairs.T])).max(axis=1)
+    weight = inside[pairs].sum(axis=1).astype(float)
     kept = np.flatnonzero((weight > 0) & (distance > 0))  # imported points may coincide
-    first, second = found[kept].T
+    first, second = pairs[kept].T
     weight = weight[kept]
     distance = np.log(distance[kept] / FARTHEST)
     differing = weight * (basin[first] != basin[second])

@@ -65,13 +65,13 @@ class _Sums(NamedTuple):
     inner: Floats
     floor: Floats
     error: Floats
-    known_outer: Floats
-    known_middle: Floats
-    known_inner: Floats
+    analytic_outer: Floats
+    analytic_middle: Floats
+    analytic_inner: Floats
 
 
 class _Share(NamedTuple):
-    """A share, and what the transformation of its interval adds to it and to its complement."""
+    """A share, and what its transformed interval adds to the share and to its complement."""
 
     value: Floats
     added: Floats
@@ -82,7 +82,7 @@ def nested_shares(
     values: Floats,
     errors: Floats | None = None,
     replicate: NDArray[np.integer] | None = None,
-    known: Floats | None = None,
+    analytic: Floats | None = None,
     weights: Floats | None = None,
 ) -> NestedShares:
     """Estimate the shares of the variance of samples, units and repeats.
@@ -96,8 +96,8 @@ def nested_shares(
         Standard deviation of the numerical error of each value; NaN where it is not known.
     replicate : ndarray of int, shape (samples,), optional
         Of each sample, where only replicates are independent.
-    known : ndarray, shape (3, samples, units, repeats), optional
-        What each row adds to the variances of samples, units and repeats, known without scatter:
+    analytic : ndarray, shape (3, samples, units, repeats), optional
+        Variances that each row adds to those of samples, units and repeats, known without scatter:
         of independent terms that `values` have at their means.
     weights : ndarray, shape (samples,), optional
         Of samples.
@@ -118,17 +118,17 @@ def nested_shares(
     Intervals: Student's t with the jackknife over independent samples (or replicates) [2]_ of a
     share p, on the scale log((p + e) / (1 - p + f)), where e and f are the noise that was
     subtracted from a component: what is left are ratios of mean squares, which are positive, skewed
-    as their logarithms suppose, and not pinned where a component vanishes. What is known is added
-    to the components. Measured in `tests/uq/test_coverage_levels.py`.
+    as their logarithms suppose, and not pinned where a component vanishes. Analytic
+    variances are added to the components. Measured in `tests/uq/test_coverage_levels.py`.
 
     References
     ----------
     .. [1] S. R. Searle, G. Casella, C. E. McCulloch, "Variance components", Wiley (1992), 3.
     .. [2] J. N. Arvesen, "Jackknifing U-statistics", Ann. Math. Stat. 40, 2076-2100 (1969).
     """
-    added = np.zeros((3, *values.shape)) if known is None else known
+    analytic = np.zeros((3, *values.shape)) if analytic is None else analytic
     worth = np.ones(len(values)) if weights is None else weights
-    columns, whole = _columns(values, errors, added, worth)
+    columns, whole = _columns(values, errors, analytic, worth)
     independent = np.flatnonzero(whole)
     if replicate is not None:
         _, independent = np.unique(replicate[whole], return_inverse=True)
@@ -137,10 +137,10 @@ def nested_shares(
     total = _Sums(*columns.sum(axis=1))
     shares, variance = _shares(total)
     left_out = int((~whole & (worth > 0)).sum())
-    there = values[whole][np.isfinite(values[whole])]
+    finite = values[whole][np.isfinite(values[whole])]
     least = ROUNDING * float(np.nan_to_num(np.sqrt(np.abs(variance))))
-    scatters = len(there) > 1 and not is_constant(there) and np.ptp(there) > least
-    if len(there) < 2 or not (scatters or variance > 0):
+    scatters = len(finite) > 1 and not is_constant(finite) and np.ptp(finite) > least
+    if len(finite) < 2 or not (scatters or variance > 0):
         too_few = TOO_FEW if values[0].size > 1 else TOO_FEW_ROWS
         nothing = Estimate(reason=ALL_SAME if whole.sum() > 1 else too_few)
         return NestedShares(nothing, nothing, nothing, nothing, 0.0, left_out)
@@ -149,40 +149,44 @@ def nested_shares(
     if groups < 2:
         reason = reason or "a single replicate does not show its scatter"
     if not scatters:
-        found = [Estimate(*3 * (float(one.value),)) for one in shares]
+        estimates = [Estimate(*3 * (float(share.value),)) for share in shares]
     elif reason:
-        found = [Estimate(float(one.value), reason=reason) for one in shares]
+        estimates = [Estimate(float(share.value), reason=reason) for share in shares]
     else:
-        own = np.stack([np.bincount(independent, column) for column in columns])
-        without, _ = _shares(_Sums(*(columns.sum(axis=1)[:, None] - own)))
+        group_sums = np.stack([np.bincount(independent, column) for column in columns])
+        without, _ = _shares(_Sums(*(columns.sum(axis=1)[:, None] - group_sums)))
         pairs = zip(shares, without, strict=True)
-        found = [_estimate(one, other.value, groups) for one, other in pairs]
+        estimates = [_estimate(share, other.value, groups) for share, other in pairs]
     for place in (1, 2):
-        if values.shape[place] == 1 and not added[place].any():
-            found[place] = Estimate(reason="needs two of them")
+        if values.shape[place] == 1 and not analytic[place].any():
+            estimates[place] = Estimate(reason="needs two of them")
     if errors is None or not np.isfinite(errors).any():
-        found[3] = Estimate(reason="no row states its error")
-    outer, middle, inner, error = found
+        estimates[3] = Estimate(reason="no row states its error")
+    outer, middle, inner, error = estimates
     return NestedShares(outer, middle, inner, error, float(variance), left_out)
 
 
 def _columns(
-    values: Floats, errors: Floats | None, added: Floats, worth: Floats
+    values: Floats, errors: Floats | None, analytic: Floats, worth: Floats
 ) -> tuple[Floats, Mask]:
-    """Return the terms of `_Sums` of each sample that has them, shape (12, n), and which have."""
+    """Return the terms of `_Sums`, shape (12, n), and the mask of the samples that have them."""
     counts = np.isfinite(values).sum(axis=2)
     units = (counts > 0).sum(axis=1)
     repeated = (counts > 1).sum(axis=1)
     enough_units = units > min(values.shape[1] - 1, 1)
     whole = enough_units & ((repeated > 0) | (values.shape[2] == 1)) & (worth > 0)
-    values, counts, units, repeated = (one[whole] for one in (values, counts, units, repeated))
-    there = np.isfinite(values)
-    known_sums = np.where(there, added[:, whole], 0.0).sum(axis=(2, 3)) / there.sum(axis=(1, 2))
+    values, counts, units, repeated = (
+        per_sample[whole] for per_sample in (values, counts, units, repeated)
+    )
+    present = np.isfinite(values)
+    analytic_means = np.where(present, analytic[:, whole], 0.0).sum(axis=(2, 3)) / present.sum(
+        axis=(1, 2)
+    )
     least = (ROUNDING * np.nanmax(np.abs(values), initial=0.0)) ** 2
     values = values - (np.nanmean(values) if values.size else 0.0)  # squares lose no digits
-    known = counts > 0
+    has_values = counts > 0
     unit_means, within = _mean_and_variance(values, counts, least)
-    means = np.where(known, unit_means, np.nan)
+    means = np.where(has_values, unit_means, np.nan)
     sample_means, between = _mean_and_variance(means, units, least)
     inner = np.divide(
         np.where(counts > 1, within, 0.0).sum(axis=1),
@@ -191,7 +195,7 @@ def _columns(
         where=repeated > 0,
     )
     with np.errstate(divide="ignore"):
-        floor = inner * np.where(known, 1 / counts, 0.0).sum(axis=1) / units
+        floor = inner * np.where(has_values, 1 / counts, 0.0).sum(axis=1) / units
     if values.shape[2] == 1:
         floor = np.zeros(len(values))
     squares = np.zeros(len(values))
@@ -202,17 +206,17 @@ def _columns(
         squares = np.divide(sums, stated.sum(axis=(1, 2)), out=squares, where=stated.any((1, 2)))
     worth, ones = worth[whole], np.ones(len(values))
     columns = (sample_means, sample_means**2, between / units, between - floor, inner, floor)
-    return np.stack([ones, worth, *columns, squares, *known_sums]) * worth, whole
+    return np.stack([ones, worth, *columns, squares, *analytic_means]) * worth, whole
 
 
 def _mean_and_variance(
     values: Floats, counts: NDArray[np.integer], least: float
 ) -> tuple[Floats, Floats]:
     """Return both along the last axis, 0 for too few values, or a variance of rounding errors."""
-    known = np.isfinite(values)
-    sums = np.where(known, values, 0.0).sum(axis=-1)
+    present = np.isfinite(values)
+    sums = np.where(present, values, 0.0).sum(axis=-1)
     mean = np.divide(sums, counts, out=np.zeros(counts.shape), where=counts > 0)
-    squares = np.where(known, values - mean[..., None], 0.0) ** 2
+    squares = np.where(present, values - mean[..., None], 0.0) ** 2
     variance = squares.sum(axis=-1) / np.maximum(counts - 1, 1)
     return mean, np.where(variance > least, variance, 0.0)
 
@@ -221,11 +225,11 @@ def _shares(sums: _Sums) -> tuple[tuple[_Share, ...], Floats]:
     """Return the shares of samples, units, repeats and errors, and the variance."""
     n = sums.weights
     with np.errstate(divide="ignore", invalid="ignore"):
-        noise, floor, error = (one / n for one in (sums.noise, sums.floor, sums.error))
+        noise, floor, error = (total / n for total in (sums.noise, sums.floor, sums.error))
         free = n - sums.squares / n
-        outer = (sums.square - sums.mean**2 / n) / free - noise + sums.known_outer / n
-        middle = (sums.middle + sums.known_middle) / n
-        inner = (sums.inner + sums.known_inner) / n
+        outer = (sums.square - sums.mean**2 / n) / free - noise + sums.analytic_outer / n
+        middle = (sums.middle + sums.analytic_middle) / n
+        inner = (sums.inner + sums.analytic_inner) / n
         variance = outer + middle + inner
         noise, floor, nothing = noise / variance, floor / variance, 0.0 * variance
         shares = (

@@ -43,7 +43,7 @@ FEW = 20
 
 
 class Hits(NamedTuple):
-    """Of how many rows an interval is no narrower than that of hits, and how far this counts."""
+    """Rows of the binomial interval that limits the width of another from below, and its weight."""
 
     rows: float
     """The effective number of all rows, or fewer where those that carry most are heavier than they:
@@ -57,7 +57,7 @@ class Hits(NamedTuple):
 
 
 def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> list[Hits]:
-    """Return the hits of which the interval of a mean must allow, where few rows carry a side.
+    """Return the hits that the interval of a mean must allow for, where few rows carry a side.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
     """
     worth = np.ones(len(numbers)) if weights is None else weights
     of_samples = per_sample(worth, part)
-    found = (_hits(per_sample(worth * side, part), of_samples) for side in (numbers, 1 - numbers))
-    return [one for one in found if one.extent > 0]
+    both = (_hits(per_sample(worth * side, part), of_samples) for side in (numbers, 1 - numbers))
+    return [side_hits for side_hits in both if side_hits.extent > 0]
 
 
 def _hits(carried: Floats, of_samples: Floats) -> Hits:
@@ -89,8 +89,8 @@ def _hits(carried: Floats, of_samples: Floats) -> Hits:
 
 
 def fewest_rows(hits: list[Hits]) -> float:
-    """Return the least number of rows of which an interval is that of hits; infinite for none."""
-    return min((one.rows for one in hits), default=inf)
+    """Return the least number of rows of the hits; infinite if there are none."""
+    return min((side_hits.rows for side_hits in hits), default=inf)
 
 
 def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
@@ -104,12 +104,15 @@ def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> E
     of_hits : function
         Rows -> the interval of a share among so many.
     """
-    intervals = [(of_hits(one.rows), one.extent) for one in hits]
+    intervals = [(of_hits(side_hits.rows), side_hits.extent) for side_hits in hits]
     low, high = ends
     return (
-        min((low + extent * min(0.0, there[0] - low) for there, extent in intervals), default=low),
+        min(
+            (low + extent * min(0.0, interval[0] - low) for interval, extent in intervals),
+            default=low,
+        ),
         max(
-            (high + extent * max(0.0, there[1] - high) for there, extent in intervals),
+            (high + extent * max(0.0, interval[1] - high) for interval, extent in intervals),
             default=high,
         ),
     )
@@ -119,7 +122,7 @@ EXACT = "exact: rows differ only in what is integrated"
 
 
 def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
-    """Return what each independent part says of a weighted mean, shape (parts,).
+    """Return the linearised weighted mean of each independent part, shape (parts,).
 
     The mean of all rows, plus the influence of the part on it; where all rows have learnt the law
     of an input together, also on that law (`uq.stats.clusters.SharedInfluence`).
@@ -128,10 +131,10 @@ def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
     influence = _influence(numbers, weights)
     if part is None:
         return mean + influence
-    of = np.asarray(part)
+    labels = np.asarray(part)
     if isinstance(part, Clusters) and part.together is not None:
-        of, influence = part.together.part, part.together.with_errors(influence)
-    _, place = np.unique(of, return_inverse=True)
+        labels, influence = part.together.part, part.together.with_errors(influence)
+    _, place = np.unique(labels, return_inverse=True)
     sums = np.bincount(place, weights=influence)
     return np.asarray(mean + len(sums) * sums / len(influence))
 
@@ -178,20 +181,20 @@ def weighted_share(
     if not worth.sum() > 0:
         return Estimate()
     mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
-    found = pulls(numbers, worth, part)
-    parts = len(found)
+    part_means = pulls(numbers, worth, part)
+    parts = len(part_means)
     if parts < 2:
         return Estimate(mean, reason=ONE_ROW if part is None else "")
     if numbers.min() >= 1 - ROUNDING:  # the complement has no digits
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
-    low, high = _of_logit(mean, found, confidence)
+    low, high = _of_logit(mean, part_means, confidence)
     if 0 < mean < 1:
-        outlier = outlier_shift(mean, found)
+        outlier = outlier_shift(mean, part_means)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
-    some = hits_behind(numbers, weights, part) if hits is None else hits
-    low, high = widened((low, high), some, lambda rows: exact_interval(mean, rows, confidence))
+    hits = hits_behind(numbers, weights, part) if hits is None else hits
+    low, high = widened((low, high), hits, lambda rows: exact_interval(mean, rows, confidence))
     return Estimate(mean, float(low), float(high))
 
 
@@ -213,20 +216,22 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     if not len(numbers):
         return Estimate()
     mean = float(np.clip(numbers.mean(), 0.0, 1.0))
-    found = pulls(numbers, np.ones(len(numbers)), part)
-    if len(found) < 2:
+    part_means = pulls(numbers, np.ones(len(numbers)), part)
+    if len(part_means) < 2:
         return Estimate(mean)
-    some = hits_behind(numbers, None, part)
-    low, high = widened(_of_logit(mean, found), some, lambda rows: wilson_interval(mean, rows))
+    hits = hits_behind(numbers, None, part)
+    low, high = widened(_of_logit(mean, part_means), hits, lambda rows: wilson_interval(mean, rows))
     return Estimate(mean, low, high)
 
 
-def _of_logit(mean: float, found: Floats, confidence: float = CONFIDENCE) -> tuple[float, float]:
-    """Return Student's interval of the logit of a mean, from what each part says of it."""
+def _of_logit(
+    mean: float, part_means: Floats, confidence: float = CONFIDENCE
+) -> tuple[float, float]:
+    """Return Student's interval of the logit of a mean, from the linearised means of the parts."""
     if not 0 < mean < 1:
         return mean, mean
-    error = found.std(ddof=1) / len(found) ** 0.5
-    wide = student(upper_probability(confidence), len(found) - 1)
+    error = part_means.std(ddof=1) / len(part_means) ** 0.5
+    wide = student(upper_probability(confidence), len(part_means) - 1)
     half = wide * error / (mean * (1 - mean))
     low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
     return low, high
@@ -263,9 +268,9 @@ def moments_of_rows(
     squares = (values - mean) ** 2 + within / unit / unit
     variance = float(np.average(squares, weights=weights))
     of_rows = isinstance(part, EvenReplicates) and not is_constant(weights)
-    influence, found = _influence(values, weights), pulls(values, weights, part)
-    parts = mean + influence if of_rows else found
-    ends = beyond_outliers(mean, scatter_interval(mean, found), parts)
+    influence, part_means = _influence(values, weights), pulls(values, weights, part)
+    parts = mean + influence if of_rows else part_means
+    ends = beyond_outliers(mean, scatter_interval(mean, part_means), parts)
     ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
     of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
     size = max(variance, 1e-300)
@@ -297,27 +302,27 @@ def weighted_moments(
 
 
 def trusted(
-    found: Estimate,
+    estimate: Estimate,
     pulls: Floats,
     part: Replicates,
     most: float = inf,
     hopeless: str = HOPELESS,
 ) -> Estimate:
-    """Return an estimate, or why its weights do not allow one.
+    """Return an estimate, or the reason why its weights do not allow one.
 
     Parameters
     ----------
-    found : Estimate
+    estimate : Estimate
     pulls : ndarray, shape (n,)
         Weights; for a mean of numbers without bounds, times these numbers.
     part : ndarray of int, shape (n,), or None
     most : float, optional
         The largest weight that a row can have.
     hopeless : str, optional
-        What to say where more rows would not help.
+        Reason where more rows would not help.
     """
     of_samples = per_sample(np.abs(pulls), part)
     if carries_little(most, len(of_samples)):
-        return found
+        return estimate
     why = refusal(tail_shape(of_samples), len(of_samples), hopeless)
-    return Estimate(reason=why) if why else found
+    return Estimate(reason=why) if why else estimate

@@ -1,4 +1,4 @@
-"""What differs between a study and the one for which rows were computed."""
+"""Differences between a study and the one for which rows were computed."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -12,7 +12,7 @@ _FREE = {("study", "name"), ("study", "description"), ("design", "samples"), ("d
 
 
 def what_changed(text: str, model_version: str, study: Study) -> str:
-    """Return why a study is another one than that of some rows.
+    """Return the first difference between a study and the study of computed rows.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
 
 
 def refusal_to_extend(study: Study) -> str | None:
-    """Say why more samples cannot be appended to the rows of a study, or return None."""
+    """Return why more samples cannot be appended to the rows of a study, or None."""
     method = study.design.method
     if DESIGNS[method].append_only:
         return None

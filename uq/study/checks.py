@@ -1,4 +1,4 @@
-"""What a study file asks of its model and of its design, beyond its shape."""
+"""Checks of a study file against its model and its design, beyond its shape."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
@@ -22,7 +22,7 @@ Tables = Mapping[str, Mapping[str, Any]]
 
 
 def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[InputFault]:
-    """Yield what does not suit the model, apart from the laws of its parameters.
+    """Yield the faults of a study with this model, apart from the laws of its parameters.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         path, no_number = ("analysis", "thresholds", name), "it has shares, not thresholds"
         faults = list(output_faults(name, path, value, no_number))
         yield from faults
-        for one in (value if isinstance(value, list) else [value]) * (not faults):
-            yield from _unit_faults(model, name, path, one)
+        for threshold in (value if isinstance(value, list) else [value]) * (not faults):
+            yield from _unit_faults(model, name, path, threshold)
     for name, side in analysis.get("joint_bounds", {}).items():
         path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
         yield from output_faults(name, path, side, no_number)
@@ -79,12 +79,12 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[InputFault]:
-    """Yield what does not suit the output by which a run stops."""
+    """Yield the faults of the stopping rule `until` for its output."""
     path = ("design", "until")
     for key in ("above", "below"):
         yield from _unit_faults(model, name, (*path, key), until.get(key))
     if "b_life" in until and not model.outputs[name].is_lifetime:
-        lives = [one for one, output in model.outputs.items() if output.is_lifetime]
+        lives = [life for life, output in model.outputs.items() if output.is_lifetime]
         problem = f"'{name}' is not a lifetime (lifetimes: {choices(lives)})"
         yield InputFault((*path, "b_life"), problem, until["b_life"])
     half_width = until["half_width"]
@@ -98,7 +98,7 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
 def _element_faults(
     model: Model, name: str, until: Mapping[str, Any], settings: Any
 ) -> Iterator[InputFault]:
-    """Yield whether an output has no such element with these settings."""
+    """Yield a fault if an output has no such element with these settings."""
     element = until["output"]
     if element == name or settings is None:
         return
@@ -138,13 +138,13 @@ def _output_faults(
     value: Any,
     no_number: str = "",
 ) -> Iterator[InputFault]:
-    """Yield whether a model lacks an output, or has it as a category where numbers are needed."""
-    if not model.outputs:  # not known before rows have run
+    """Yield a fault if a model lacks an output, or it is a category where numbers are needed."""
+    if not model.outputs:  # undeclared before rows have run
         return
     if name not in model.outputs:
         yield InputFault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
     elif settings is not None and name not in model.given(settings).outputs:
-        optional = [one for one in model.setting_names if model.setting(one).optional]
+        optional = [setting for setting in model.setting_names if model.setting(setting).optional]
         yield InputFault(path, f"it needs {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:
         yield InputFault(path, f"is a category: {no_number}", value)
@@ -153,8 +153,8 @@ def _output_faults(
 def _unit_faults(
     model: Model, name: str, path: tuple[str, ...], value: Any
 ) -> Iterator[InputFault]:
-    """Yield whether a number is in a unit that does not fit an output."""
-    output = model.outputs.get(name)  # None: not known before rows have run
+    """Yield a fault if the unit of a number does not fit an output."""
+    output = model.outputs.get(name)  # None: undeclared before rows have run
     if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
         if output.unit == "1" and isinstance(model.batch, RowByRow):
             of_life = output.is_lifetime
@@ -184,7 +184,7 @@ def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[
 
 
 def design_faults(tables: Tables) -> Iterator[InputFault]:
-    """Yield what the design does not allow."""
+    """Yield the requests of a study that its design does not allow."""
     table, analysis = tables["design"], tables["analysis"]
     if "method" not in table:
         return
@@ -214,7 +214,7 @@ def design_faults(tables: Tables) -> Iterator[InputFault]:
     for key, problem in problems.items():
         yield InputFault(("design", key), problem, None if key == "until" else table[key])
     several = _rows_of_a_sample(table) > 1
-    for key in [one for one in ("tolerance", "joint_bounds") if one in asks]:
+    for key in [bound for bound in ("tolerance", "joint_bounds") if bound in asks]:
         why = ""
         if several:
             why = f"independent rows, {_SEVERAL}"
@@ -247,16 +247,16 @@ def design_faults(tables: Tables) -> Iterator[InputFault]:
 def _index_faults(
     design: Design, method: str, until: Mapping[str, Any], uncertain: Mapping[str, Any]
 ) -> Iterator[InputFault]:
-    """Yield what is wrong with the index by which a run stops."""
+    """Yield the faults of the index in the stopping rule `until`."""
     if (index := until.get("index")) is None:
         return
-    path, known = ("design", "until"), kinds_with_intervals(design)
-    if not known:
+    path, kinds = ("design", "until"), kinds_with_intervals(design)
+    if not kinds:
         able = _able(lambda d: d.append_only and bool(kinds_with_intervals(d)))
         problem = f"a '{method}' design gives no index with an interval; use method = {able}"
         yield InputFault((*path, "index"), problem, index)
-    elif index not in known:
-        yield InputFault((*path, "index"), unknown("index with an interval", index, known), index)
+    elif index not in kinds:
+        yield InputFault((*path, "index"), unknown("index with an interval", index, kinds), index)
     inputs = [name for name, law in uncertain.items() if "equals" not in law]
     if len(inputs) == 1 and design.layout is PATHS:
         problem = f"is 1 in every study of one input, {inputs[0]}: no interval to wait for"

@@ -84,15 +84,15 @@ class SourcesLocator:
         package = module.partition(".")[0]
         if package in own_packages() or (package not in _models and is_installed(package)):
             return None
-        if not sources_of(module).own:
+        if not sources_of(module).code:
             return None
-        found = cls(function, module)
+        locator = cls(function, module)
         try:
-            found.ensure_cache_path()
+            locator.ensure_cache_path()
         except OSError:
-            found._path = _fresh_folder().joinpath(*found._path.parts[-2:])
-            found.ensure_cache_path()
-        return found
+            locator._path = _fresh_folder().joinpath(*locator._path.parts[-2:])
+            locator.ensure_cache_path()
+        return locator
 
     def ensure_cache_path(self) -> None:
         """Make the folder, if need be, and check that it is writable."""
@@ -105,11 +105,11 @@ class SourcesLocator:
         return str(self._path)
 
     def get_source_stamp(self) -> str:
-        """Return what else must match: nothing."""
+        """Return an empty stamp: nothing else must match."""
         return ""
 
     def get_disambiguator(self) -> str:
-        """Return what distinguishes functions of one name in one module."""
+        """Return the line of the function, which distinguishes functions of one name."""
         return self._line
 
 
@@ -122,7 +122,7 @@ def key_of(module: str) -> str:
         Its full name.
     """
     sources = sources_of(module)
-    whole = digest(sources.own)
+    whole = digest(sources.code)
     for package in sorted({name.partition(".")[0] for name in sources.others}):
         whole.update(repr(signature(package, sources.others)).encode())
     return whole.hexdigest()[:16]

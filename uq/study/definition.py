@@ -75,9 +75,11 @@ class Study:
     imported: Mapping[str, str] = field(default_factory=dict)
 
     def bounds(self, name: str) -> tuple[float, float]:
-        """Return the bounds that a parameter shares with those tied to it."""
+        """Return the common bounds of a parameter and the parameters tied to it."""
         names = [name, *(other for other, tied in self.tied.items() if tied.equals == name)]
-        lows, highs = zip(*(self.model.parameter(one).bounds for one in names), strict=True)
+        lows, highs = zip(
+            *(self.model.parameter(parameter).bounds for parameter in names), strict=True
+        )
         return max(lows), min(highs)
 
     @property
@@ -101,7 +103,7 @@ class Study:
 
     @property
     def identity(self) -> str:
-        """SHA-256 of what the rows depend on, so not of their number, comments or [analysis]."""
+        """SHA-256 of all that determines the rows: not their number, comments or [analysis]."""
         without = {"samples", "file", "until", "independent", "units", "repeats"}
         design = self.design.model_dump(exclude=without)
         constants = {
@@ -197,37 +199,37 @@ def study_from_text(
     faults += [*more, *spoilt, *dependence_faults(tables, entries)]
 
     reference = model or tables["study"].get("model")
-    found = None
+    study_model = None
     if reference is not None:
         try:
-            found = find_model(reference, folder) if model is None else model_at(model)
+            study_model = find_model(reference, folder) if model is None else model_at(model)
         except InputError as error:
             if model is not None:
                 lines += error.lines
             else:
                 faults += [InputFault(("study", "model"), line, reference) for line in error.lines]
-    if found is not None:
-        faults += model_faults(found, data, tables)
-        faults += input_faults(found, entries)
-        faults += import_faults(found, tables, entries, columns)
+    if study_model is not None:
+        faults += model_faults(study_model, data, tables)
+        faults += input_faults(study_model, entries)
+        faults += import_faults(study_model, tables, entries, columns)
     faults += design_faults(tables)
     order = (*StudyFile.model_fields, *data)
     faults.sort(key=lambda fault: order.index(str(fault.path[0])))
     lines += [f"{source}: {fault.line}" for fault in faults]
-    if lines or found is None or reference is None:
+    if lines or study_model is None or reference is None:
         raise InputError(*lines)
 
     file = StudyFile.model_validate(data)
-    settings, _ = read_settings(found, file.settings)
-    found = found.given(settings)
-    outputs = file.analysis.outputs or tuple(found.outputs)
+    settings, _ = read_settings(study_model, file.settings)
+    study_model = study_model.given(settings)
+    outputs = file.analysis.outputs or tuple(study_model.outputs)
     uncertain = {name: law for name, law in entries.items() if not isinstance(law, Tied)}
     table = columns[file.design.file] if file.design.file and file.design.method in IMPORTED else {}
     imported = {name: table[name] for name in uncertain if table}
     rows = min((len(numbers(column)) for column in imported.values()), default=0)
     return Study(
         name=file.study.name,
-        model=found,
+        model=study_model,
         model_reference=reference,
         description=file.study.description,
         design=file.design.model_copy(update={"samples": file.design.samples or rows}),

@@ -47,7 +47,7 @@ class RowFailure(NamedTuple):
 def evaluate(
     model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], start: int = 0
 ) -> Chunk:
-    """Run a model on some rows.
+    """Run a model on a range of rows.
 
     Parameters
     ----------
@@ -86,11 +86,11 @@ def evaluate(
             status[first] = returned.status
             messages[first] = returned.message
         else:
-            outputs, codes, said = returned
+            outputs, codes, part_messages = returned
             for name, column in columns.items():
                 column[first:last] = outputs[name]
             status[first:last] = codes
-            messages |= {first + row: text for row, text in said.items()}
+            messages |= {first + row: text for row, text in part_messages.items()}
     _check_values(model, columns, status, messages)
     lost = ~np.isin(status, _WITH_OUTPUTS)
     for name, column in columns.items():

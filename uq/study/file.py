@@ -103,8 +103,8 @@ _B_LIFE = r"^B(\d{1,2}(\.\d{1,9})?)$"
 
 
 def _share_ended(name: str) -> str:
-    found = re.match(_B_LIFE, name)
-    if found is None or not float(found[1]) > 0:
+    match = re.match(_B_LIFE, name)
+    if match is None or not float(match[1]) > 0:
         raise ValueError('must be "B" and a percentage, such as "B10": the time by which 10 % end')
     return name
 
@@ -163,7 +163,7 @@ class Until(_Table):
 
     @property
     def probability(self) -> float | None:
-        """That of a quantile or B-life, if one is meant."""
+        """The probability of the quantile or B-life, if one is meant."""
         return self.quantile if self.b_life is None else float(self.b_life[1:]) / 100
 
     @property
@@ -173,7 +173,7 @@ class Until(_Table):
 
     @property
     def estimate(self) -> str:
-        """What is estimated of an element, as tables call it."""
+        """The name of the estimate of an element in tables."""
         if self.index is not None:
             return f"{self.index} {self.label}".strip()
         if self.b_life is not None:
@@ -268,8 +268,8 @@ class _AnyLaw:
         return no_info_plain_validator_function(law_of)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        found: dict[str, Any] = handler(any_law().core_schema)
-        return found
+        law_schema: dict[str, Any] = handler(any_law().core_schema)
+        return law_schema
 
 
 Entry = Annotated[

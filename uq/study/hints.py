@@ -1,4 +1,4 @@
-"""What a study will lack, as far as it shows before any row is computed.
+"""Hints on what a study will lack, given before any row is computed.
 
 None of it is a fault: each may be meant.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from uq.study.definition import Study
 
 REPLICATES = 8
-"""How many are advised."""
+"""Advised number of replicates."""
 
 _FEW = 3  # replicates, of which an interval is about twice as wide, or more
 _PURE = ("1", "cycles")  # in which a life may be counted
@@ -38,7 +38,7 @@ _LIFE = re.compile(
 
 
 def hints(study: "Study") -> list[str]:
-    """Return what a study will lack, and what would provide it, one sentence each.
+    """Return a sentence on each thing that a study will lack, with its remedy.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def _ends_of_samples(study: "Study") -> Iterator[str]:
 
 
 def _joint(study: "Study") -> int:
-    """Return how many bounds are to hold at once."""
+    """Return the number of joint bounds."""
     axes, outputs = study.model.coordinates(study.settings), study.model.outputs
     bounds = 0
     for name, side in study.analysis.joint_bounds.items():

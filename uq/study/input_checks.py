@@ -33,7 +33,7 @@ Entries = Mapping[str, Any]
 
 
 def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, list[InputFault]]:
-    """Return the sound entries of [uncertain], with the values of those that name a file.
+    """Return the sound entries of [uncertain], with the values of entries that name a file.
 
     Parameters
     ----------
@@ -74,10 +74,12 @@ def laws_of(text: str) -> dict[str, Law]:
 
 
 def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
-    """Yield what does not suit a parameter: its law, or the parameter that it follows."""
-    known = {name: entry for name, entry in entries.items() if name in model.parameter_names}
-    leaders = {name: entry for name, entry in known.items() if not _followed(entry)}
-    for name, entry in known.items():
+    """Yield the faults of a parameter's law, or of the parameter that it follows."""
+    model_entries = {
+        name: entry for name, entry in entries.items() if name in model.parameter_names
+    }
+    leaders = {name: entry for name, entry in model_entries.items() if not _followed(entry)}
+    for name, entry in model_entries.items():
         parameter, other = model.parameter(name), _followed(entry)
         if other is None:
             if unsuited := law_problem(entry, parameter):
@@ -93,26 +95,28 @@ def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
                 path, f"{problem}{nearest(other, leaders)} (allowed: {allowed})", other
             )
             continue
-        law, there = leaders[other], model.parameter(other)
-        if text := _level_problem(entry, name, known[other]):
+        law, other_parameter = leaders[other], model.parameter(other)
+        if text := _level_problem(entry, name, model_entries[other]):
             yield InputFault(path, text, other)
         if isinstance(entry, Tied):
-            if parameter.unit != there.unit:
-                problem = f"is in another unit, {there.unit}, than '{name}', {parameter.unit}"
+            if parameter.unit != other_parameter.unit:
+                problem = (
+                    f"is in another unit, {other_parameter.unit}, than '{name}', {parameter.unit}"
+                )
                 yield InputFault(path, problem, other)
             elif unsuited := law_problem(law, parameter):
                 yield InputFault(path, f"'{name}' cannot follow it: {unsuited.problem}", other)
-        elif not law_problem(law, there):  # else reported at that parameter
-            low, high = support(law, there.bounds)
+        elif not law_problem(law, other_parameter):  # else reported at that parameter
+            low, high = support(law, other_parameter.bounds)
             if low <= 0 <= high:
                 problem = f"must not change sign or be zero: lies within {low:g} to {high:g}"
                 yield InputFault(path, problem, other)
-            elif text := _product_problem(parameter, entry, law, there):
+            elif text := _product_problem(parameter, entry, law, other_parameter):
                 yield InputFault(("uncertain", name), text)
 
 
 def _level_problem(entry: Law | Tied, name: str, other: Law) -> str | None:
-    """Return why the level of a parameter is not that of the one that it follows, or None."""
+    """Return why a parameter and the one that it follows differ in level, or None."""
     if entry.level in (None, other.level):
         return None
     verb = "equals" if isinstance(entry, Tied) else "times"
@@ -123,12 +127,12 @@ def _level_problem(entry: Law | Tied, name: str, other: Law) -> str | None:
 
 
 def _followed(entry: Law | Tied) -> str | None:
-    """Return the parameter that another one equals, or is a multiple of; None for a law alone."""
+    """Return the parameter that an entry equals or multiplies; None for a law alone."""
     return entry.equals if isinstance(entry, Tied) else entry.times
 
 
 def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[InputFault]:
-    """Yield what is wrong with [dependence], by itself or for this design."""
+    """Yield the faults of [dependence], in itself or for this design."""
     table = tables["dependence"]
     if not table:
         return
@@ -204,13 +208,15 @@ def import_faults(
         yield InputFault(("design", "samples"), problem, table["samples"])
 
 
-def _product_problem(parameter: Parameter, factor: Law, law: Law, there: Parameter) -> str | None:
-    """Say why a factor times another parameter does not suit a parameter, or return None."""
+def _product_problem(
+    parameter: Parameter, factor: Law, law: Law, other_parameter: Parameter
+) -> str | None:
+    """Return why a factor times another parameter leaves a parameter's bounds, or None."""
     from scipy.stats import norm
 
-    # The mean over the other's law of what the factor has outside; both tails of that law count.
+    # The factor's probability outside, averaged over the other's law; both of its tails count.
     z = np.linspace(-8.0, 8.0, 801)
-    other = ppf_within(law, norm.cdf(z), there.bounds)
+    other = ppf_within(law, norm.cdf(z), other_parameter.bounds)
     share = outside_share(factor, *factor_ends(other, parameter.bounds))
     if share is None:
         return TOO_EXTREME

@@ -34,7 +34,7 @@ GROUP = "vibrolife.models"
 _MACHINES = (".toml", ".fmu")
 _SERVERS = ("http://", "https://")
 _FILE = re.compile(r"(.+\.py)(?::(\w+))?")
-_KNOWN_TO_RETURN = "\n"  # what follows it in a reference is what a function returns
+_KNOWN_TO_RETURN = "\n"  # in a reference, the declared returns of a function follow it
 
 
 def model_names() -> tuple[str, ...]:
@@ -94,8 +94,8 @@ def model_at(reference: str) -> Model:
         from uq.machines.machine import machine_of
 
         return machine_of(Path(reference))
-    plain, _, known = reference.partition(_KNOWN_TO_RETURN)
-    returned = from_plain(json.loads(known)) if known else None
+    plain, _, returns = reference.partition(_KNOWN_TO_RETURN)
+    returned = from_plain(json.loads(returns)) if returns else None
     if plain.startswith(_SERVERS):
         from uq.machines.server import server_model
 
@@ -104,7 +104,7 @@ def model_at(reference: str) -> Model:
 
 
 def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
-    """Return the reference of a function of which it is known what it returns."""
+    """Return the reference of a function, extended by its declared returns."""
     return f"{without_returns(reference)}{_KNOWN_TO_RETURN}{json.dumps(as_plain(returned))}"
 
 
@@ -119,10 +119,10 @@ def located(reference: str) -> str:
         return reference
     if reference.endswith(_MACHINES):
         return str(Path(reference).absolute())
-    found = _FILE.fullmatch(reference)
-    if not found:
+    match = _FILE.fullmatch(reference)
+    if not match:
         return reference
-    return str(Path(found[1]).absolute()) + (f":{found[2]}" if found[2] else "")
+    return str(Path(match[1]).absolute()) + (f":{match[2]}" if match[2] else "")
 
 
 def module_of(reference: str) -> str:
@@ -163,11 +163,13 @@ def _installed(name: str, folder: Path | None = None) -> EntryPoint:
 
 def _module_in(file: Path) -> str:
     """Return the name by which the module in a file can be imported."""
-    if what := node(file):
-        raise InputError(f"{file}: is {what}, not a file")
+    if kind := node(file):
+        raise InputError(f"{file}: is {kind}, not a file")
     if not file.is_file():
-        there = [one.name for one in file.parent.glob("*.py")] if file.parent.is_dir() else []
-        raise InputError(f"{file}: no such file{nearest(file.name, there)}")
+        neighbours = (
+            [path.name for path in file.parent.glob("*.py")] if file.parent.is_dir() else []
+        )
+        raise InputError(f"{file}: no such file{nearest(file.name, neighbours)}")
     folder, name = str(file.absolute().parent), file.stem
     if folder not in sys.path:
         sys.path.append(folder)
@@ -196,9 +198,9 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         raise InputError(f"{label} {clash}")
     keep_apart(module_name)
     try:
-        with redirect_stdout(sys.stderr):  # what it prints is no part of an answer
+        with redirect_stdout(sys.stderr):  # its prints must not mix with an answer
             module = importlib.import_module(module_name)
-        found = getattr(module, attribute or _only_model(module, label))
+        model = getattr(module, attribute or _only_model(module, label))
     except InputError:
         raise
     except (Exception, SystemExit) as error:
@@ -209,33 +211,35 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         raise InputError(f"{label} cannot be imported{place}: {problem}") from error
     if package not in own_packages():
         fingerprint(module_name)  # now, before anything is edited
-    if is_machine(found):
-        found = model_of(found, returned)
-    if not isinstance(found, Model):
-        remedy = "; write @uq.machine above it" if isfunction(found) else ""
+    if is_machine(model):
+        model = model_of(model, returned)
+    if not isinstance(model, Model):
+        remedy = "; write @uq.machine above it" if isfunction(model) else ""
         raise InputError(
-            f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model{remedy}"
+            f"{label}: {point.value} is a {type(model).__name__}, not a uq.contract.Model{remedy}"
         )
-    _check(found, label)
-    return found
+    _check(model, label)
+    return model
 
 
 def _remedy_of_missing(package: str) -> str:
-    """Return what to do where a module of a package was not found."""
+    """Return the advice for a package of which a module is missing."""
     if clash := namesake(package):
         return clash
-    if there := found_at(package):
-        return f"Python finds '{package}' in {there}; if another is meant, rename one of them"
+    if place := found_at(package):
+        return f"Python finds '{package}' in {place}; if another is meant, rename one of them"
     return "install it, or name its folder in PYTHONPATH"
 
 
 def _only_model(module: ModuleType, label: str) -> str:
     """Return the name of the only model of a module, or of its only machine."""
 
-    def is_own(one: Any) -> bool:
-        return isinstance(one, Model) or (is_machine(one) and one.__module__ == module.__name__)
+    def is_candidate(attribute: Any) -> bool:
+        return isinstance(attribute, Model) or (
+            is_machine(attribute) and attribute.__module__ == module.__name__
+        )
 
-    names = [name for name, one in vars(module).items() if is_own(one)]
+    names = [name for name, attribute in vars(module).items() if is_candidate(attribute)]
     if len(names) == 1:
         return names[0]
     if names:
@@ -257,13 +261,15 @@ def _check(model: Model, label: str) -> None:
     if missing:
         raise InputError(f"{label}: parameter '{min(missing)}' has no nominal value")
     for name, output in model.outputs.items():
-        for one in output.categories:
-            if len(one.split()) != 1:  # a result lists them with blanks between
-                raise InputError(f"{label}: output '{name}': category '{one}' must be one word")
+        for category in output.categories:
+            if len(category.split()) != 1:  # a result lists them with blanks between
+                raise InputError(
+                    f"{label}: output '{name}': category '{category}' must be one word"
+                )
 
 
 def made_here(reference: str) -> dict[str, str]:
-    """Return what determines the rows of a model here: processor, versions and the model's code.
+    """Return the provenance of a model's rows computed here: processor, versions and code.
 
     Parameters
     ----------
@@ -279,7 +285,7 @@ def is_other_code(made: Mapping[str, object], reference: str) -> bool:
     Parameters
     ----------
     made : dict
-        What determined them, as recorded by `made_here`; without ``code``, nothing is known.
+        What determined them, as recorded by `made_here`; without ``code``, they count as this code.
     reference : str
         As above.
     """
@@ -288,7 +294,7 @@ def is_other_code(made: Mapping[str, object], reference: str) -> bool:
 
 
 def code_of(reference: str) -> str:
-    """Return a hash of the sources of a model: its module, and what that imports.
+    """Return a hash of the sources of a model: its module and the modules it imports.
 
     Only the sources of its package, and of its neighbours in the same folder, count.
 
@@ -305,7 +311,7 @@ def code_of(reference: str) -> str:
     Raises
     ------
     InputError
-        No source was found.
+        The model has no source file.
     """
     if reference.endswith(_MACHINES):
         from uq.machines.machine import code_of_machine
@@ -316,9 +322,9 @@ def code_of(reference: str) -> str:
 
         return code_of_server(without_returns(reference))
     module = module_of(reference)
-    if not (found := fingerprint(module)):
+    if not (digest := fingerprint(module)):
         raise InputError(
             f"model '{reference}': no source file of module '{module}' was found, so its code "
             "cannot be identified; install it, or name its folder in PYTHONPATH"
         )
-    return found
+    return digest

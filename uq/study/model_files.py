@@ -32,8 +32,8 @@ def file_with(model: str, folders: Iterable[Path]) -> str:
         with suppress(OSError):
             files = sorted(path for path in folder.iterdir() if path.suffix in _NAMED)[:_MOST]
             for path in files:
-                if found := _reference(path, model):
-                    return shlex.quote(found)
+                if reference := _reference(path, model):
+                    return shlex.quote(reference)
     return ""
 
 
@@ -64,7 +64,7 @@ def _in_python(path: Path, content: bytes, model: str) -> str:
 
 
 def _named(statement: ast.stmt) -> tuple[str, str] | None:
-    """Return the name of the model that a statement makes, and that of its variable."""
+    """Return the name of the model that a statement makes, and the name of its variable."""
     match statement:
         case ast.FunctionDef(name=name, decorator_list=marks) if "machine" in map(_callee, marks):
             return name, name
@@ -79,7 +79,7 @@ def _named(statement: ast.stmt) -> tuple[str, str] | None:
 
 
 def _callee(expression: ast.expr) -> str:
-    """Return the last part of the name of what is called, or of a decorator."""
+    """Return the last part of the name of a decorator or of the function called."""
     called = expression.func if isinstance(expression, ast.Call) else expression
     return getattr(called, "attr", getattr(called, "id", ""))
 

@@ -50,7 +50,7 @@ def namesake(package: str) -> str:
 
 
 def hidden_beside(module: str) -> str:
-    """Return that a module imports what lies beside it under the name of one of our packages.
+    """Return a message if a module's import of a neighbouring file is hidden by our package.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def hidden_beside(module: str) -> str:
         A sentence with both places; "" if Python finds what the module means.
     """
     sources = sources_of(module)
-    names = [name.split(".") for name in (*sources.own, *sources.others)]
+    names = [name.split(".") for name in (*sources.code, *sources.others)]
     for package in sorted(own_packages() & {first for first, *_ in names}):
         ours = _HOUSE / package
         modules = {rest[0] for first, *rest in names if first == package and rest}

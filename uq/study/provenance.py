@@ -27,7 +27,7 @@ def versions() -> dict[str, str]:
 
 
 def differences(wanted: Mapping[str, str]) -> str:
-    """Return how this process differs from one that wants rows; "" if it does not.
+    """Return how the versions of this process differ from those wanted; "" if they do not.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ def differences(wanted: Mapping[str, str]) -> str:
     str
         The rest of a sentence about this process, for the user of the other one.
     """
-    pairs = [(name, there, wanted.get(name)) for name, there in versions().items()]
-    wrong = [(name, there, here) for name, there, here in pairs if there != here]
-    has = ", ".join(f"{name} {there}" for name, there, _ in wrong)
-    needs = ", ".join(f"{name} {here}" for name, _, here in wrong)
+    pairs = [(name, version, wanted.get(name)) for name, version in versions().items()]
+    wrong = [(name, version, required) for name, version, required in pairs if version != required]
+    has = ", ".join(f"{name} {version}" for name, version, _ in wrong)
+    needs = ", ".join(f"{name} {required}" for name, _, required in wrong)
     return f"has {has}; this process has {needs}: install the same on both" if wrong else ""
 
 

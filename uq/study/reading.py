@@ -124,13 +124,13 @@ def _remove(entries: Any, path: tuple[str | int, ...]) -> None:
 def _fault(error: dict[str, Any]) -> InputFault:
     path, value, law = list(error["loc"]), error["input"], None
     if path[0] == "uncertain" and len(path) > 2:
-        # Pydantic puts into the path what kind of entry it is, and then the law's name.
+        # Pydantic puts into the path the kind of entry, and then the law's name.
         tied = path.pop(2) == "equals"
         law = Tied if tied else LAWS[path.pop(2)] if len(path) > 2 else None
     match error["type"]:
         case "extra_forbidden":
-            kind, known = _allowed(path, law)
-            return InputFault(tuple(path), unknown(kind, str(path[-1]), known), value)
+            kind, names = _allowed(path, law)
+            return InputFault(tuple(path), unknown(kind, str(path[-1]), names), value)
         case "missing":
             return InputFault(tuple(path), MISSING)
         case "union_tag_not_found":
@@ -145,11 +145,11 @@ def _fault(error: dict[str, Any]) -> InputFault:
 
 
 def _allowed(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
-    """Return what may stand in the place of an unknown key: kind and names."""
+    """Return the allowed keys in place of an unknown key: kind and names."""
     if law is not None:
         common = list(Law.model_fields)[1:] if law is not Tied else []  # last, but the source
-        own = [name for name in law.model_fields if name not in common]
-        return f"argument of {path[1]}'s law", own + common
+        arguments = [name for name in law.model_fields if name not in common]
+        return f"argument of {path[1]}'s law", arguments + common
     if len(path) == 1:
         return "table", list(StudyFile.model_fields)
     if len(path) == 3:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Rows(NamedTuple):
-    """Some rows of a study.
+    """A block of rows of a study.
 
     Attributes
     ----------
@@ -102,8 +102,8 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     keys = group, block
     if study.random:
         keys = DESIGNS[table.method].layout.shared_seeds(group, block, labels)
-    own = np.divmod(within, table.repeats) if table.rows_of_a_sample > 1 else ()
-    seeds = row_seeds(table.seed, replicate, *keys, *own)
+    nested = np.divmod(within, table.repeats) if table.rows_of_a_sample > 1 else ()
+    seeds = row_seeds(table.seed, replicate, *keys, *nested)
     x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
     return Rows(x, seeds, replicate.astype(np.int32), group, block.astype(np.int16))
 
@@ -123,8 +123,8 @@ def _drawn(study: "Study", start: int, stop: int) -> Floats:
         for law, ends in zip(laws, bounds, strict=True)
     ]
     paths = unit[:, columns].reshape(-1, size, len(columns))
-    found = conditional_paths(paths, study.dependence.rank_correlation, cells)
-    unit[:, columns] = found.reshape(-1, len(columns))
+    conditional = conditional_paths(paths, study.dependence.rank_correlation, cells)
+    unit[:, columns] = conditional.reshape(-1, len(columns))
     return _by_their_laws(study, unit[start - size * first : stop - size * first])
 
 

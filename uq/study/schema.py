@@ -84,7 +84,9 @@ def _when(table: str, key: str, value: str, then: dict[str, Schema]) -> Schema:
 def _model_schema(model: Model) -> dict[str, Schema]:
     known_outputs = {"enum": list(model.outputs)}
     plain_outputs = {
-        "enum": [n for n, one in model.outputs.items() if one.kind not in ("category", "lifetime")]
+        "enum": [
+            n for n, output in model.outputs.items() if output.kind not in ("category", "lifetime")
+        ]
     }
     settings = _table({name: _setting(model, name, k) for name, k in setting_types(model).items()})
     return {

@@ -1,4 +1,4 @@
-"""The source files of a module of a model: its own, and those that it imports.
+"""The source files of a module of a model, and of the modules that it imports.
 
 These are the files of its package and of imported packages that are not installed, wherever they
 are. Other installed packages have a version; the platform itself is not part of any model.
@@ -30,21 +30,21 @@ class Sources(NamedTuple):
 
     Attributes
     ----------
-    own : dict of str to bytes
-        Module -> its source, or the machine code of an extension; empty if none was found.
+    code : dict of str to bytes
+        Module -> its source, or the machine code of an extension; empty if no file exists.
     root : Path or None
         The folder that contains the package.
     others : set of str
         Modules imported from elsewhere.
     """
 
-    own: dict[str, bytes]
+    code: dict[str, bytes]
     root: Path | None
     others: set[str]
 
 
 def sources_of(module: str) -> Sources:
-    """Return the sources of a module: its own and those that it imports, recursively.
+    """Return the sources of a module and, recursively, of the modules that it imports.
 
     Parameters
     ----------
@@ -53,10 +53,10 @@ def sources_of(module: str) -> Sources:
     """
     package = module.partition(".")[0]
     root = _root(package)
-    found: dict[str, bytes] = {}
+    code: dict[str, bytes] = {}
     others: set[str] = set()
     if root is None:
-        return Sources(found, root, others)
+        return Sources(code, root, others)
     beside = root.name not in INSTALLED
     todo, seen = {module}, set()
     while todo:
@@ -69,20 +69,20 @@ def sources_of(module: str) -> Sources:
             continue
         for ending in _FILES:
             file = Path(f"{home.joinpath(*name.split('.'))}{ending}")
-            if name not in found and file.is_file():
-                found[name] = _without_marks(file)
+            if name not in code and file.is_file():
+                code[name] = _without_marks(file)
                 above = name.rpartition(".")[0]
                 within = name if ending == _FILES[0] else above
-                inside = set(_imported(found[name], within)) if ending.endswith(".py") else set()
+                inside = set(_imported(code[name], within)) if ending.endswith(".py") else set()
                 if _COMPUTED in inside:
                     inside |= _modules(home, first)
                 todo |= {above or name, *inside} - seen
         todo = {name for name in todo if name.partition(".")[0] != _PLATFORM}
-    return Sources(found, root, others)
+    return Sources(code, root, others)
 
 
 def _without_marks(file: Path) -> bytes:
-    """Return a source as Python reads it: whatever the editor, it is the same code."""
+    """Return a source without byte-order mark and carriage returns, which editors may add."""
     content = file.read_bytes()
     if file.suffix != ".py":
         return content
@@ -91,7 +91,7 @@ def _without_marks(file: Path) -> bytes:
 
 @cache
 def fingerprint(module: str) -> str:
-    """Return a hash of the sources of a module, see `sources_of`; "" if none was found.
+    """Return a hash of the sources of a module, see `sources_of`; "" if it has no source file.
 
     It is computed once per process, like the import: an edit counts in the next process.
 
@@ -100,8 +100,8 @@ def fingerprint(module: str) -> str:
     module : str
         Its full name.
     """
-    found = sources_of(module).own
-    return digest(found).hexdigest()[:16] if found else ""
+    code = sources_of(module).code
+    return digest(code).hexdigest()[:16] if code else ""
 
 
 def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
@@ -114,7 +114,7 @@ def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
 
 
 def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
-    """Return what changes with a package from elsewhere: files, times and sizes.
+    """Return the files of a package from elsewhere with their modification times and sizes.
 
     The first file of an installed package is enough: all are written together. Our own models
     count only where they are imported, what they share always.
@@ -135,10 +135,10 @@ def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
         files += [
             file
             for file in sorted(folder.rglob("*.py"))
-            if not any(one in (file.with_suffix(""), *file.parents) for one in unused)
+            if not any(path in (file.with_suffix(""), *file.parents) for path in unused)
         ]
-    found = ((str(file), file.stat()) for file in files)
-    return [(name, status.st_mtime_ns, status.st_size) for name, status in found]
+    statuses = ((str(file), file.stat()) for file in files)
+    return [(name, status.st_mtime_ns, status.st_size) for name, status in statuses]
 
 
 def is_installed(package: str) -> bool:
@@ -162,7 +162,7 @@ def own_packages() -> set[str]:
 
 
 def _above(modules: Iterable[str]) -> set[str]:
-    """Return some modules, and the packages that contain them."""
+    """Return modules and the packages that contain them."""
     parts = (name.split(".") for name in modules)
     return {".".join(names[: i + 1]) for names in parts for i in range(len(names))}
 

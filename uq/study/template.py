@@ -39,7 +39,7 @@ def template(model: Model, reference: str = "") -> str:
     str
         TOML.
     """
-    own = reference not in ("", model.name)
+    by_reference = reference not in ("", model.name)
     suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
     laws = dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
     outputs = model.given(model.settings()).outputs
@@ -52,7 +52,7 @@ def template(model: Model, reference: str = "") -> str:
             "",
             "[study]",
             f"name = {toml(re.sub(r'[^A-Za-z0-9_-]', '-', model.name) + '-study')}",
-            *([f"# run with --model {_line(reference)}"] if own else []),
+            *([f"# run with --model {_line(reference)}"] if by_reference else []),
             f"model = {toml(model.name)}",
             f"description = {toml(_line(model.title))}",
             "",
@@ -100,7 +100,7 @@ def _example_law(parameter: Parameter, nominal: float) -> Law | None:
         candidates.insert(0, {"distribution": "uniform", "lower": low, "upper": high})
     if nominal > 0:
         candidates.insert(0, {"distribution": "lognormal", "mean": nominal, "cv": 0.1})
-    laws: Iterator[Law] = (law_of(one | {"source": _SOURCE}) for one in candidates)
+    laws: Iterator[Law] = (law_of(candidate | {"source": _SOURCE}) for candidate in candidates)
     return next((law for law in laws if law_problem(law, parameter) is None), None)
 
 
@@ -124,8 +124,8 @@ def _uncertain(model: Model, laws: dict[str, Law]) -> Iterator[str]:
 def _menu() -> Iterator[str]:
     common = ("distribution", *Law.model_fields)
     for name, law in LAWS.items():
-        own = [key for key in law.model_fields if key not in common]
-        arguments = ", or ".join(", ".join(names) for names in law.either or [own])
+        keys = [key for key in law.model_fields if key not in common]
+        arguments = ", or ".join(", ".join(names) for names in law.either or [keys])
         yield f"# {name}: {arguments}"
     yield "# Any of them may be truncated: truncate = [lower, upper]"
     yield '# A parameter may be a multiple of another, the law that of the factor: times = "other"'

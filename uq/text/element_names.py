@@ -45,13 +45,13 @@ def place_of(name: str, coordinates: Mapping[str, Any]) -> list[Place]:
     Numbers may be written in any way: ``[instant=3600]`` is ``[instant=3600.0]``.
     """
     axes = tuple((dim, tuple(np.asarray(axis).tolist())) for dim, axis in coordinates.items())
-    found = _by_name(name.partition("[")[0], axes).get(_read(name))
-    return [found] if found else []
+    place = _by_name(name.partition("[")[0], axes).get(_read(name))
+    return [place] if place else []
 
 
 def same_name(name: str, names: Iterable[str]) -> str:
-    """Return which of some names means the same, else the name itself; see `place_of`."""
-    return {_read(one): one for one in names}.get(_read(name), name)
+    """Return the one of several names that means the same, else the name; see `place_of`."""
+    return {_read(candidate): candidate for candidate in names}.get(_read(name), name)
 
 
 @lru_cache(maxsize=4)
@@ -101,7 +101,7 @@ def whole_name(output: str) -> str:
 
 
 def is_whole(name: str) -> bool:
-    """Whether a name is that of all elements together."""
+    """Whether a name denotes all elements together."""
     return name.endswith(_WHOLE)
 
 

@@ -77,30 +77,35 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
     InputError
         When the verb does not have such an option.
     """
-    found = re.match(rf"({'|'.join(map(re.escape, verbs))})(?:\[(.*?)\])?(?:/|$)", key)
-    verb, inside = (found[1], found[2]) if found else (SUMMARY, None)
-    rest = key[found.end() :] if found else key
+    match = re.match(rf"({'|'.join(map(re.escape, verbs))})(?:\[(.*?)\])?(?:/|$)", key)
+    verb, inside = (match[1], match[2]) if match else (SUMMARY, None)
+    rest = key[match.end() :] if match else key
     options, names = {}, tuple(verbs[verb])
-    begin = "|".join(re.escape(one if one.endswith(".") else f"{one}=") for one in names)
+    begin = "|".join(
+        re.escape(option if option.endswith(".") else f"{option}=") for option in names
+    )
     for text in re.split(f",(?={begin})", inside) if inside else []:  # values may have commas
         name, equals, value = text.partition("=")
-        begins = any(name.startswith(one) for one in names if one.endswith("."))
+        begins = any(name.startswith(option) for option in names if option.endswith("."))
         if not (name in names or begins) or not equals:
-            known = ", ".join(f"{one}{'NAME' * one.endswith('.')}=..." for one in names) or "none"
+            allowed = (
+                ", ".join(f"{option}{'NAME' * option.endswith('.')}=..." for option in names)
+                or "none"
+            )
             raise InputError(
-                f"key '{_cut(key)}': no such option of {verb}: {_cut(text)} (allowed: {known})"
+                f"key '{_cut(key)}': no such option of {verb}: {_cut(text)} (allowed: {allowed})"
             )
         options[name] = value
     return Key(verb, options, tuple(_plain(part) for part in rest.split("/")) if rest else ())
 
 
 def value_at(whole: Any, path: Path) -> Any:
-    """Return what stands at a path of JSON.
+    """Return the part of JSON at a path.
 
     Raises
     ------
     KeyError
-        When there is nothing.
+        When the path leads nowhere.
     """
     for part in path:
         if isinstance(whole, list):
@@ -115,7 +120,7 @@ def value_at(whole: Any, path: Path) -> Any:
 
 
 def numbers_in(entry: Any) -> dict[str, Any]:
-    """Return a number with what explains it; empty where there is no number.
+    """Return a number with its explanations; empty where there is no number.
 
     Parameters
     ----------
@@ -130,7 +135,7 @@ def numbers_in(entry: Any) -> dict[str, Any]:
         return {"value": entry}
     if not isinstance(entry, dict) or any(map(_holds_numbers, entry.values())):
         inner = entry if isinstance(entry, dict) and is_number(entry.get("value", "")) else {}
-        return {name: one for name, one in inner.items() if not isinstance(one, dict | list)}
+        return {name: value for name, value in inner.items() if not isinstance(value, dict | list)}
     return entry if any(map(is_number, entry.values())) else {}
 
 
@@ -141,7 +146,7 @@ def is_number(value: object) -> bool:
 
 def _holds_numbers(entry: object) -> bool:
     """Whether there is more than words in a part of JSON."""
-    words = isinstance(entry, list) and all(isinstance(one, str) for one in entry)
+    words = isinstance(entry, list) and all(isinstance(element, str) for element in entry)
     return isinstance(entry, dict | list) and not words
 
 
@@ -150,9 +155,9 @@ def paths_of_numbers(whole: Any, path: Path = ()) -> Iterator[Path]:
     if path and numbers_in(whole):
         yield path
     inner = enumerate(whole) if isinstance(whole, list) else ()
-    for name, one in whole.items() if isinstance(whole, dict) else inner:
-        if isinstance(one, dict | list) or is_number(one):
-            yield from paths_of_numbers(one, (*path, str(name)))
+    for name, entry in whole.items() if isinstance(whole, dict) else inner:
+        if isinstance(entry, dict | list) or is_number(entry):
+            yield from paths_of_numbers(entry, (*path, str(name)))
 
 
 def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
@@ -170,12 +175,12 @@ def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
     def text(path: Path) -> str:
         return key_of(*path, verb=key.verb, options=key.options)
 
-    wanted, known = text(key.path), [text(path) for path in paths_of_numbers(whole)]
-    inside = [one for one in known if one.startswith(f"{wanted}/")]
+    wanted, candidates = text(key.path), [text(path) for path in paths_of_numbers(whole)]
+    inside = [candidate for candidate in candidates if candidate.startswith(f"{wanted}/")]
     if inside:
         return InputError(f"key '{wanted}': several numbers; add to it, as in '{inside[0]}'")
-    near = nearest(wanted, known) or nearest(wanted.partition("/")[0], verbs)
-    return InputError(f"no such key '{_cut(wanted)}'{near or f' (the first one: {known[0]})'}")
+    near = nearest(wanted, candidates) or nearest(wanted.partition("/")[0], verbs)
+    return InputError(f"no such key '{_cut(wanted)}'{near or f' (the first one: {candidates[0]})'}")
 
 
 def _cut(key: str) -> str:

@@ -61,8 +61,8 @@ def read_toml(text: str) -> dict[str, Any]:
     RecursionError
         When it is nested too deeply.
     """
-    if found := _LONG_KEY.search(text):
-        line = text.count("\n", 0, found.start()) + 1
+    if match := _LONG_KEY.search(text):
+        line = text.count("\n", 0, match.start()) + 1
         raise ValueError(f"a key of more than {_MOST_PARTS} parts (at line {line})")
     return tomllib.loads(text, parse_float=read_number)
 
@@ -93,12 +93,12 @@ _UNPRINTABLE = re.compile(
 
 def plain(text: str) -> str:
     r"""Return a text that cannot control a terminal: ``\u001b`` for an escape character."""
-    return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return _UNPRINTABLE.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def without_control(text: str) -> str:
     """Return a text from a file as in `plain`; tabs and line ends, which are harmless, stay."""
-    return re.sub(r"[^\t\r]+", lambda found: plain(found[0]), text)
+    return re.sub(r"[^\t\r]+", lambda match: plain(match[0]), text)
 
 
 def plain_line(text: str) -> str:

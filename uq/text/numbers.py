@@ -58,7 +58,7 @@ def in_unit(value: float, unit: ReadableUnit) -> str:
 
 
 def in_brackets(unit: ReadableUnit) -> str:
-    """Return a unit after the name of what is in it: `` [µm]``; "" for a pure number."""
+    """Return a unit as it follows a name: `` [µm]``; "" for a pure number."""
     return "" if unit.name == "1" else f" [{powers(unit.name)}]"
 
 
@@ -96,11 +96,11 @@ def threshold(value: float, units: str) -> str:
 
 
 def compared(name: str, is_angle: bool) -> str:
-    """Return what is compared with a threshold, where it is not the output itself: ``|psi|``."""
+    """Return the variable compared with a threshold, if not the output itself: ``|psi|``."""
     return f"|{name}|" if is_angle else ""
 
 
-def estimated(label: str, units: str, of: str = "", asked: Iterable[float] = ()) -> str:
+def estimated(label: str, units: str, variable: str = "", asked: Iterable[float] = ()) -> str:
     """Return the label of an estimate for a person: ``P(>86400.0)`` is ``P(> 24 hours)``.
 
     Parameters
@@ -109,8 +109,8 @@ def estimated(label: str, units: str, of: str = "", asked: Iterable[float] = ())
         Also the name of an event: ``P(life<86400.0)``.
     units : str
         CF unit of the output.
-    of : str
-        What is compared, if not what the label names: ``|psi|``.
+    variable : str
+        The compared variable, if it is not the one in the label: ``|psi|``.
     asked : iterable of float
         The thresholds of the study, which may have units of their own.
 
@@ -118,11 +118,11 @@ def estimated(label: str, units: str, of: str = "", asked: Iterable[float] = ())
     -------
     str
     """
-    known = {repr(one): one for one in asked}
+    thresholds = {repr(value): value for value in asked}
 
-    def shown_event(found: re.Match[str]) -> str:
-        at = threshold(known.get(found[3], float(found[3])), units)
-        return f"P({' '.join(filter(None, (of or found[1], found[2], at)))})"
+    def shown_event(match: re.Match[str]) -> str:
+        at = threshold(thresholds.get(match[3], float(match[3])), units)
+        return f"P({' '.join(filter(None, (variable or match[1], match[2], at)))})"
 
     return re.sub(r"^P\(([^<>=]*(?:\[.*\])?)([<>])([^<>]+?)\)", shown_event, label)
 
@@ -160,18 +160,18 @@ def rows_in_words(rows: float) -> str:
     return grouped(ceil(rows / digit) * digit)
 
 
-def counted(count: int, one: str, several: str = "") -> str:
-    """Return a number with the word for what is counted: ``1 row``, ``3 rows``, ``4 000 rows``.
+def counted(count: int, singular: str, plural: str = "") -> str:
+    """Return a count with its noun: ``1 row``, ``3 rows``, ``4 000 rows``.
 
     Parameters
     ----------
     count : int
-    one : str
-        The word where it is one.
-    several : str, optional
-        Elsewhere; by default the same with an s.
+    singular : str
+        The word for a count of one.
+    plural : str, optional
+        By default the singular with an s.
     """
-    return f"{grouped(count)} {one if count == 1 else several or f'{one}s'}"
+    return f"{grouped(count)} {singular if count == 1 else plural or f'{singular}s'}"
 
 
 def grouped(rows: int) -> str:
@@ -181,14 +181,14 @@ def grouped(rows: int) -> str:
 
 def listed(labels: Sequence[str], most: int = 8) -> str:
     """Return the labels of a category; of many, the first and the last."""
-    some = labels if len(labels) <= most else (*labels[:3], "...", labels[-1])
-    return ", ".join(some)
+    displayed = labels if len(labels) <= most else (*labels[:3], "...", labels[-1])
+    return ", ".join(displayed)
 
 
 def law(stated: Any) -> str:
     """Return the law of an input, numbers to six digits: ``normal(mean = 1.0, sd = 0.1)``."""
     given = _arguments(stated)
-    given |= {n: float(f"{one:.6g}") for n, one in given.items() if isinstance(one, float)}
+    given |= {n: float(f"{value:.6g}") for n, value in given.items() if isinstance(value, float)}
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
 
@@ -199,10 +199,12 @@ def law_in_unit(stated: Any, unit: ReadableUnit) -> str:
     def words(name: str, value: Any) -> str:
         if isinstance(value, str):
             return value
-        own = PURE if name in stated.pure else unit
-        several = value if isinstance(value, tuple) else (value,)
-        numbers = [f"{one / own.size:.6g}" for one in several]
-        return beside(" to ".join(numbers) if name == "truncate" else listed(numbers), own.name)
+        argument_unit = PURE if name in stated.pure else unit
+        values = value if isinstance(value, tuple) else (value,)
+        numbers = [f"{entry / argument_unit.size:.6g}" for entry in values]
+        return beside(
+            " to ".join(numbers) if name == "truncate" else listed(numbers), argument_unit.name
+        )
 
     given = (f"{name} {words(name, value)}" for name, value in _arguments(stated).items())
     return f"{stated.distribution}: {', '.join(given)}"
@@ -231,12 +233,12 @@ def minus(text: str) -> str:
 
     Names, dates, laws of a study file in code and options of commands keep their hyphens.
     """
-    return _NUMBER.sub(lambda found: found[0].replace("-", "\N{MINUS SIGN}"), text)
+    return _NUMBER.sub(lambda match: match[0].replace("-", "\N{MINUS SIGN}"), text)
 
 
 def printed(text: str) -> str:
     """Return text for a page: with minus signs, a dash for no number, and numbers in one line."""
     if text == "-":
         return "\N{EN DASH}"
-    text = _UNIT.sub(lambda found: found[0].replace(" ", "\N{NO-BREAK SPACE}"), minus(text))
+    text = _UNIT.sub(lambda match: match[0].replace(" ", "\N{NO-BREAK SPACE}"), minus(text))
     return _BEFORE_POWER.sub("\N{NO-BREAK SPACE}", text)

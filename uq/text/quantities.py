@@ -80,42 +80,42 @@ def read_quantity(text: str) -> Written:
     >>> read_quantity("24 h"), read_quantity("250 um"), read_quantity("12 degrees").unit.name
     (86400.0, 0.00025, '°')
     """
-    found = _QUANTITY.fullmatch(text)
-    if found is None:
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
         raise ValueError(f"must be a number, or have its unit: {EXAMPLE}")
-    size, turns, dimensions, name = _taken_apart(found[2].strip())
+    size, turns, dimensions, name = _taken_apart(match[2].strip())
     try:
-        value = Written(float(Fraction(found[1]) * size) * pi**turns / 180.0**turns)
+        value = Written(float(Fraction(match[1]) * size) * pi**turns / 180.0**turns)
     except OverflowError:
         raise ValueError("is too large a number") from None
-    value.number = found[1]
+    value.number = match[1]
     value.unit = ReadableUnit(name, float(size) * (pi / 180) ** turns)
     value.dimensions = dimensions
     return value
 
 
-def misfit(text: str, of: str, units: str) -> str:
+def misfit(text: str, name: str, units: str) -> str:
     """Return why a quantity is in a unit that does not fit; "" where it fits.
 
     Parameters
     ----------
     text : str
         As `read_quantity` takes it.
-    of : str
-        What the quantity belongs to.
+    name : str
+        The parameter, output or key to which the quantity belongs.
     units : str
-        The CF unit of that.
+        CF unit of the latter.
     """
     written = read_quantity(text)
     size, turns, dimensions, _ = _taken_apart(units)
     if (size, turns) != (1, 0):
-        return f"'{of}' is in '{units}': give the number in that unit, without a unit"
+        return f"'{name}' is in '{units}': give the number in that unit, without a unit"
     if written.dimensions == dimensions:
         return ""
     given = text.strip().removeprefix(written.number).strip()
     allowed = allowed_units(units)
     meant = nearest(given, allowed)
-    return f"the unit '{given}' does not fit '{of}'{meant} (allowed: {', '.join(allowed)})"
+    return f"the unit '{given}' does not fit '{name}'{meant} (allowed: {', '.join(allowed)})"
 
 
 def fault_of_unit(unit: str) -> str:
@@ -123,8 +123,8 @@ def fault_of_unit(unit: str) -> str:
     if meant := _DECODED.get(unit.lower()):  # which xarray would turn into time differences
         return f"write it as '{meant}'"
     place = 0
-    while found := _PART.match(unit, place):
-        place = found.end()
+    while match := _PART.match(unit, place):
+        place = match.end()
     if unit == "1" or (unit and place == len(unit)):
         return ""
     return "write its factors with their powers, such as 'N m-1', or '1' for a pure number"
@@ -149,20 +149,25 @@ def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
         return size, turns, dimensions, text
     place = 0
     while place < len(text):
-        found = _PART.match(text, place)
-        if found is None:  # of no known form: a unit of its own
+        match = _PART.match(text, place)
+        if match is None:  # of no known form: a unit of its own
             return Fraction(1), 0, {text: 1}, text
-        place = found.end()
-        power = int((found[3] or "1").translate(_PLAIN_DIGITS)) * (-1 if found[1] == "/" else 1)
-        base, own, name = _of_symbol(found[2])
+        place = match.end()
+        power = int((match[3] or "1").translate(_PLAIN_DIGITS)) * (-1 if match[1] == "/" else 1)
+        base, factor_size, name = _of_symbol(match[2])
         if name == DEGREES:
             turns += power
-        size *= own**power
+        size *= factor_size**power
         if base != "1":
             dimensions[base] = dimensions.get(base, 0) + power
         names.append(name if power == 1 else f"{name}{power}")
     whole = " ".join(names)
-    return size, turns, {one: n for one, n in dimensions.items() if n}, _TIMES.get(whole, whole)
+    return (
+        size,
+        turns,
+        {unit: exponent for unit, exponent in dimensions.items() if exponent},
+        _TIMES.get(whole, whole),
+    )
 
 
 def _of_symbol(symbol: str) -> tuple[str, Fraction, str]:
@@ -182,7 +187,7 @@ def _of_symbol(symbol: str) -> tuple[str, Fraction, str]:
     return base, Fraction(10) ** _PREFIXES[symbol[0]], prefix + base
 
 
-def read_threshold(option: str, text: str, of: str, units: str) -> float:
+def read_threshold(option: str, text: str, name: str, units: str) -> float:
     """Return a number that an option of the command line gives, with or without a unit.
 
     Parameters
@@ -190,10 +195,10 @@ def read_threshold(option: str, text: str, of: str, units: str) -> float:
     option : str
         Such as ``--by``.
     text : str
-    of : str
-        What the number belongs to.
+    name : str
+        Name of the quantity for messages.
     units : str
-        The CF unit of that, and of a plain number.
+        CF unit of the latter, and of a plain number.
 
     Raises
     ------
@@ -205,9 +210,9 @@ def read_threshold(option: str, text: str, of: str, units: str) -> float:
     except ValueError:
         pass
     try:
-        found, problem = read_quantity(text), misfit(text, of, units)
+        quantity, problem = read_quantity(text), misfit(text, name, units)
     except ValueError as error:
-        found, problem = Written(), str(error)
+        quantity, problem = Written(), str(error)
     if problem:
         raise InputError(f"{option} {text}: {problem}")
-    return found
+    return quantity

@@ -22,13 +22,13 @@ _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 def symbol(text: str) -> str:
     """Return a symbol with Greek letters and digits as subscripts: ``Omega/(2 pi)`` as Ω/(2 π)."""
-    text = WORD.sub(lambda found: _letter(found[0]), text)
+    text = WORD.sub(lambda match: _letter(match[0]), text)
     return re.sub(r"(?<!\w)([^\W\d_])_?(\d+)\b", _lowered, text)
 
 
 def readable(text: str) -> str:
     """Return words with the symbols among them as by `symbol`, and minus signs as such."""
-    text = IN_TEXT.sub(lambda found: symbol(found[0]), text)
+    text = IN_TEXT.sub(lambda match: symbol(match[0]), text)
     return text.replace(" - ", " \N{MINUS SIGN} ")
 
 
@@ -37,5 +37,5 @@ def _letter(name: str) -> str:
     return lookup(f"GREEK {case} LETTER {name.upper().replace('LAMBDA', 'LAMDA')}")
 
 
-def _lowered(found: re.Match[str]) -> str:
-    return found[1] + found[2].translate(_LOWERED)
+def _lowered(match: re.Match[str]) -> str:
+    return match[1] + match[2].translate(_LOWERED)

@@ -95,11 +95,15 @@ def unit_of(units: str, typical: float) -> ReadableUnit:
 def typical(values: Iterable[float]) -> float:
     """Return the median of the magnitudes that are neither 0 nor infinite; 0 if there is none."""
     sizes = np.abs(values if isinstance(values, np.ndarray) else np.fromiter(values, float))
-    known = sizes[np.isfinite(sizes) & (sizes > 0)]
-    return float(np.partition(known, len(known) // 2)[len(known) // 2]) if len(known) else 0.0
+    positive = sizes[np.isfinite(sizes) & (sizes > 0)]
+    return (
+        float(np.partition(positive, len(positive) // 2)[len(positive) // 2])
+        if len(positive)
+        else 0.0
+    )
 
 
 def powers(unit: str) -> str:
     """Return a CF unit as it is printed: ``m2 N-1`` becomes ``m² N⁻¹``, ``ohm`` an omega."""
-    unit = re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_RAISED), unit)
+    unit = re.sub(r"(?<=[A-Za-z])-?\d+", lambda match: match[0].translate(_RAISED), unit)
     return re.sub(r"\bohm\b", "Ω", unit)

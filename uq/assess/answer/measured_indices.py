@@ -93,7 +93,7 @@ def measured_inputs(
     every, borrowed = found.kinds()[kind], found.indices.by_correlation
     values = {label: one for label, one in every.items() if label not in borrowed} or every
     null = found.indices.nulls.get(kind, Null(nan))
-    limit = null.largest if isfinite(null.largest) else null.one
+    limit = null.largest if isfinite(null.largest) else null.limit
     products = found.indices.half_products
     has_errors = bool(products) or any(one.has_interval for one in values.values())
     scatter = {} if has_errors else _parts(ds, method, name).get(kind.key, {})
@@ -104,7 +104,7 @@ def measured_inputs(
         one = values[label]
         if not isfinite(one.value):
             continue
-        half = (one.high - one.low) / 2 if one.has_interval else null.one
+        half = (one.high - one.low) / 2 if one.has_interval else null.limit
         if products and not one.has_interval:
             half = _DOUBTFUL * sqrt(products[label, label])
         if label in scatter:  # estimates from fewer rows, which may be biased: no interval

@@ -76,9 +76,9 @@ def index_bars(
         colour = BARS[list(kinds).index(kind) % len(BARS)] if len(kinds) > 1 else INK
         one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
         largest = "95 % limit for the largest of them"
-        limits = {one: null.one, largest: null.largest}
-        if null.largest == null.one:
-            limits = {f"{one}, or several": null.one}
+        limits = {one: null.limit, largest: null.largest}
+        if null.largest == null.limit:
+            limits = {f"{one}, or several": null.limit}
         for line, (label, limit) in zip(("--", ":"), limits.items(), strict=False):
             if np.isfinite(limit):
                 named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
