@@ -1,4 +1,4 @@
-"""What ``uq check`` shows."""
+"""Terminal output of ``uq check``."""
 
 from itertools import combinations
 
@@ -88,8 +88,8 @@ def _show_sampled(study: Study) -> None:
     from uq.assess.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
 
     count = -(-min(rows(study), MAX_ROWS) // study.design.rows_of_a_sample)
-    found = sampled_inputs(study)
-    if not found:
+    inputs = sampled_inputs(study)
+    if not inputs:
         print(f"\nThe rows of a '{study.design.method}' design do not follow these laws.")
         return
     nested = study.design.rows_of_a_sample > 1
@@ -98,13 +98,16 @@ def _show_sampled(study: Study) -> None:
         f"(independent rows would be less than {1.36 / count**0.5:.2g} off in 19 of 20 cases)",
     )
     lines = []
-    for name, one in found.items():
+    for name, sampled_input in inputs.items():
         is_factor = name in study.uncertain and study.uncertain[name].times is not None
         units = "1" if is_factor else study.model.parameter(name).unit
-        unit = unit_of(units, typical(one.stated))
-        law_ends, row_ends = (map(number, of / unit.size) for of in (one.stated, one.sampled))
+        unit = unit_of(units, typical(sampled_input.stated))
+        law_ends, row_ends = (
+            map(number, quantiles / unit.size)
+            for quantiles in (sampled_input.stated, sampled_input.sampled)
+        )
         lines.append((name, "stated", *law_ends, ""))
-        lines.append((f" {in_brackets(unit)}", "rows", *row_ends, f"{one.distance:.2g}"))
+        lines.append((f" {in_brackets(unit)}", "rows", *row_ends, f"{sampled_input.distance:.2g}"))
     grid(lines, header=("parameter", "", "5 %", "50 %", "95 %", "largest distance"))
     if study.dependence is not None:
         heading("\nRank correlations")

@@ -21,39 +21,41 @@ _MOST_OUTPUTS = 6
 
 def compare(first: Path, second: Path, json: bool) -> None:
     """Compare two results and print the comparison."""
-    found = comparison(open_result(first), open_result(second))
+    differences = comparison(open_result(first), open_result(second))
     if not json:
-        _show(found, first, second)
+        _show(differences, first, second)
         return
-    document = comparison_json(found)
+    document = comparison_json(differences)
     for key, path in (("a", first), ("b", second)):
         document[key] = {"file": str(path)} | document[key]
     print_json(document)
 
 
-def _show(found: Comparison, first: Path, second: Path) -> None:
-    sides = (("A", first, found.first), ("B", second, found.second))
+def _show(differences: Comparison, first: Path, second: Path) -> None:
+    sides = (("A", first, differences.first), ("B", second, differences.second))
     grid([(name, str(path), _about(side)) for name, path, side in sides], indent=0)
     heading("\nDifferences between the studies")
-    for change in found.changed:
-        what = change.name if change.kind == "input" else f"{change.kind} {change.name}"
-        heading(f"  {what.removeprefix('design design').strip() or 'design'}")
+    for change in differences.changed:
+        change_name = change.name if change.kind == "input" else f"{change.kind} {change.name}"
+        heading(f"  {change_name.removeprefix('design design').strip() or 'design'}")
         grid([("A", change.first), ("B", change.second)], indent=4)
-    if not found.changed:
+    if not differences.changed:
         paragraph("none", indent=2)
-    for name, shares in found.shares.items():
+    for name, shares in differences.shares.items():
         if not shares:
             continue
         heading(f"\n{name}")
-        grid([(label, *_cells(one)) for label, one in shares.items()], header=_HEADER)
-    for name, output in found.outputs.items():
+        grid([(label, *_cells(statistic)) for label, statistic in shares.items()], header=_HEADER)
+    for name, output in differences.outputs.items():
         unit = _unit(output)
         heading(f"\n{name}{in_brackets(unit)}")
-        of = compared(name, output.declared.is_angle)
-        parts = (_lines(one, output.units, unit.size, of) for one in output.statistics)
+        variable = compared(name, output.declared.is_angle)
+        parts = (
+            _lines(statistic, output.units, unit.size, variable) for statistic in output.statistics
+        )
         grid(chain.from_iterable(parts), _HEADER)
     note("*: the interval excludes no difference. " + _POINTWISE)
-    for text in (*bought(found), *found.notes):
+    for text in (*bought(differences), *differences.notes):
         note(text)
 
 
@@ -62,49 +64,55 @@ _POINTWISE = "The intervals are pointwise: one in twenty misses."
 
 
 def _about(side: Side) -> str:
-    one = side.summary
-    rows = counted(one.samples, "row")
-    if one.rows_used < one.samples:
-        rows += f", {one.rows_used} independent"
-    lost = ", ".join(f"{count} {label}" for label, count in one.status.items() if label != "ok")
+    summary = side.summary
+    rows = counted(summary.samples, "row")
+    if summary.rows_used < summary.samples:
+        rows += f", {summary.rows_used} independent"
+    lost = ", ".join(f"{count} {label}" for label, count in summary.status.items() if label != "ok")
     return f"{side.title} ({rows}{f'; {lost}' if lost else ''})"
 
 
 def _unit(output: ComparedOutput) -> ReadableUnit:
     """Return the unit in which an output is shown."""
     return unit_of(
-        output.units, typical(one.first.estimate.value for one in output.parts["quantiles"])
+        output.units,
+        typical(statistic.first.estimate.value for statistic in output.parts["quantiles"]),
     )
 
 
 Line = tuple[str, ...]
 
 
-def _lines(one: ComparedStatistic, units: str, per: float, of: str) -> Iterator[Line]:
-    own = per if one.first.unit == units else 1.0
-    asked = () if one.first.at is None else (one.first.at,)
-    yield estimated(one.first.label, units, of, asked), *_cells(one, own)
-    if one.ratio is not None and isfinite(one.ratio.value):
-        yield f"{one.first.label}, B over A", "", "", *_apart(one, one.ratio, 1.0, 1.0)
+def _lines(statistic: ComparedStatistic, units: str, per: float, variable: str) -> Iterator[Line]:
+    scale = per if statistic.first.unit == units else 1.0
+    asked = () if statistic.first.at is None else (statistic.first.at,)
+    yield estimated(statistic.first.label, units, variable, asked), *_cells(statistic, scale)
+    if statistic.ratio is not None and isfinite(statistic.ratio.value):
+        yield (
+            f"{statistic.first.label}, B over A",
+            "",
+            "",
+            *_apart(statistic, statistic.ratio, 1.0, 1.0),
+        )
 
 
-def _cells(one: ComparedStatistic, per: float = 1.0) -> Line:
-    both = (one.first.words(per), one.second.words(per))
-    return *both, *_apart(one, one.difference, per)
+def _cells(statistic: ComparedStatistic, per: float = 1.0) -> Line:
+    both = (statistic.first.words(per), statistic.second.words(per))
+    return *both, *_apart(statistic, statistic.difference, per)
 
 
-def _apart(of: ComparedStatistic, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
+def _apart(statistic: ComparedStatistic, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
     """Return value and interval of a difference, and a mark where it excludes `nothing`."""
     sure = apart.low > nothing or apart.high < nothing
-    ends = "identical rows" if of.identical else interval_text(apart, per)
-    if of.no_row_changes_sides:
+    ends = "identical rows" if statistic.identical else interval_text(apart, per)
+    if statistic.no_row_changes_sides:
         ends = f"no row changes sides (at most {percent(apart.high)} do)"
     return value_text(apart, per=per), ends, "*" if sure else ""
 
 
-def bought(found: Comparison) -> list[str]:
+def bought(differences: Comparison) -> list[str]:
     """Return sentences on how the change of a single input affected the scatter of the outputs."""
-    only = found.only
+    only = differences.only
     if only is None:
         return []
     first, second = only.first, only.second
@@ -112,10 +120,10 @@ def bought(found: Comparison) -> list[str]:
     if abs(second.mean - first.mean) > 0.1 * max(first.sd, second.sd):
         change += f", mean {_both(first.mean, second.mean, only.units)}"
     sentences = [f"Only {only.name} differs ({change})."]
-    for name, output in list(found.outputs.items())[:_MOST_OUTPUTS]:
-        for one in output.statistics:
-            if one.ratio is not None and isfinite(one.ratio.value):
-                sentences.append(_times(f"{one.first.label} of {name}", one.ratio))
+    for name, output in list(differences.outputs.items())[:_MOST_OUTPUTS]:
+        for statistic in output.statistics:
+            if statistic.ratio is not None and isfinite(statistic.ratio.value):
+                sentences.append(_times(f"{statistic.first.label} of {name}", statistic.ratio))
     return [" ".join(sentences)]
 
 

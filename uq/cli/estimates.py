@@ -1,4 +1,4 @@
-"""What ``uq twin`` and ``uq convergence`` print."""
+"""Terminal output of ``uq twin`` and ``uq convergence``."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -27,8 +27,8 @@ class _Block:
 
     def __init__(self, ds: xr.Dataset, name: str, estimates: Mapping[str, Estimate]):
         self._target = NumberTarget(ds, name)
-        own = (one.value for label, one in estimates.items() if _is_value(label))
-        self._unit = unit_of(self._target.units, typical(own))
+        values = (estimate.value for label, estimate in estimates.items() if _is_value(label))
+        self._unit = unit_of(self._target.units, typical(values))
 
     def show_heading(self) -> None:
         """Print the name, with its unit and meaning."""
@@ -38,13 +38,13 @@ class _Block:
         """Return the name of an estimate."""
         return self._target.label(label)
 
-    def cells(self, label: str, one: Estimate) -> tuple[str, str]:
+    def cells(self, label: str, estimate: Estimate) -> tuple[str, str]:
         """Return value and interval of an estimate in the unit of the block."""
-        return value_text(one, per=self._per(label)), self.ends(label, one)
+        return value_text(estimate, per=self._per(label)), self.ends(label, estimate)
 
-    def ends(self, label: str, one: Estimate) -> str:
+    def ends(self, label: str, estimate: Estimate) -> str:
         """Return the interval of an estimate in the unit of the block; "" without one."""
-        return interval_text(one, self._per(label)) if one.has_interval else ""
+        return interval_text(estimate, self._per(label)) if estimate.has_interval else ""
 
     def _per(self, label: str) -> float:
         return self._unit.size if _is_value(label) else 1.0
@@ -58,57 +58,62 @@ def _is_value(label: str) -> bool:
 def twin(result: Path, model: str | None, json: bool) -> None:
     """Show means and probabilities sharpened with the study's twin."""
     ds = open_result(result)
-    found = with_twin(ds, model)
+    fidelities = with_twin(ds, model)
     if json:
-        print_json(twin_json(found))
+        print_json(twin_json(fidelities))
         return
     heading(
-        f"With {found.twin} as twin", f"{found.rows} rows, and {found.cheap_rows} of the twin alone"
+        f"With {fidelities.twin} as twin",
+        f"{fidelities.rows} rows, and {fidelities.cheap_rows} of the twin alone",
     )
-    for name, estimates in found.outputs.items():
-        block = _Block(ds, name, {label: one.estimate for label, one in estimates.items()})
+    for name, estimates in fidelities.outputs.items():
+        block = _Block(
+            ds, name, {label: twin_estimate.estimate for label, twin_estimate in estimates.items()}
+        )
         block.show_heading()
         grid(
             [
                 (
                     block.label(label),
-                    *block.cells(label, one.estimate),
-                    block.ends(label, one.plain),
-                    f"{one.reduction:.3g}",
+                    *block.cells(label, twin_estimate.estimate),
+                    block.ends(label, twin_estimate.plain),
+                    f"{twin_estimate.reduction:.3g}",
                 )
-                for label, one in estimates.items()
+                for label, twin_estimate in estimates.items()
             ],
             header=("", "value", "95 % interval", "without twin", "worth"),
         )
-        for label, one in estimates.items():
-            if one.note:
-                paragraph(f"{block.label(label)}: {one.note}", indent=2)
-            if worst := failed_bounds_text(one.failed):
+        for label, twin_estimate in estimates.items():
+            if twin_estimate.note:
+                paragraph(f"{block.label(label)}: {twin_estimate.note}", indent=2)
+            if worst := failed_bounds_text(twin_estimate.failed):
                 both = "with failed rows at best and worst"
                 paragraph(f"{block.label(label)}, {both}: {worst}", indent=2)
     note(
         "worth: without twin, so many times the rows would be as accurate. The twin's own rows are"
         " not counted: it pays if one of them takes less than (worth - 1) /"
-        f" {1 + found.cheap_rows / found.rows:.3g} of the time of a row"
+        f" {1 + fidelities.cheap_rows / fidelities.rows:.3g} of the time of a row"
     )
 
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
     """Show running estimates, and whether sampling is still the largest error."""
     ds = open_result(result)
-    found = converging(ds, output)
+    outputs = converging(ds, output)
     if json:
-        print_json(convergence_json(found))
+        print_json(convergence_json(outputs))
         return
     for line in verdict(Findings(ds), output):
         paragraph(line, indent=0)
-    for name, one in found.items():
-        if one.errors and one.errors["warning"]:
-            paragraph(f"{name}: {one.errors['warning']}.", indent=0)
-    for name, one in found.items():
-        block = _Block(ds, name, {label: sizes[-1][1] for label, sizes in one.estimates.items()})
+    for name, running in outputs.items():
+        if running.errors and running.errors["warning"]:
+            paragraph(f"{name}: {running.errors['warning']}.", indent=0)
+    for name, running in outputs.items():
+        block = _Block(
+            ds, name, {label: sizes[-1][1] for label, sizes in running.estimates.items()}
+        )
         block.show_heading()
-        for label, sizes in one.estimates.items():
+        for label, sizes in running.estimates.items():
             grid(
                 [
                     (str(samples), *block.cells(label, estimate))
@@ -116,7 +121,7 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
                 ],
                 header=("samples", block.label(label), "95 % interval"),
             )
-        if one.errors and isfinite(one.errors["own"]):
-            kinds = (Estimate(one.errors[kind]) for kind in ("sampling", "own"))
+        if running.errors and isfinite(running.errors["own"]):
+            kinds = (Estimate(running.errors[kind]) for kind in ("sampling", "own"))
             sampling, rows = (block.cells("mean", error)[0] for error in kinds)
             paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", indent=2)

@@ -1,4 +1,4 @@
-"""What ``uq fleet`` shows."""
+"""Terminal output of ``uq fleet``."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -28,35 +28,39 @@ def fleet(
     ds = open_result(result)
     units = the_life(independent_rows(ds), output).declared.unit if by else ""
     times = [read_threshold("--by", text, "a life", units) for text in by]
-    found = fleet_of(ds, size, times, allow, output, plain=plain)
+    first_ends = fleet_of(ds, size, times, allow, output, plain=plain)
     if json:
-        print_json(fleet_json(found))
+        print_json(fleet_json(first_ends))
         return
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.design}")
-    unit = unit_of(found.units, typical(one.estimate.value for one in found.first.values()))
-    heading(f"\n{found.output}{in_brackets(unit)}", f"the first of {size} has {found.ended}")
-    _show([(f"quantile {p!r}", one) for p, one in found.first.items()], unit.size)
-    for time, (failed, at_most) in found.by.items():
-        heading(f"\nby {threshold(time, found.units)}")
-        kept = f"at most {allow} {'has' if allow == 1 else 'have'} {found.ended}"
-        kept = kept if allow else f"none has {found.ended}"
-        _show([(f"have {found.ended}", failed), (f"P({kept})", at_most)])
-    for text in found.sentences:
+    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {first_ends.design}")
+    unit = unit_of(
+        first_ends.units, typical(banded.estimate.value for banded in first_ends.first.values())
+    )
+    heading(
+        f"\n{first_ends.output}{in_brackets(unit)}", f"the first of {size} has {first_ends.ended}"
+    )
+    _show([(f"quantile {p!r}", banded) for p, banded in first_ends.first.items()], unit.size)
+    for time, (failed, at_most) in first_ends.by.items():
+        heading(f"\nby {threshold(time, first_ends.units)}")
+        kept = f"at most {allow} {'has' if allow == 1 else 'have'} {first_ends.ended}"
+        kept = kept if allow else f"none has {first_ends.ended}"
+        _show([(f"have {first_ends.ended}", failed), (f"P({kept})", at_most)])
+    for text in first_ends.sentences:
         note(text)
 
 
 def _show(lines: Sequence[tuple[str, Banded]], per: float = 1.0) -> None:
     grid(
-        [line for label, one in lines for line in _lines(label, one, per)],
+        [line for label, banded in lines for line in _lines(label, banded, per)],
         header=("", "value", "95 % interval"),
     )
-    for reason in dict.fromkeys(reason for _, one in lines for reason in reasons(one)):
+    for reason in dict.fromkeys(reason for _, banded in lines for reason in reasons(banded)):
         paragraph(reason, indent=2)
 
 
-def _lines(label: str, one: Banded, per: float) -> Iterator[tuple[str, str, str]]:
-    ends = (("5 % of samples", one.low), ("95 % of samples", one.high))
-    for name, end in ((label, one.estimate), *(("  " + text, end) for text, end in ends)):
+def _lines(label: str, banded: Banded, per: float) -> Iterator[tuple[str, str, str]]:
+    ends = (("5 % of samples", banded.low), ("95 % of samples", banded.high))
+    for name, end in ((label, banded.estimate), *(("  " + text, end) for text, end in ends)):
         yield name, value_text(end, per=per), interval_text(end, per)
-    if worst := failed_bounds_text(one.failed, per):
+    if worst := failed_bounds_text(banded.failed, per):
         yield "  with failed rows", "", worst

@@ -34,12 +34,12 @@ def _with_what_is_here() -> list[tuple[str, str]]:
         ("studies", "toml", "run {}", "run this study"),
         ("results", "nc", "report {} --open", "read this result"),
     ):
-        found = sorted(Path(folder).glob(f"*.{ending}"))
-        if found:
-            others = f"one of {len(found) - 1} others" if found[2:] else "1 other"
-            more = f", or {others} in {folder}/" if found[1:] else ""
-            name = shlex.quote(str(found[0]))
-            model = _model_option(found[0]) if ending == "toml" else ""
+        files = sorted(Path(folder).glob(f"*.{ending}"))
+        if files:
+            others = f"one of {len(files) - 1} others" if files[2:] else "1 other"
+            more = f", or {others} in {folder}/" if files[1:] else ""
+            name = shlex.quote(str(files[0]))
+            model = _model_option(files[0]) if ending == "toml" else ""
             lines.append((f"uq {verb.format(name)}{model}", words + more))
     return lines
 

@@ -1,4 +1,4 @@
-"""What ``uq update`` shows."""
+"""Terminal output of ``uq update``."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -59,67 +59,73 @@ def update(
         if rows is not None and not is_study(source):
             say_when_interrupted("interrupted; the same command resumes, with the new rows so far")
             budget = Budget(rows, replace(options, progress=show), output, model)
-        found = learn(ds, new, output, model_error, budget)
-    answer = learnt(found, times)
+        posterior = learn(ds, new, output, model_error, budget)
+    answer = learnt(posterior, times)
     if json:
         print_json(learnt_json(answer))
     elif not quiet:
-        _show(found, answer)
+        _show(posterior, answer)
         console.print()
         console.print(f"{output}: written. Next: uq summary {output}", soft_wrap=True)
     return 0
 
 
-def _show(ds: xr.Dataset, found: Learnt) -> None:
+def _show(ds: xr.Dataset, answer: Learnt) -> None:
     heading(str(ds.attrs["title"]), str(ds.attrs["source"]))
     of_unit: dict[str, list[InputLearnt]] = {}
-    for one in found.inputs:
-        of_unit.setdefault(one.unit, []).append(one)
+    for learnt_input in answer.inputs:
+        of_unit.setdefault(learnt_input.unit, []).append(learnt_input)
     for unit, inputs in of_unit.items():
         if not unit or len(of_unit) <= MOST_UNITS:
             heading(f"\nInputs of unit {unit}" if unit else "\nInputs that units share")
             grid(_inputs(inputs), header=("", "before", "sd", "after", "error", "sd", ""))
-            for one in inputs:
-                after = one.posterior
-                for what, of in (("mean", after.mean), ("sd", after.sd)):
-                    if of.reason:
-                        note(f"{one.name}: no {what} after: {of.reason}.")
-    if found.confounded:
+            for learnt_input in inputs:
+                after = learnt_input.posterior
+                for moment, estimate in (("mean", after.mean), ("sd", after.sd)):
+                    if estimate.reason:
+                        note(f"{learnt_input.name}: no {moment} after: {estimate.reason}.")
+    if answer.confounded:
         heading("\nConfounded by the inspections", "rank correlation")
-        grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])
-    if found.taught:
+        grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in answer.confounded[:5]])
+    if answer.taught:
         heading("\nTaught most", "beyond all other inspections [bit]")
-        most = sorted(found.taught, key=lambda one: -one.bits)[:5]
-        grid([(_what(one), f"{one.bits:.2f}") for one in most])
-    for output in dict.fromkeys(one.output for one in found.lives):
-        _show_lives([one for one in found.lives if one.output == output])
-    if any(one.posterior.mean.has_interval for one in found.inputs):
+        most = sorted(answer.taught, key=lambda gain: -gain.bits)[:5]
+        grid([(_inspection_label(gain), f"{gain.bits:.2f}") for gain in most])
+    for output in dict.fromkeys(remaining.output for remaining in answer.lives):
+        _show_lives([remaining for remaining in answer.lives if remaining.output == output])
+    if any(learnt_input.posterior.mean.has_interval for learnt_input in answer.inputs):
         note("error: how far, with 95 % confidence, the rows may be off the mean after.")
-    for text in found.notes:
+    for text in answer.notes:
         note(text)
-    worst = found.worst
+    worst = answer.worst
     text = f"The rows are worth {worst.effective:.0f} of equal weight, or more"
     note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
 
 
-def _what(taught: Taught) -> str:
-    one = taught.inspection
-    when = f" at {beside(number(one.time), taught.time_unit)}" if one.time is not None else ""
-    value = f" {beside(number(one.value), taught.units)}" if one.value is not None else ""
-    return f"{one.unit}: {one.output} {one.kind}{value}{when}"
+def _inspection_label(taught: Taught) -> str:
+    inspection = taught.inspection
+    when = (
+        f" at {beside(number(inspection.time), taught.time_unit)}"
+        if inspection.time is not None
+        else ""
+    )
+    value = (
+        f" {beside(number(inspection.value), taught.units)}" if inspection.value is not None else ""
+    )
+    return f"{inspection.unit}: {inspection.output} {inspection.kind}{value}{when}"
 
 
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
-    for one in shown:
-        before, after = one.prior, one.posterior
-        unit = unit_of(one.units, before.mean.value)
+    for learnt_input in shown:
+        before, after = learnt_input.prior, learnt_input.posterior
+        unit = unit_of(learnt_input.units, before.mean.value)
         half = (after.mean.high - after.mean.low) / 2 / unit.size
         yield (
-            one.name.partition("[")[0],
+            learnt_input.name.partition("[")[0],
             *(_digits(x.value / unit.size) for x in (before.mean, before.sd, after.mean)),
             f"{half:.1g}" if isfinite(half) else "-",
             _digits(after.sd.value / unit.size),
-            "" if one.units == "1" else powers(unit.name),
+            "" if learnt_input.units == "1" else powers(unit.name),
         )
 
 
@@ -128,27 +134,31 @@ def _digits(value: float) -> str:
 
 
 def _show_lives(lives: Sequence[Remaining]) -> None:
-    longest = max((x.value for one in lives for x in one.life.values()), default=0.0)
+    longest = max((x.value for remaining in lives for x in remaining.life.values()), default=0.0)
     unit = unit_of(lives[0].units, longest)
     heading(f"\n{lives[0].output}", f"remaining life{in_brackets(unit)} of units that run")
-    times = list(dict.fromkeys(time for one in lives for time in one.by))
+    times = list(dict.fromkeys(time for remaining in lives for time in remaining.by))
     ends = (f"P(by {number(time / unit.size)})" for time in times)
     header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
-    grid([_line(one, unit.size, times) for one in lives if one.life], header=header)
-    for time, points in (pair for one in lives for pair in one.over_shared.items()):
+    grid(
+        [_line(remaining, unit.size, times) for remaining in lives if remaining.life], header=header
+    )
+    for time, points in (pair for remaining in lives for pair in remaining.over_shared.items()):
         span = " to ".join(map(percent, points.values()))
         text = f"P(by {number(time / unit.size)}) of units not inspected: {span} (95 %)"
         paragraph(f"{text}, depending on what units share", indent=2)
-    if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
+    if gone := [
+        remaining.unit for remaining in lives if not remaining.life and remaining.unit != ANY
+    ]:
         paragraph(f"hardly any row in which it still runs: {', '.join(gone)}", indent=2)
 
 
-def _line(one: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]:
-    shares = (one.by.get(time, Estimate()) for time in times)
+def _line(remaining: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]:
+    shares = (remaining.by.get(time, Estimate()) for time in times)
     return (
-        "not inspected" if one.unit == ANY else one.unit,
-        number(one.seen / per),
-        *(value_text(one.life[p], per=per) for p in (0.5, 0.05)),
-        f"{one.effective_rows:.0f}",
-        *(percent(one.value) if isfinite(one.value) else "-" for one in shares),
+        "not inspected" if remaining.unit == ANY else remaining.unit,
+        number(remaining.seen / per),
+        *(value_text(remaining.life[p], per=per) for p in (0.5, 0.05)),
+        f"{remaining.effective_rows:.0f}",
+        *(percent(share.value) if isfinite(share.value) else "-" for share in shares),
     )

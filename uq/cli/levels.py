@@ -1,4 +1,4 @@
-"""What ``uq levels`` shows."""
+"""Terminal output of ``uq levels``."""
 
 from collections.abc import Iterator
 from math import isfinite
@@ -18,30 +18,33 @@ from uq.stats.importance_weights import worth_in_words
 def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     """Show the shares of the variance by level."""
     ds = open_result(result)
-    found = by_level(ds, output, plain=plain)
+    decomposition = by_level(ds, output, plain=plain)
     if json:
-        print_json(levels_json(found))
+        print_json(levels_json(decomposition))
         return
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.size}")
-    grid([(level, ", ".join(found.inputs_on(level)) or "-") for level in LEVELS])
-    for name, shares in found.outputs.items():
+    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {decomposition.size}")
+    grid([(level, ", ".join(decomposition.inputs_on(level)) or "-") for level in LEVELS])
+    for name, shares in decomposition.outputs.items():
         heading(f"\n{NumberTarget(ds, name).name}", "shares of the variance")
         grid(_lines(shares), header=("", "share", "95 % interval", ""))
         for text in shares.sentences:
             paragraph(text, indent=2)
-    if (another := found.another_regime) is not None:
+    if (another := decomposition.another_regime) is not None:
         heading("\nregime", "probability that a repeat ends in another")
         line = ("another regime", S1.text(another.value), S1.interval(another))
         grid([line], header=("", "probability", "95 % interval"))
         if another.reason:
             paragraph(another.reason, indent=2)
-    if found.weights is not None:
-        note(worth_in_words(found.weights))
-    if any(isfinite(one.shares[SOLVER].value) for one in found.outputs.values()):
+    if decomposition.weights is not None:
+        note(worth_in_words(decomposition.weights))
+    if any(
+        isfinite(level_shares.shares[SOLVER].value)
+        for level_shares in decomposition.outputs.values()
+    ):
         note("the solver's share is contained in the others")
 
 
-def _lines(one: LevelShares) -> Iterator[tuple[str, str, str, str]]:
-    for name, share in one.shares.items():
+def _lines(level_shares: LevelShares) -> Iterator[tuple[str, str, str, str]]:
+    for name, share in level_shares.shares.items():
         assumes = share.assumes.removeprefix("that ")
         yield name, S1.text(share.value), S1.interval(share), assumes

@@ -1,4 +1,4 @@
-"""What ``uq models`` shows."""
+"""Terminal output of ``uq models``."""
 
 from dataclasses import asdict
 from typing import Any

@@ -110,7 +110,9 @@ def write_machine(name: str) -> None:
     except OSError as error:
         raise InputError(f"uq: {folder}: {error.strerror or error}") from None
     for file, text in _FILES.items():
-        own = Template(file).substitute(name=name)
-        (folder / own).write_text(Template(text).substitute(name=name), encoding="utf-8")
-    console.print(f"{folder}: {', '.join(Template(one).substitute(name=name) for one in _FILES)}")
+        file_name = Template(file).substitute(name=name)
+        (folder / file_name).write_text(Template(text).substitute(name=name), encoding="utf-8")
+    console.print(
+        f"{folder}: {', '.join(Template(template).substitute(name=name) for template in _FILES)}"
+    )
     console.print(f"Next: cd {name} && uq run {name}.toml --model {name}.py", soft_wrap=True)

@@ -1,4 +1,4 @@
-"""What ``uq next-inspection`` shows."""
+"""Terminal output of ``uq next-inspection``."""
 
 from collections.abc import Sequence
 from math import exp
@@ -25,43 +25,43 @@ def next_inspection(
     """Show how far inspections of more units would narrow what units share."""
     ds = open_result(result)
     at = [read_threshold("--at", text, "a life", unit_of_time(ds, output)) for text in times]
-    found = worth(ds, output, at, units, cv, life)
+    expected = worth(ds, output, at, units, cv, life)
     if json:
-        print_json(_as_json(found))
+        print_json(_as_json(expected))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}")
-    heading(f"\n{found.life}", f"expected narrowing by inspecting {found.output}")
+    heading(f"\n{expected.life}", f"expected narrowing by inspecting {expected.output}")
     grid(
-        [(_when(found, t), *(_share(found, t, n) for n in units)) for t in at or (None,)],
+        [(_when(expected, t), *(_share(expected, t, n) for n in units)) for t in at or (None,)],
         header=("", *(counted(n, "unit") for n in units)),
     )
     note(
-        f"What units share scatters this life by a factor of {exp(found.spread):.3g} (one standard"
-        " deviation); each cell is the share by which the logarithm of that factor is expected to"
-        " fall. The scatter between units remains."
+        f"What units share scatters this life by a factor of {exp(expected.spread):.3g} (one"
+        " standard deviation); each cell is the share by which the logarithm of that factor is"
+        " expected to fall. The scatter between units remains."
     )
-    for text in found.notes:
+    for text in expected.notes:
         note(text)
 
 
-def _when(found: Worth, time: float | None) -> str:
-    return "at any time" if time is None else f"at {threshold(time, found.time_unit)}"
+def _when(expected: Worth, time: float | None) -> str:
+    return "at any time" if time is None else f"at {threshold(time, expected.time_unit)}"
 
 
-def _share(found: Worth, time: float | None, units: int) -> str:
-    share = found.narrowing[time, units]
+def _share(expected: Worth, time: float | None, units: int) -> str:
+    share = expected.narrowing[time, units]
     return percent(share) if share == share else "-"
 
 
-def _as_json(found: Worth) -> dict[str, Any]:
+def _as_json(expected: Worth) -> dict[str, Any]:
     return {
-        "life": found.life,
-        "inspect": found.output,
-        "spread": estimate_json.number(found.spread),
-        "time_units": found.time_unit,
-        "notes": found.notes,
+        "life": expected.life,
+        "inspect": expected.output,
+        "spread": estimate_json.number(expected.spread),
+        "time_units": expected.time_unit,
+        "notes": expected.notes,
         "narrowing": [
             {"time": time, "units": units, "value": estimate_json.number(share)}
-            for (time, units), share in found.narrowing.items()
+            for (time, units), share in expected.narrowing.items()
         ],
     }

@@ -43,13 +43,13 @@ def as_json(
         "seconds_low": cost.seconds_low,
         "seconds_high": cost.seconds_high,
         "disk": {"result": cost.result_bytes, "run": cost.run_bytes},
-        "rows_needed": {name: one.rows for name, one in needed.items()},
+        "rows_needed": {name: need.rows for name, need in needed.items()},
         "widths": {
             name: {
                 "units": width.units,
                 "mean": width.mean,
-                "quantiles": {repr(p): one for p, one in width.quantiles.items()},
-                "thresholds": {repr(t): one for t, one in width.thresholds.items()},
+                "quantiles": {repr(p): value for p, value in width.quantiles.items()},
+                "thresholds": {repr(t): value for t, value in width.thresholds.items()},
                 **width.indices,
             }
             for name, width in widths.items()
@@ -71,17 +71,17 @@ def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed])
             ("time", _clock(cost.seconds), f"with {processes}{compiled}{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
             *(
-                (name.replace("_", " "), counted(one.rows, "row"), _why_needed(one, cost))
-                for name, one in needed.items()
+                (name.replace("_", " "), counted(need.rows, "row"), _why_needed(need, cost))
+                for name, need in needed.items()
             ),
         ]
     )
 
 
 def _why_needed(needed: Needed, cost: Cost) -> str:
-    of = f"the {needed.bounds} bounds that hold at once" if needed.bounds > 1 else "a bound"
+    bounds = f"the {needed.bounds} bounds that hold at once" if needed.bounds > 1 else "a bound"
     short = ": more than the study has" if needed.rows > cost.rows else ""
-    return f"needed for {of}, if none fails{short}"
+    return f"needed for {bounds}, if none fails{short}"
 
 
 def _show_widths(widths: Mapping[str, Widths], independent: bool) -> None:
@@ -90,9 +90,9 @@ def _show_widths(widths: Mapping[str, Widths], independent: bool) -> None:
     heading(f"\n{expected} of the 95 % intervals of mean and quantiles")
     grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
     others = [
-        (label, _short(one))
+        (label, _short(value))
         for name, width in widths.items()
-        for label, one in (
+        for label, value in (
             *(
                 (f"P({name} > {threshold(t, width.units)})", share)
                 for t, share in width.thresholds.items()
@@ -112,14 +112,21 @@ def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:
     before = ""
     for name, width in widths.items():
         output, _, place = name.partition("[")
-        own = [one for other, one in widths.items() if other.partition("[")[0] == output]
-        known = (w for one in own for w in (one.mean, *one.quantiles.values()) if w is not None)
-        unit = unit_of(width.units, typical(known))
+        siblings = [
+            sibling for other, sibling in widths.items() if other.partition("[")[0] == output
+        ]
+        values = (
+            w
+            for sibling in siblings
+            for w in (sibling.mean, *sibling.quantiles.values())
+            if w is not None
+        )
+        unit = unit_of(width.units, typical(values))
         label = f"{output}{in_brackets(unit)}"
         if place and output != before:
             yield label, *[""] * (1 + len(width.quantiles))
         before = output
-        numbers = (_short(one, unit.size) for one in (width.mean, *width.quantiles.values()))
+        numbers = (_short(value, unit.size) for value in (width.mean, *width.quantiles.values()))
         yield f"  {place.removesuffix(']')}" if place else label, *numbers
 
 

@@ -72,7 +72,7 @@ def paragraph(text: str, indent: int = 4) -> None:
     width = max(console.width - indent, 1)
     for line in plain(text).split("\n"):
         lines = wrap(line, width, break_long_words=False, break_on_hyphens=False) or [""]
-        console.print(*(" " * indent + one for one in lines), sep="\n", soft_wrap=True)
+        console.print(*(" " * indent + piece for piece in lines), sep="\n", soft_wrap=True)
 
 
 def note(text: str) -> None:

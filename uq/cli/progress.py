@@ -100,10 +100,10 @@ def _moving() -> Iterator[Report]:
     columns = (BarColumn(bar_width=10), TextColumn("{task.description}", markup=False))
     bar = Bar(*columns, console=console)
     task = bar.add_task("starting", total=None)
-    said = Progress(0, 0, 0), 0.0, 0.0
+    latest = Progress(0, 0, 0), 0.0, 0.0
 
     def picture() -> Group:
-        progress, speed, then = said
+        progress, speed, then = latest
         if not progress.total:
             return Group(bar)
         text = sentence(progress, speed, time.monotonic() - then)
@@ -120,9 +120,9 @@ def _moving() -> Iterator[Report]:
         once = cache(partial(live.console.print, markup=False))
 
         def show(progress: Progress) -> None:
-            nonlocal said
+            nonlocal latest
             now = time.monotonic()
-            said = progress, pace(progress, now), now
+            latest = progress, pace(progress, now), now
             if progress.dashboard:
                 once(f"dask dashboard: {progress.dashboard}")
 

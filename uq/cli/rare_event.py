@@ -1,4 +1,4 @@
-"""What ``uq rare-event`` shows."""
+"""Terminal output of ``uq rare-event``."""
 
 import sys
 from math import isfinite
@@ -119,8 +119,8 @@ def _cell(value: float) -> str:
 
 def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
     output, sign = ds.attrs["output"], ">" if ds.attrs["side"] == "above" else "<"
-    of = f"|{output}|" if model.outputs[output.partition("[")[0]].is_angle else output
-    event = f"P({of} {sign} {threshold_in_words(threshold, ds.attrs['units'])})"
+    variable = f"|{output}|" if model.outputs[output.partition("[")[0]].is_angle else output
+    event = f"P({variable} {sign} {threshold_in_words(threshold, ds.attrs['units'])})"
     by_wide = ", estimate by rows drawn wide" * (ds.attrs["estimated_by"] == "wide")
     heading(event, f"by {ds.attrs['method']}{by_wide}")
     low, high, worst = (_cell(float(ds[name])) for name in ("low", "high", "failed_high"))
@@ -147,5 +147,5 @@ def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
 
 
 def _show_inputs(values: xr.DataArray, model: Model) -> None:
-    known = _by_parameter(values).items()
-    grid([(name, quantity(value, model.parameter(name).unit)) for name, value in known])
+    pairs = _by_parameter(values).items()
+    grid([(name, quantity(value, model.parameter(name).unit)) for name, value in pairs])

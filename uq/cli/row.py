@@ -1,4 +1,4 @@
-"""What ``uq row`` shows."""
+"""Terminal output of ``uq row``."""
 
 from pathlib import Path
 from typing import Any
@@ -31,16 +31,18 @@ def row(
     if plot:
         check_files(load_model(model) if model else find_model(ds.attrs["model"]), None, plot)
     with compilation(say_compiling):
-        found = row_again(ds, number, lowest, near_quantile, model, str(result))
+        recomputed = row_again(ds, number, lowest, near_quantile, model, str(result))
         if plot:
-            if found.again is None:
-                raise InputError(f"{result}: row {found.number}: no trajectory: {found.reason}")
-            draw(with_trajectory(found.there, found.again), plot)
-    print_json(plain(found)) if json else _show(found, ds.sizes["sample"])
-    return 1 if found.differing else 0
+            if recomputed.again is None:
+                raise InputError(
+                    f"{result}: row {recomputed.number}: no trajectory: {recomputed.reason}"
+                )
+            draw(with_trajectory(recomputed.there, recomputed.again), plot)
+    print_json(plain(recomputed)) if json else _show(recomputed, ds.sizes["sample"])
+    return 1 if recomputed.differing else 0
 
 
-def plain(found: RowAgain) -> dict[str, Any]:
+def plain(recomputed: RowAgain) -> dict[str, Any]:
     """Return a row as plain data, for JSON.
 
     Returns
@@ -50,46 +52,51 @@ def plain(found: RowAgain) -> dict[str, Any]:
         it is not equal, ``reason``, and if it was computed again ``differing`` and ``again``. What
         differs here from what made the result is in ``versions``, ``[there, here]``.
     """
-    again = found.again
-    entry: dict[str, Any] = {"row": found.number, "equal": found.equal, "place": found.place}
-    entry |= {"chosen": found.choice.words} if found.choice else {}
+    again = recomputed.again
+    entry: dict[str, Any] = {
+        "row": recomputed.number,
+        "equal": recomputed.equal,
+        "place": recomputed.place,
+    }
+    entry |= {"chosen": recomputed.choice.words} if recomputed.choice else {}
     entry |= {"seed": again.seed} if again else {}
-    entry |= as_json(found.row)
-    if found.reason:
-        entry["reason"] = found.reason
-    if again and found.differing:
+    entry |= as_json(recomputed.row)
+    if recomputed.reason:
+        entry["reason"] = recomputed.reason
+    if again and recomputed.differing:
         here = as_json(again)
-        entry["differing"] = list(found.differing)
+        entry["differing"] = list(recomputed.differing)
         entry["again"] = {name: here[name] for name in ("inputs", "outputs", "status")}
-    if found.versions:
-        entry["versions"] = {name: list(pair) for name, pair in found.versions.items()}
+    if recomputed.versions:
+        entry["versions"] = {name: list(pair) for name, pair in recomputed.versions.items()}
     return entry
 
 
-def _show(found: RowAgain, rows: int) -> None:
-    one, (status, meaning) = found.row, found.row.ending
-    title = f"{one.model.name}, row {found.number} of {rows}: {status.label}"
+def _show(recomputed: RowAgain, rows: int) -> None:
+    stored, (status, meaning) = recomputed.row, recomputed.row.ending
+    title = f"{stored.model.name}, row {recomputed.number} of {rows}: {status.label}"
     heading(title, "" if status is Status.OK else meaning)
-    if found.choice:
-        grid([(found.choice.words,)])
-    grid([(", ".join(f"{name} {place}" for name, place in found.place.items()),)])
+    if recomputed.choice:
+        grid([(recomputed.choice.words,)])
+    grid([(", ".join(f"{name} {place}" for name, place in recomputed.place.items()),)])
     heading("\ninputs")
     grid(
         [
             (name, quantity(value, unit))
-            for name, value in one.values.items()
-            if found.there[name].attrs.get("role") == "input"
-            for unit in [found.there[name].attrs["units"]]
+            for name, value in stored.values.items()
+            if recomputed.there[name].attrs.get("role") == "input"
+            for unit in [recomputed.there[name].attrs["units"]]
         ]
     )
-    show_outputs(one)
-    note(_in_words(found))
+    show_outputs(stored)
+    note(_in_words(recomputed))
 
 
-def _in_words(found: RowAgain) -> str:
-    if found.again is None:
-        return f"{capitalized(found.reason)}."
-    code = "; the code of the model has changed since" if "code" in found.versions else ""
-    if found.equal:
+def _in_words(recomputed: RowAgain) -> str:
+    if recomputed.again is None:
+        return f"{capitalized(recomputed.reason)}."
+    code = "; the code of the model has changed since" if "code" in recomputed.versions else ""
+    if recomputed.equal:
         return f"Computed again: equal to the bit{code}."
-    return f"Computed again: differs in {', '.join(found.differing)}. Reason: {found.reason}."
+    differing = ", ".join(recomputed.differing)
+    return f"Computed again: differs in {differing}. Reason: {recomputed.reason}."

@@ -57,12 +57,12 @@ def carried_out(
 ) -> tuple[xr.Dataset, str]:
     """Show the progress of a run; return its result and a line on what was done."""
     began = time.monotonic()
-    computed = found = 0
+    computed = reused = 0
     with progress.shown(quiet) as show:
 
         def report(so_far: Progress) -> None:
-            nonlocal computed, found
-            computed, found = so_far.done - so_far.found, so_far.found
+            nonlocal computed, reused
+            computed, reused = so_far.done - so_far.found, so_far.found
             if so_far.done:
                 say_when_interrupted(
                     f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
@@ -76,7 +76,7 @@ def carried_out(
 
         say_when_interrupted("interrupted; nothing was written")
         ds = action(replace(options, progress=report, say=say))
-    before = f"; {found} computed before" if found else ""
+    before = f"; {reused} computed before" if reused else ""
     seconds = time.monotonic() - began
     return ds, f"{target}: {counted(computed, 'row')} computed in {seconds:.1f} s{before}"
 

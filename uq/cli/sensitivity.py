@@ -1,4 +1,4 @@
-"""What ``uq sensitivity`` shows: tables of 80 columns."""
+"""Terminal output of ``uq sensitivity``: tables of 80 columns."""
 
 from collections.abc import Iterator
 
@@ -13,31 +13,36 @@ from uq.text.numbers import counted, in_brackets
 from uq.text.units import typical, unit_of
 
 
-def show(ds: xr.Dataset, found: Sensitivities) -> None:
+def show(ds: xr.Dataset, sensitivities: Sensitivities) -> None:
     """Print the indices of each target, or why there are none."""
-    dropped = found.groups_dropped
+    dropped = sensitivities.groups_dropped
     lost = f", {counted(dropped, 'group')} dropped" if dropped else ""
-    more = f"of {counted(found.rows_used, 'row')}{lost}"
-    heading(f"Sensitivity by {found.method}", more)
-    for name, one in found.targets.items():
+    more = f"of {counted(sensitivities.rows_used, 'row')}{lost}"
+    heading(f"Sensitivity by {sensitivities.method}", more)
+    for name, target_indices in sensitivities.targets.items():
         target = NumberTarget(ds, name)
         effects = [
-            e.value for kind, of in one.kinds().items() if _is_effect(kind) for e in of.values()
+            e.value
+            for kind, estimates in target_indices.kinds().items()
+            if _is_effect(kind)
+            for e in estimates.values()
         ]
         unit = unit_of(target.units if effects else "1", typical(effects))
         heading(f"\n{target.name}{in_brackets(unit)}", target.meaning)
-        if one.refused:
-            paragraph(one.refused, indent=2)
+        if target_indices.refused:
+            paragraph(target_indices.refused, indent=2)
             continue
-        for table in (one.kinds(), one.kinds(of_pairs=True)):
+        for table in (target_indices.kinds(), target_indices.kinds(of_pairs=True)):
             if table:
                 header = (text for kind in table for text in (kind.key, "95 % interval"))
-                remark = ("",) * bool(one.indices.by_correlation)
-                grid(_lines(table, one.indices, unit.size), header=("", *header, *remark))
-        if noise := one.indices.noise:
+                remark = ("",) * bool(target_indices.indices.by_correlation)
+                grid(
+                    _lines(table, target_indices.indices, unit.size), header=("", *header, *remark)
+                )
+        if noise := target_indices.indices.noise:
             share = (S1.text(noise.value), S1.interval(noise))
             grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
-        for note in one.indices.notes:
+        for note in target_indices.indices.notes:
             paragraph(note, indent=2)
 
 
@@ -50,9 +55,9 @@ def _lines(table: Values, indices: Indices, per: float) -> Iterator[list[str]]:
     borrowed = indices.by_correlation
     for label, estimates in lines(table, indices.nulls):
         pairs = [
-            (kind, one.over(per) if _is_effect(kind) else one)
-            for kind, one in zip(table, estimates, strict=True)
+            (kind, estimate.over(per) if _is_effect(kind) else estimate)
+            for kind, estimate in zip(table, estimates, strict=True)
         ]
-        cells = ((kind.text(one.value), kind.interval(one)) for kind, one in pairs)
+        cells = ((kind.text(estimate.value), kind.interval(estimate)) for kind, estimate in pairs)
         remark = [BY_CORRELATION * (label in borrowed)] if borrowed else []
         yield [label, *(text for pair in cells for text in pair), *remark]

@@ -111,7 +111,7 @@ def as_json(row: Row) -> dict[str, Any]:
     """
     status, meaning = row.ending
     names: dict[str, list[str]] = {"never": [], "censored": [], "undefined": []}
-    for element, _, state in (one for name in row.model.outputs for one in _states(row, name)):
+    for element, _, state in (entry for name in row.model.outputs for entry in _states(row, name)):
         if state:
             names[state].append(element)
     return {

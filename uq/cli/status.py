@@ -15,28 +15,28 @@ from uq.text.numbers import counted
 
 def status(path: Path, json: bool) -> None:
     """Print the progress of a run."""
-    found = run_status(path)
-    print_json(asdict(found)) if json else _show_status(found)
+    run = run_status(path)
+    print_json(asdict(run)) if json else _show_status(run)
 
 
-def _show_status(found: RunStatus) -> None:
-    writer = found.process
+def _show_status(run: RunStatus) -> None:
+    writer = run.process
     by = f" (process {writer.pid} on {writer.host})" if writer else ""
-    heading(f"{found.output}: {found.state}{by}")
-    rate, left = found.rate, found.seconds_left
+    heading(f"{run.output}: {run.state}{by}")
+    rate, left = run.rate, run.seconds_left
     time_left = (duration(left) or f"{left:.0f} s") if left else ""
-    statuses = [f"{count} {label}" for label, count in found.status.items()]
+    statuses = [f"{count} {label}" for label, count in run.status.items()]
     grid(
         [
-            ("done", f"{found.done} of {found.rows} rows"),
-            ("failed", str(found.failed)),
-            ("left", ", ".join(filter(None, (str(found.left), time_left)))),
+            ("done", f"{run.done} of {run.rows} rows"),
+            ("failed", str(run.failed)),
+            ("left", ", ".join(filter(None, (str(run.left), time_left)))),
             ("rate", f"{rate:.3g} rows/s" if rate else "-"),
             ("by status", ", ".join(statuses) or "-"),
         ]
     )
-    if found.state != "complete" and found.complete_rows is not None:
-        rows = counted(found.complete_rows, "row")
+    if run.state != "complete" and run.complete_rows is not None:
+        rows = counted(run.complete_rows, "row")
         console.print(f"\nUntil then the result with {rows} is kept.")
 
 

@@ -39,14 +39,18 @@ def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = 
     """Print a summary, and how intermingled its regimes are."""
     design = f"{ds.attrs['design']}, {counted(summary.samples, 'row')}"
     if summary.rows_used < summary.samples:
-        some = summary.rows_used
-        design += f", statistics from the {some} independent ones" if some else ", none independent"
+        independent = summary.rows_used
+        design += (
+            f", statistics from the {independent} independent ones"
+            if independent
+            else ", none independent"
+        )
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
     grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
     regimes = {REGIME: summary.regimes} if summary.regimes else {}
     for name, shares in (regimes | summary.categories).items():
         heading(f"\n{name}", str(ds[name.partition("[")[0]].attrs["long_name"]))
-        lines = [_share(one) for one in shares.values()]
+        lines = [_share(share) for share in shares.values()]
         grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
         if name == REGIME and boundary is not None and boundary.estimate.has_interval:
             stated = f"{boundary.label} {boundary.words()} ({interval_text(boundary.estimate)})"
@@ -58,8 +62,8 @@ def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = 
         grid(_lines(output, block), header=("", "value", "95 % interval", ""))
         for text in _reasons(output, block):
             paragraph(text, indent=2)
-        for one in output.statistics:
-            for text in one.notes:
+        for statistic in output.statistics:
+            for text in statistic.notes:
                 paragraph(text, indent=2)
         if output.fits:
             _show_fits(output.fits, block)
@@ -67,18 +71,26 @@ def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = 
         note(text)
 
 
-def show_answer(found: Answer) -> None:
+def show_answer(answer: Answer) -> None:
     """Print the answer: what can be promised, what it depends on, and what to do."""
-    lead = found.lead
-    if found.failed or lead is None:
-        paragraph(found.rows_sentence, indent=0)
-    of_lead = [] if lead is None else [*lead.head, *(one.with_cause for one in lead.others)]
-    own = [*found.level_lines, found.enough.sentence]
-    if found.regimes_first:
-        causes = (one.named_cause for one in found.regime_causes)
-        lines = [found.regimes_sentence, found.mixing.sentence, *own, *causes, *of_lead]
+    lead = answer.lead
+    if answer.failed or lead is None:
+        paragraph(answer.rows_sentence, indent=0)
+    of_lead = (
+        [] if lead is None else [*lead.head, *(quantity.with_cause for quantity in lead.others)]
+    )
+    sampling_lines = [*answer.level_lines, answer.enough.sentence]
+    if answer.regimes_first:
+        causes = (cause.named_cause for cause in answer.regime_causes)
+        lines = [
+            answer.regimes_sentence,
+            answer.mixing.sentence,
+            *sampling_lines,
+            *causes,
+            *of_lead,
+        ]
     else:
-        lines = [*of_lead, *own, found.regimes_sentence]
+        lines = [*of_lead, *sampling_lines, answer.regimes_sentence]
     for line in filter(None, lines):
         paragraph(line, indent=0)
     if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
@@ -86,12 +98,12 @@ def show_answer(found: Answer) -> None:
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:
                 paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
-    if found.ties:
-        paragraph(found.ties, indent=0)
+    if answer.ties:
+        paragraph(answer.ties, indent=0)
     if lead is not None and lead.earliest is not None:
         for line in lead.earliest.lines:
             paragraph(line, indent=0)
-    for advice in found.advice:
+    for advice in answer.advice:
         paragraph(f"To do: {advice.text[:1].lower()}{advice.text[1:]}", indent=0)
     console.print()
 
@@ -106,73 +118,84 @@ class Block(NamedTuple):
     units: str
     compared: str
 
-    def per(self, one: Statistic) -> float:
+    def per(self, statistic: Statistic) -> float:
         """Return the size of the unit of a statistic."""
-        return self.unit.size if one.unit == self.units else 1.0
+        return self.unit.size if statistic.unit == self.units else 1.0
 
-    def label(self, one: Statistic) -> str:
+    def label(self, statistic: Statistic) -> str:
         """Return the name of a statistic."""
-        asked = () if one.at is None else (one.at,)
-        return estimated(one.label, self.units, self.compared, asked)
+        asked = () if statistic.at is None else (statistic.at,)
+        return estimated(statistic.label, self.units, self.compared, asked)
 
 
 def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
-    quantiles = (one.estimate.value for one in output.parts["quantiles"])
+    quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
     unit = unit_of(output.units, typical(quantiles))
     is_angle = outputs_of(ds)[name.partition("[")[0]].is_angle
     return Block(unit, output.units, compared(name, is_angle))
 
 
-def _share(one: Statistic) -> tuple[str, ...]:
-    share = (one.label, one.words(), interval_text(one.estimate))
-    return *share, str(one.facts["count"]), failed_bounds_text(one.failed)
+def _share(statistic: Statistic) -> tuple[str, ...]:
+    share = (statistic.label, statistic.words(), interval_text(statistic.estimate))
+    return *share, str(statistic.facts["count"]), failed_bounds_text(statistic.failed)
 
 
 def _lines(output: Described, block: Block) -> Iterator[Line]:
     """Yield label, value and interval in the unit of the block, and a long time in seconds."""
     for part in output.parts.values():
-        shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
-        for one in shown:
-            yield _line(one, block)
-            yield from _failed(one, block)
-            if one.otherwise and one.otherwise.label:
-                yield _line(one.otherwise, block)
-                yield from _failed(one.otherwise, block)
-                yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
-        for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
+        shown = [
+            statistic
+            for statistic in part
+            if statistic.is_read_by(Reader.TERMINAL) and statistic.words()
+        ]
+        for statistic in shown:
+            yield _line(statistic, block)
+            yield from _failed(statistic, block)
+            if statistic.otherwise and statistic.otherwise.label:
+                yield _line(statistic.otherwise, block)
+                yield from _failed(statistic.otherwise, block)
+                yield "", statistic.otherwise.estimate.assumes.removeprefix("that "), "", ""
+        for assumed in dict.fromkeys(statistic.estimate.assumes for statistic in shown):
             if assumed:
                 yield "", f"{shown[0].kind.name} assume", assumed.removeprefix("that "), ""
 
 
-def _line(one: Statistic, block: Block) -> Line:
-    per, more = block.per(one), ""
-    if one.unit == "s" and per >= _LONG and isfinite(one.estimate.value):
-        more = f"{number(one.estimate.value)} s"
-    if one.unit == "rows":
-        more = one.unit
-    elif form := split_name(one.of)[0]:
+def _line(statistic: Statistic, block: Block) -> Line:
+    per, more = block.per(statistic), ""
+    if statistic.unit == "s" and per >= _LONG and isfinite(statistic.estimate.value):
+        more = f"{number(statistic.estimate.value)} s"
+    if statistic.unit == "rows":
+        more = statistic.unit
+    elif form := split_name(statistic.of)[0]:
         more = f"of its {form}"
-    elif undefined := one.facts.get("undefined"):
+    elif undefined := statistic.facts.get("undefined"):
         more = f"{percent(undefined)} undefined"
-    return block.label(one), one.words(per), one.interval(per), more
+    return block.label(statistic), statistic.words(per), statistic.interval(per), more
 
 
-def _failed(one: Statistic, block: Block) -> Iterator[Line]:
-    if worst := failed_bounds_text(one.failed, block.per(one)):
+def _failed(statistic: Statistic, block: Block) -> Iterator[Line]:
+    if worst := failed_bounds_text(statistic.failed, block.per(statistic)):
         yield "  with failed rows", "", worst, ""
 
 
 def _reasons(output: Described, block: Block) -> Iterator[str]:
     """Yield why numbers are missing, each reason once, unless a note says it."""
     lacking: dict[str, list[str]] = {}
-    said = {text for one in output.statistics for text in one.notes}
-    for one in output.statistics:
-        if not (one.is_read_by(Reader.TERMINAL) and one.words()):
+    noted = {text for statistic in output.statistics for text in statistic.notes}
+    for statistic in output.statistics:
+        if not (statistic.is_read_by(Reader.TERMINAL) and statistic.words()):
             continue
-        both = [one, *([one.otherwise] if one.otherwise and one.otherwise.label else [])]
-        alone = isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise
+        both = [
+            statistic,
+            *([statistic.otherwise] if statistic.otherwise and statistic.otherwise.label else []),
+        ]
+        alone = (
+            isnan(statistic.estimate.value)
+            and statistic.rows_needed is None
+            and not statistic.otherwise
+        )
         for each in both if len(both) > 1 else both * alone:
-            if each.estimate.reason and each.estimate.reason not in said:
+            if each.estimate.reason and each.estimate.reason not in noted:
                 lacking.setdefault(each.estimate.reason, []).append(block.label(each))
     for reason, labels in lacking.items():
         yield f"{', '.join(labels)}: {reason}"
@@ -199,8 +222,12 @@ def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
     paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
 
 
-def _cells(one: Estimate | None, per: float) -> tuple[str, str]:
-    return ("", "") if one is None else (number(one.value / per), interval_text(one, per))
+def _cells(estimate: Estimate | None, per: float) -> tuple[str, str]:
+    return (
+        ("", "")
+        if estimate is None
+        else (number(estimate.value / per), interval_text(estimate, per))
+    )
 
 
 def _example(ds: xr.Dataset, status: str) -> str:

@@ -12,13 +12,13 @@ from uq.result.result_file import open_result
 def what_if(result: Path, changes: list[str], json: bool) -> None:
     """Print the summary of a result under other laws."""
     ds = open_result(result)
-    found = answer(ds, read_changes(changes))
+    reweighted = answer(ds, read_changes(changes))
     if json:
-        print_json(what_if_json(found))
+        print_json(what_if_json(reweighted))
         return
-    show_summary(ds, found.summary)
+    show_summary(ds, reweighted.summary)
     note(
         f"What if: {'; '.join(changes)}. The same rows, weighted: worth"
-        f" {found.effective_rows:.0f} independent ones"
-        + (f"; Pareto k = {found.pareto_k:.2f}." if isfinite(found.pareto_k) else ".")
+        f" {reweighted.effective_rows:.0f} independent ones"
+        + (f"; Pareto k = {reweighted.pareto_k:.2f}." if isfinite(reweighted.pareto_k) else ".")
     )

@@ -54,8 +54,8 @@ def study_of(path: Path, model: str | None = None) -> Study:
 
 def _recorded(path: Path) -> tuple[str, str, str, int]:
     """Return identity, text, version of the model and samples of the study of a result."""
-    if not os.path.isfile(path) and (found := history(folder_of(path))):
-        run = found.run
+    if not os.path.isfile(path) and (run_history := history(folder_of(path))):
+        run = run_history.run
         return run.identity, run.study, run.model_version, run.samples
     ds = result_file.open_result(path)
     refuse_weights(ds, "rows computed again or added")
@@ -92,11 +92,11 @@ def extend(
         As in `uq.execution.runner.run`.
     """
     study = study_of(path, model)
-    there = study.design.samples
-    if samples < there:
-        raise InputError(f"samples = {samples}: {path} has {there} already; ask for more")
+    current = study.design.samples
+    if samples < current:
+        raise InputError(f"samples = {samples}: {path} has {current} already; ask for more")
     problem = refusal_to_extend(study)
-    if samples > there and problem:
+    if samples > current and problem:
         raise InputError(f"{path}: {problem}")
     study = study.with_samples(samples)
     # This many are wanted, whatever the precision: [design] until does not apply.

@@ -43,16 +43,20 @@ class Children:
                 for _ in range(count - len(self._idle) - len(self._busy))
             ]
             self._idle += new
-        for one in new:
-            one.begin()
+        for child in new:
+            child.begin()
 
     @contextmanager
-    def one(self, spec: ModelSpec, limit: float | None) -> Iterator[Isolated]:
-        """Yield a process for this call alone, an idle one if there is one."""
+    def reserved(self, spec: ModelSpec, limit: float | None) -> Iterator[Isolated]:
+        """Yield a process reserved for this call, an idle one if there is any."""
         with self._lock:
-            fitting = [one for one in self._idle if (one.spec, one.limit) == (spec, limit)]
+            fitting = [
+                candidate
+                for candidate in self._idle
+                if (candidate.spec, candidate.limit) == (spec, limit)
+            ]
             child = fitting[0] if fitting else Isolated(spec, limit)
-            self._idle = [one for one in self._idle if one is not child]
+            self._idle = [other for other in self._idle if other is not child]
             self._busy.append(child)
             if self._closed:
                 child.close()
@@ -67,8 +71,8 @@ class Children:
         """End those that nobody uses."""
         with self._lock:
             idle, self._idle = self._idle, []
-        for one in idle:
-            one.close()
+        for child in idle:
+            child.close()
 
     def close(self) -> None:
         """End all, whatever they are doing; those who use one see a `RunError`."""
@@ -76,8 +80,8 @@ class Children:
             self._closed = True
             every = [*self._idle, *self._busy]
             self._idle = []
-        for one in every:
-            one.close()
+        for child in every:
+            child.close()
 
     def _returned(self, child: Isolated, whole: bool) -> None:
         with self._lock:
@@ -85,5 +89,5 @@ class Children:
             keep = whole and not self._closed
             self._idle += [child] * keep
             over = [self._idle.pop(0)] if len(self._idle) > _KEPT else []
-        for one in over if keep else [child]:
-            one.close()
+        for discarded in over if keep else [child]:
+            discarded.close()

@@ -51,7 +51,7 @@ def evaluate_rows(
     """
     if wrong := differences(versions):
         raise InputError(f"a worker {wrong}")
-    with (_of_runs[run] if run else _shared).one(spec, limit) as child:
+    with (_of_runs[run] if run else _shared).reserved(spec, limit) as child:
         child.start()
         began = time.perf_counter()
         return child.evaluate(x, seed, start), time.perf_counter() - began

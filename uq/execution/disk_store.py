@@ -87,7 +87,7 @@ class DiskStore(Tally):
                 damaged += record.rows
             else:
                 self._take(record)
-        self.found = self.done
+        self.reused = self.done
         return damaged
 
     def note(self, record: RunRecord) -> None:
@@ -141,11 +141,11 @@ class DiskStore(Tally):
             self._write()
 
     def adopt(self, blocks: list[Block], rows: Rows, chunk: Chunk, origin: Origin) -> None:
-        """Write rows that were computed earlier; they count as found."""
+        """Write rows that were computed earlier; they count as reused."""
         with self._explained():
             data = pack(self.row_type, rows, chunk.columns, chunk.status)
             self._take(self._save(blocks, [data], chunk.failures, origin))
-        self.found = self.done
+        self.reused = self.done
 
     def dataset(self) -> xr.Dataset:
         """Write the result of a complete run, and remove what it was made from.
@@ -196,8 +196,8 @@ class DiskStore(Tally):
         """Write a chunk file, then its line in the journal."""
         failed, status = 0, Counter[str]()
         for data in pieces:
-            _, some, by_label = self.counts(columns_in(data), data["status"])
-            failed += some
+            _, failed_rows, by_label = self.counts(columns_in(data), data["status"])
+            failed += failed_rows
             status.update(by_label)
         record = RowsRecord(
             time=time.time(),

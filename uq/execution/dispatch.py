@@ -169,26 +169,26 @@ class Dispatcher:
             before, self._under_way = self._under_way, sent.begun(threads)
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
-            for start, some, chunk, seconds in sent.returned():
+            for start, rows, chunk, seconds in sent.returned():
                 if seconds:  # unknown for a row that was given up
-                    self.row_seconds = seconds / len(some.x)
-                self._keep(start, some, chunk)
+                    self.row_seconds = seconds / len(rows.x)
+                self._keep(start, rows, chunk)
             self.store.keep_up()
 
     def _here(self, size: int) -> float:
         """Run the next rows on this computer; return the time it took [s]."""
         if not self._untaken:
             return 0.0
-        start, some = self._take(size)
-        self._under_way = len(some.x)
-        if not self.row_seconds or self.row_seconds * len(some.x) > _LONG_SECONDS:
+        start, rows = self._take(size)
+        self._under_way = len(rows.x)
+        if not self.row_seconds or self.row_seconds * len(rows.x) > _LONG_SECONDS:
             self.report_progress()
         began = time.perf_counter()
-        chunk = self._evaluate(some.x, some.seed, start)
+        chunk = self._evaluate(rows.x, rows.seed, start)
         seconds = time.perf_counter() - began
         self._under_way = 0
-        self.row_seconds = seconds / len(some.x)
-        self._keep(start, some, chunk)
+        self.row_seconds = seconds / len(rows.x)
+        self._keep(start, rows, chunk)
         return seconds
 
     def _take(self, size: int) -> tuple[int, Rows]:
@@ -199,10 +199,10 @@ class Dispatcher:
         self._untaken -= stop - start
         return start, self.workload.block(start, stop)
 
-    def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
+    def _keep(self, start: int, rows: Rows, chunk: Chunk) -> None:
         self.store.preview.add(chunk)
-        self.store.add(start, some, chunk)
-        self.left -= len(some.x)
+        self.store.add(start, rows, chunk)
+        self.left -= len(rows.x)
         self.report_progress()  # at once: an interrupt reports how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
@@ -213,15 +213,15 @@ class Dispatcher:
         """Report how far the run is."""
         store = self.store
         seen = store.preview.median, store.preview.shares
-        counts = store.done, store.total, store.failed, store.found, dict(store.status)
+        counts = store.done, store.total, store.failed, store.reused, dict(store.status)
         self._options.progress(
             Progress(*counts, *seen, self._dashboard, under_way=min(self._under_way, self.left))
         )
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""
-        known = self.row_seconds
-        size = self._sizes.good(known, threads) if known else self._sizes.first
+        row_seconds = self.row_seconds
+        size = self._sizes.good(row_seconds, threads) if row_seconds else self._sizes.first
         least = int(_LAST_SHARE * size)
         share = max(ceil(self._untaken / threads), least)
         if self._untaken - share < least:  # too few for another chunk

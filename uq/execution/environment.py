@@ -66,18 +66,18 @@ def started(
     OSError
         When it cannot start.
     """
-    here, there = Pipe()
-    with there:
+    parent_end, child_end = Pipe()
+    with child_end:
         try:
             process = subprocess.Popen(
-                command(module, str(there.fileno())),
+                command(module, str(child_end.fileno())),
                 stdin=subprocess.PIPE,
                 stdout=prints,
-                pass_fds=(there.fileno(),),
+                pass_fds=(child_end.fileno(),),
                 start_new_session=True,
                 env=inherited(),
             )
         except OSError:
-            here.close()
+            parent_end.close()
             raise
-    return process, here
+    return process, parent_end

@@ -146,7 +146,7 @@ class Executor:
         self._children.begin(count, *self._wanted, self._compiling)
 
     def _in_a_child(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
-        with self._children.one(*self._wanted) as child:
+        with self._children.reserved(*self._wanted) as child:
             return child.evaluate(x, seed, start)
 
 

@@ -76,7 +76,7 @@ def load_study(
     """
     from uq.study import definition
 
-    study = _known(definition.load_study(path, model and located(model)), say, row_limit)
+    study = _with_outputs(definition.load_study(path, model and located(model)), say, row_limit)
     if isinstance(study.model.batch, RowByRow):
         from uq.execution.scaling_checks import check_scales
 
@@ -93,7 +93,7 @@ def study_of_text(text: str, source: str, model: str | None) -> "Study":
         model_at(reference)  # the faults of a user's own model are listed in full
     with first_fault_alone():
         study = study_from_text(text, source, reference)
-    return _known(study)
+    return _with_outputs(study)
 
 
 def load_model(reference: str) -> Model:
@@ -108,10 +108,10 @@ def known_reference(reference: str) -> str:
     if model.outputs:
         return reference
     nominal = list(model.nominal.values()), 0
-    return with_returns(reference, _found(reference, [nominal]))
+    return with_returns(reference, _observed_outputs(reference, [nominal]))
 
 
-def _known(study: "Study", say: Say = ignore, limit: float | None = None) -> "Study":
+def _with_outputs(study: "Study", say: Say = ignore, limit: float | None = None) -> "Study":
     """Return a study whose model has outputs."""
     if study.model.outputs:
         return study
@@ -123,14 +123,14 @@ def _known(study: "Study", say: Say = ignore, limit: float | None = None) -> "St
     tried = [(list(nominal.values()), 0)]
     tried += zip(first.x.tolist(), first.seed.tolist(), strict=True)
     reference = study.model_reference
-    known = with_returns(reference, _found(reference, tried, say, limit))
-    return study_from_text(study.text, study.path, known)
+    model = with_returns(reference, _observed_outputs(reference, tried, say, limit))
+    return study_from_text(study.text, study.path, model)
 
 
-def _found(
+def _observed_outputs(
     reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
 ) -> dict[str, Returned]:
-    """Return what a function returns, from the rows tried, the nominal one first."""
+    """Return the outputs of a function, observed in the rows tried, the nominal one first."""
     from uq.study.provenance import __version__
 
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
@@ -142,12 +142,12 @@ def _found(
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()
-    found = joined(list(_returned(reference, tried, say, limit)))
+    outputs = joined(list(_returned(reference, tried, say, limit)))
     if time.monotonic() - began > _WORTH_KEEPING:
         with suppress(OSError):
             kept.parent.mkdir(parents=True, exist_ok=True)
-            kept.write_text(json.dumps(as_plain(found)))
-    return found
+            kept.write_text(json.dumps(as_plain(outputs)))
+    return outputs
 
 
 def _returned(
@@ -163,14 +163,14 @@ def _returned(
     from uq.execution import probe
 
     todo, done = iter(tried), 0
-    began, told = time.monotonic(), False
+    began, announced = time.monotonic(), False
 
     def waiting() -> None:
-        nonlocal told
+        nonlocal announced
         seconds, left = time.monotonic() - began, len(tried) - done
-        if seconds < _SLOW or told:
+        if seconds < _SLOW or announced:
             return
-        told = True
+        announced = True
         more = seconds / done * left if done else 0.0
         about = f": about {duration(more) or f'{more:.0f} s'}" if done else ""
         say(
@@ -179,9 +179,9 @@ def _returned(
         )
 
     while done < len(tried):
-        for said, value in _in_process(reference, todo, limit, waiting):
+        for outcome, value in _in_process(reference, todo, limit, waiting):
             done += 1
-            if said == probe.RETURNED:
+            if outcome == probe.RETURNED:
                 yield from_plain(value)
             elif done == 1:
                 raise InputError(f"model '{reference}': its nominal row {value}")
@@ -190,7 +190,7 @@ def _returned(
 def _in_process(
     reference: str, todo: Iterator[Row], limit: float | None, waiting: Action
 ) -> Iterator[tuple[str, Any]]:
-    """Yield what each row did, until one ends the process or must be stopped.
+    """Yield the outcome of each row, until one ends the process or must be stopped.
 
     Raises
     ------
@@ -206,8 +206,8 @@ def _in_process(
         for row in todo:
             try:
                 if grace is None:
-                    said, value = connection.recv()
-                    if said == REFUSED:
+                    outcome, value = connection.recv()
+                    if outcome == REFUSED:
                         raise value
                     grace = FIRST_SECONDS
                 connection.send(row)

@@ -122,9 +122,9 @@ def pilot(
             each = duration(row_seconds) or f"{row_seconds:.3g} s"
             say(f"a row takes about {each}: running {least * size} more, {count} at a time")
         done, chunks = _spread_chunks(workload, evaluators, size, least)
-    starts, some, found, seconds = zip(*done, strict=True)
-    rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
-    row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
+    starts, row_blocks, computed_chunks, seconds = zip(*done, strict=True)
+    rows = Rows(*(np.concatenate(parts) for parts in zip(*row_blocks, strict=True)))
+    row_seconds, error = _row_cost(seconds, [len(part.x) for part in row_blocks], chunks)
 
     kept = row_bytes(study) * total
     constants = len(study.model.parameter_names) - len(study.uncertain)
@@ -141,9 +141,9 @@ def pilot(
     likely, low, high = (alone / count * share + beside for share in shares)
     times = row_seconds, likely, low, high
     cost = Cost(total, count, len(rows.x), *times, result_bytes, kept + result_bytes)
-    chunk = joined(found)
+    chunk = joined(computed_chunks)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
-    parts = zip(starts, some, strict=True)
+    parts = zip(starts, row_blocks, strict=True)
     numbers = np.concatenate([np.arange(start, start + len(part.x)) for start, part in parts])
     return cost, result_file.build(study, rows, chunk.columns, chunk.status, failures, numbers)
 

@@ -76,13 +76,13 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
 
 def settings_by_row(ds: xr.Dataset, study: Study, places: np.ndarray) -> dict[int, Any]:
     """Return the settings with which some rows of a result were computed, by place."""
-    found: dict[int, Any] = {}
+    settings: dict[int, Any] = {}
     for changes, rows in by_settings(ds):
-        own = places[rows[places]].tolist()
-        if own:
+        matching = places[rows[places]].tolist()
+        if matching:
             with first_fault_alone():
-                found |= dict.fromkeys(own, changed_settings(study, changes))
-    return found
+                settings |= dict.fromkeys(matching, changed_settings(study, changes))
+    return settings
 
 
 def other_versions(ds: xr.Dataset, model: str | None = None) -> dict[str, tuple[str, str]]:
@@ -93,8 +93,8 @@ def other_versions(ds: xr.Dataset, model: str | None = None) -> dict[str, tuple[
     if model is None:
         find_model(model := str(ds.attrs["model"]))  # refuses all but the name of an installed one
     pairs = made_here(model).items()
-    found = {name: (str(ds.attrs.get(name, "unknown")), here) for name, here in pairs}
-    return {name: (made, here) for name, (made, here) in found.items() if made != here}
+    versions = {name: (str(ds.attrs.get(name, "unknown")), here) for name, here in pairs}
+    return {name: (made, here) for name, (made, here) in versions.items() if made != here}
 
 
 def computed_again(study: Study, settings: Any, number: int, status: int = Status.OK) -> Row:
@@ -123,22 +123,22 @@ def computed_again(study: Study, settings: Any, number: int, status: int = Statu
         return computed(study.model, settings, values, seed, lambda x, seeds: batch(x, seeds, 0))
 
 
-def differing(again: Row, there: xr.Dataset) -> list[str]:
-    """Return the names of what differs by a bit between a row and the one in a result.
+def differing(again: Row, stored: xr.Dataset) -> list[str]:
+    """Return the names of the variables that differ by a bit between a row and the stored one.
 
     Parameters
     ----------
     again : Row
-    there : xarray.Dataset
+    stored : xarray.Dataset
         The row in the result, along a dimension ``sample`` of size 1.
     """
-    found = {name: np.float64(value) for name, value in again.values.items()} | again.columns
-    found |= {"status": again.status}
+    columns = {name: np.float64(value) for name, value in again.values.items()} | again.columns
+    columns |= {"status": again.status}
     flags = {censored_name(name) for name in again.model.outputs}
     return [
         name
-        for name, values in found.items()
-        if name not in there.variables
+        for name, values in columns.items()
+        if name not in stored.variables
         or np.asarray(values, np.int8 if name in flags else None).tobytes()
-        != there[name].values.tobytes()
+        != stored[name].values.tobytes()
     ]

@@ -138,11 +138,11 @@ _RECORD: TypeAdapter[RunRecord | RowsRecord] = TypeAdapter(
 
 def understood(records: Sequence[Record]) -> list[RunRecord | RowsRecord]:
     """Return the valid records of a journal."""
-    found = []
+    valid = []
     for record in records:
         with suppress(ValidationError):
-            found.append(_RECORD.validate_python(record))
-    return found
+            valid.append(_RECORD.validate_python(record))
+    return valid
 
 
 def history_of(records: Sequence[Record]) -> History | None:

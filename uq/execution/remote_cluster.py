@@ -92,10 +92,10 @@ def _check_certificates(where: str, encrypted: bool) -> None:
 
 def _check_versions(client: Client, where: str) -> None:
     """Refuse workers that would give other bits, or would not survive their first task."""
-    there = client.run(differences, versions(), on_error="return")
-    if not there:
+    by_worker = client.run(differences, versions(), on_error="return")
+    if not by_worker:
         raise InputError(f"{where}: the cluster has no workers; start some with 'dask worker'")
-    for worker, wrong in there.items():
+    for worker, wrong in by_worker.items():
         if isinstance(wrong, Exception):
             reason = one_line(wrong)
             raise InputError(

@@ -77,21 +77,21 @@ def keep(
     kept = sum(file.stat().st_size for file in folder.iterdir()) if os.path.isdir(folder) else 0
     check_target(path, 2 * row_bytes(study) * rows(study) - kept)  # rows, and the result of them
     with locked(folder):
-        found = None if fresh else _usable(folder, study, again)
-        if found is None:
+        run_history = None if fresh else _usable(folder, study, again)
+        if run_history is None:
             clear(folder)
         if not fresh and not mixed:
-            _check_code(study, path, found)
+            _check_code(study, path, run_history)
         store = DiskStore(study, path)
         with undone(store.close):
-            if found is not None:
-                _find(store, found, say)
+            if run_history is not None:
+                _find(store, run_history, say)
             elif path.is_file() and not fresh:
                 _adopt(store, study, path, all_rows=again is None)
             store.note(_run_record(study, store, again is not None))
             store.settings = dict(again or {})
-            if store.found:
-                say(f"{path}: {store.found} of {store.total} rows were already done")
+            if store.reused:
+                say(f"{path}: {store.reused} of {store.total} rows were already done")
             for line in _other_versions(study, store):
                 say(f"{path}: {line}")
             yield store
@@ -102,17 +102,19 @@ def drop_leftovers(path: Path) -> None:
     folder = folder_of(path)
     if folder.is_dir():
         with suppress(InputError), locked(folder):
-            found = history(folder)
-            if found is None or found.complete:
+            run_history = history(folder)
+            if run_history is None or run_history.complete:
                 clear(folder)
 
 
 def _usable(folder: Path, study: Study, again: Mapping[str, Any] | None) -> History | None:
     """Return the history of a folder, if it is of use; refuse that of another study."""
-    found = history(folder)
-    if found is None or (again is not None and found.complete):  # left by a result's own run
+    run_history = history(folder)
+    if run_history is None:
         return None
-    last = found.run
+    if again is not None and run_history.complete:  # left by a result's own run
+        return None
+    last = run_history.run
     if again is not None and not last.again:
         raise InputError(f"{folder}: has rows of a run that is not complete; finish it first")
     if last.identity != study.identity:
@@ -124,16 +126,16 @@ def _usable(folder: Path, study: Study, again: Mapping[str, Any] | None) -> Hist
             raise InputError(f"{folder}: has rows of this study with more ({sizes}); {_REMEDY}")
         if problem := refusal_to_extend(study):
             raise InputError(f"{folder}: has rows of this study with fewer ({sizes}); {problem}")
-    return found
+    return run_history
 
 
-def _find(store: DiskStore, found: History, say: Callable[[str], object]) -> None:
-    if found.run.row_type != str(store.row_type):
+def _find(store: DiskStore, run_history: History, say: Callable[[str], object]) -> None:
+    if run_history.run.row_type != str(store.row_type):
         raise InputError(
             f"{store.folder}: the model's outputs have changed since its rows were computed; "
             f"{_REMEDY}"
         )
-    if damaged := store.find(without_overlap(found.chunks, store.total)):
+    if damaged := store.find(without_overlap(run_history.chunks, store.total)):
         rows = counted(damaged, "row is", "rows are")
         say(f"{store.folder}: {rows} damaged and will be computed again")
 
@@ -153,12 +155,14 @@ def _run_record(study: Study, store: DiskStore, again: bool) -> RunRecord:
     )
 
 
-def _check_code(study: Study, path: Path, found: History | None) -> None:
+def _check_code(study: Study, path: Path, run_history: History | None) -> None:
     """Refuse to resume with rows computed by other code of the model."""
-    made: list[Mapping[str, object]] = [record.made for record in found.chunks] if found else []
-    if found is None and path.is_file():
+    made: list[Mapping[str, object]] = (
+        [record.made for record in run_history.chunks] if run_history else []
+    )
+    if run_history is None and path.is_file():
         made = [result_file.open_result(path).attrs]
-    if any(is_other_code(one, study.model_reference) for one in made):
+    if any(is_other_code(origin, study.model_reference) for origin in made):
         raise InputError(
             f"{path}: has rows that other code of model '{study.model.name}' computed, although "
             "its version is the same; start over with uq run --fresh, or continue with --mixed"
@@ -192,12 +196,14 @@ def _adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
     here = made_here(study.model_reference)
     made = {name: str(ds.attrs[name]) for name in here if name in ds.attrs}
     for first in range(0, ds.sizes["sample"], _ROWS):
-        some = ds.isel(sample=slice(first, first + _ROWS)).load()
-        wanted = np.ones(some.sizes["sample"], np.bool_) if all_rows else ~result_file.failed(some)
-        for settings, variant in by_settings(some):
+        block = ds.isel(sample=slice(first, first + _ROWS)).load()
+        wanted = (
+            np.ones(block.sizes["sample"], np.bool_) if all_rows else ~result_file.failed(block)
+        )
+        for settings, variant in by_settings(block):
             numbers = first + np.flatnonzero(wanted & variant)
             if numbers.size:
-                part = some.isel(sample=numbers - first)
+                part = block.isel(sample=numbers - first)
                 rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
                 store.adopt(blocks_of(numbers), rows, chunk, (made, settings))
 
@@ -236,6 +242,6 @@ def _outputs(study: Study, part: xr.Dataset, numbers: NDArray[np.int64]) -> Chun
     for code in np.unique(status[status != Status.OK]):
         kind, row = Status(code), int(numbers[np.argmax(status == code)])
         example = str(part["status"].attrs.get(f"example_{kind.name.lower()}", ""))
-        known = example.startswith(f"row {row}: ")
-        failures[kind.label] = row, example.partition(": ")[2] if known else kind.meaning
+        is_of_row = example.startswith(f"row {row}: ")
+        failures[kind.label] = row, example.partition(": ")[2] if is_of_row else kind.meaning
     return Chunk(columns, status, failures)

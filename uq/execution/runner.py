@@ -110,8 +110,8 @@ def run(
 def run_study(study: Study, path: Path, options: RunOptions) -> xr.Dataset:
     """Run a study into a file, or return the existing result; see `run`."""
     _check_budget(study)
-    if not options.fresh and (found := finished(study, path)) is not None:
-        return found
+    if not options.fresh and (existing := finished(study, path)) is not None:
+        return existing
     with resuming.keep(study, path, options.fresh, None, options.say, options.mixed) as kept:
         for sentence in hints(study):
             options.say(sentence)
@@ -144,15 +144,15 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: has the result of another study ({change}); {remedy}")
-    there, wanted = int(ds.attrs["samples"]), study.design.samples
-    if there > wanted or (there < wanted and not stopping.ended(study.design, ds)):
-        problem = remedy if there > wanted else refusal_to_extend(study)
+    samples, wanted = int(ds.attrs["samples"]), study.design.samples
+    if samples > wanted or (samples < wanted and not stopping.ended(study.design, ds)):
+        problem = remedy if samples > wanted else refusal_to_extend(study)
         if problem:
-            sizes = f"samples = {there}, not {wanted}"
+            sizes = f"samples = {samples}, not {wanted}"
             raise InputError(f"{path}: has this study with {sizes}; {problem}")
         return None
     if ds.attrs["study"] != study.text:
-        whole_files.write_result(result_file.relabel(ds, study.with_samples(there)), path)
+        whole_files.write_result(result_file.relabel(ds, study.with_samples(samples)), path)
         ds = result_file.open_result(path)
     resuming.drop_leftovers(path)
     return ds
@@ -189,18 +189,18 @@ def carry_out(
     -------
     xarray.Dataset
     """
-    there = kept or tally.MemoryStore(workload)
+    store = kept or tally.MemoryStore(workload)
 
     def compiling() -> None:
-        counts = there.done, there.total, there.failed, there.found
+        counts = store.done, store.total, store.failed, store.reused
         options.progress(Progress(*counts, compiling=True))
 
     warned = False
     with Executor(workload, options, compiling) as executor:
         for part in (*_interim_studies(study, kept), None):
             stop = rows(part) if part else workload.total
-            dispatcher = Dispatcher(workload, options, there, executor.evaluate, stop)
-            if there.found:
+            dispatcher = Dispatcher(workload, options, store, executor.evaluate, stop)
+            if store.reused:
                 dispatcher.report_progress()
             executor.finish(dispatcher)
             if not (study and kept and part):
@@ -213,7 +213,7 @@ def carry_out(
             if not warned and (line := out_of_reach(study.design, seen, part.design.samples)):
                 options.say(line)
                 warned = True
-    return there.dataset()
+    return store.dataset()
 
 
 def _check_budget(study: Study) -> None:

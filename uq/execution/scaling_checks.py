@@ -65,7 +65,7 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
     with isolated(spec_of(workload_of(study)), row_limit) as batch:
         chunk = batch(x, seed, 0)
     faults = [
-        fault for name, one in scaled.items() for fault in _faults(model, name, one, x, chunk)
+        fault for name, output in scaled.items() for fault in _faults(model, name, output, x, chunk)
     ]
     if faults:
         raise InputError(*(f"machine '{model.name}': {fault}" for fault in faults))
@@ -96,7 +96,7 @@ def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Flo
     """Return a row, and some with other values of what scales, both ends of it; shape (4, d)."""
     rng, rows = np.random.default_rng(1), np.tile(base, (_EACH, 1))
     model = study.model
-    for name in dict.fromkeys(name for one in scaled.values() for name in one.scales):
+    for name in dict.fromkeys(name for output in scaled.values() for name in output.scales):
         place = model.parameter_names.index(name)
         least, most = model.parameter(name).bounds
         value = base[place] if base[place] > 0 else model.nominal[name]
@@ -111,7 +111,7 @@ def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Flo
 
 def _faults(model: Model, name: str, output: Output, x: Floats, chunk: Chunk) -> Iterator[str]:
     """Yield how a life differs from the powers that its output declares."""
-    columns = [model.parameter_names.index(one) for one in output.scales]
+    columns = [model.parameter_names.index(parameter) for parameter in output.scales]
     factor = np.prod(x[:, columns] ** np.array(list(output.scales.values())), axis=1)
     lives = chunk.columns[name].reshape(len(x), -1)
     cut = chunk.columns[censored_name(name)].reshape(lives.shape).astype(bool)
@@ -125,7 +125,7 @@ def _faults(model: Model, name: str, output: Output, x: Floats, chunk: Chunk) ->
         if wrong.any():
             place = int(np.argmax(wrong))
             pairs = zip(output.scales, x[row, columns], strict=True)
-            at = ", ".join(f"{one} = {value:g}" for one, value in pairs)
+            at = ", ".join(f"{parameter} = {value:g}" for parameter, value in pairs)
             yield (
                 f"output '{name}' does not scale as declared: at {at} it is"
                 f" {lives[row, place]:.6g}, not {expected[place]:.6g}"

@@ -63,14 +63,14 @@ def run_status(path: Path) -> RunStatus:
         When there are neither a result nor rows kept for one.
     """
     folder = folder_of(path)
-    found = history(folder)
+    run_history = history(folder)
     held = holder(folder)
     process = replace(held, host=held.computer) if held and is_held(folder) else None
-    complete = _complete(path, process) if path.is_file() or not found else None
-    if complete and (not found or found.complete):
+    complete = _complete(path, process) if path.is_file() or not run_history else None
+    if complete and (not run_history or run_history.complete):
         return complete
-    assert found is not None
-    return _under_way(path, process, found, complete.rows if complete else None)
+    assert run_history is not None
+    return _under_way(path, process, run_history, complete.rows if complete else None)
 
 
 def _complete(path: Path, process: Holder | None) -> RunStatus:
@@ -83,14 +83,14 @@ def _complete(path: Path, process: Holder | None) -> RunStatus:
 
 
 def _under_way(
-    path: Path, process: Holder | None, found: History, complete_rows: int | None
+    path: Path, process: Holder | None, run_history: History, complete_rows: int | None
 ) -> RunStatus:
-    kept, latest = found.kept, found.latest
+    kept, latest = run_history.kept, run_history.latest
     # From the first rows on, if there are others: before them, the model may have been compiled.
-    began, since = (latest[0].time, latest[1:]) if latest[1:] else (found.run.time, latest)
+    began, since = (latest[0].time, latest[1:]) if latest[1:] else (run_history.run.time, latest)
     seconds = since[-1].time - began if since else 0.0
     rate = sum(record.rows for record in since) / seconds if seconds > 0 else None
-    total, done = found.run.rows, sum(record.rows for record in kept)
+    total, done = run_history.run.rows, sum(record.rows for record in kept)
     failed, left = sum(record.failed for record in kept), total - done
     status: Counter[str] = Counter()
     for record in kept:

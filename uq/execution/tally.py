@@ -37,8 +37,8 @@ class Tally:
         Rows that are there.
     failed : int
         Failed rows among them.
-    found : int
-        Rows that were there from the start.
+    reused : int
+        Rows computed earlier, present from the start.
     failures : Failures
     status : dict of str to int
         Status label -> rows.
@@ -51,7 +51,7 @@ class Tally:
     def __init__(self, workload: Workload) -> None:
         self.workload = workload
         self.total = workload.total
-        self.done = self.failed = self.found = 0
+        self.done = self.failed = self.reused = 0
         self.failures: Failures = {}
         self.status: Counter[str] = Counter()
         self.preview = Preview(workload)

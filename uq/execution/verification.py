@@ -62,7 +62,7 @@ def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str
     settings = settings_by_row(ds, study, chosen)
     differences = [
         f"row {row}: {', '.join(names)}"
-        for row, own in sorted(settings.items())
-        if (names := differing(computed_again(study, own, row), ds.isel(sample=[row])))
+        for row, row_settings in sorted(settings.items())
+        if (names := differing(computed_again(study, row_settings, row), ds.isel(sample=[row])))
     ]
     return sorted(settings), differences

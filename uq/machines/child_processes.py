@@ -87,9 +87,9 @@ def end_descendants() -> None:
     import psutil
 
     left = psutil.Process().children(recursive=True)
-    for one in left:
+    for descendant in left:
         with suppress(psutil.NoSuchProcess):
-            one.kill()
+            descendant.kill()
     psutil.wait_procs(left, timeout=_SECONDS)
 
 
@@ -99,9 +99,9 @@ def end_with_descendants(pid: int) -> None:
 
     with suppress(psutil.NoSuchProcess):
         process = psutil.Process(pid)
-        for one in (process, *process.children(recursive=True)):
+        for descendant in (process, *process.children(recursive=True)):
             with suppress(psutil.NoSuchProcess):
-                one.kill()
+                descendant.kill()
 
 
 def _has_children() -> bool:

@@ -33,25 +33,27 @@ class Compiled(RowByRow):
         self, x: Floats, seed: NDArray[np.uint64], settings: object
     ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
         """Compute rows; see `uq.contract.Batch`."""
-        shapes = tuple(len(one.shape) for one in self.returned.values())
+        shapes = tuple(len(declaration.shape) for declaration in self.returned.values())
         loop = _loop_of(self.function, self.names, shapes)
         if loop is None:
             return super().__call__(x, seed, settings)
-        columns = {n: np.empty((len(x), *one.shape)) for n, one in self.returned.items()}
+        columns = {
+            n: np.empty((len(x), *declaration.shape)) for n, declaration in self.returned.items()
+        }
         bad = np.zeros(len(x), dtype=bool)
         loop(x, seed, bad, tuple(columns.values()))
-        for name, one in self.returned.items():
-            bad |= _illegal(one, columns[name].reshape(len(x), -1)).any(axis=1)
-        for name, one in self.returned.items():
-            if one.life:
-                columns[censored_name(name)] = np.zeros((len(x), *one.shape), dtype=bool)
+        for name, declaration in self.returned.items():
+            bad |= _illegal(declaration, columns[name].reshape(len(x), -1)).any(axis=1)
+        for name, declaration in self.returned.items():
+            if declaration.life:
+                columns[censored_name(name)] = np.zeros((len(x), *declaration.shape), dtype=bool)
         status, messages = np.zeros(len(x), np.int8), dict[int, str]()
         if bad.any():
             places = np.flatnonzero(bad)
-            again, status[bad], said = super().__call__(x[bad], seed[bad], settings)
+            again, status[bad], texts = super().__call__(x[bad], seed[bad], settings)
             for name, values in again.items():
                 columns[name][bad] = values
-            messages = {int(places[i]): text for i, text in said.items()}
+            messages = {int(places[i]): text for i, text in texts.items()}
         return columns, status, messages
 
     def row(self, row: list[float], seed: int) -> Any:
@@ -59,11 +61,11 @@ class Compiled(RowByRow):
         return super().row(row, np.uint64(seed))  # type: ignore[arg-type]
 
 
-def _illegal(one: Returned, values: Floats) -> NDArray[np.bool_]:
-    absent = one.output("").is_absent(values)
-    if one.may_be_undefined:
+def _illegal(declaration: Returned, values: Floats) -> NDArray[np.bool_]:
+    absent = declaration.output("").is_absent(values)
+    if declaration.may_be_undefined:
         absent &= ~np.isnan(values)
-    return absent if one.life else absent | np.isposinf(values)
+    return absent if declaration.life else absent | np.isposinf(values)
 
 
 @cache
@@ -78,7 +80,9 @@ def _loop_of(
     import numba
 
     config: Any = numba.config
-    loose = any(function.targetoptions.get(one) for one in ("fastmath", "parallel", "forceobj"))
+    loose = any(
+        function.targetoptions.get(option) for option in ("fastmath", "parallel", "forceobj")
+    )
     if loose or config.USING_SVML:
         return None
     arguments = list(signature(function.py_func).parameters)

@@ -16,7 +16,7 @@ from uq.contract import Floats, Model, Parameter
 from uq.errors import InputError, one_line
 from uq.machines.fmu_description import (
     bounds_of,
-    said_of,
+    description_of,
     stamp_of,
     times_of,
     unit_of_variable,
@@ -48,24 +48,24 @@ def fmu_of(path: Path) -> Model:
     """
     file = _file(path)
     fmu = _fmu(path, file)
-    said = said_of(fmu)
-    reals = variables_of(said)
-    settable = variables_of(said, "parameter")
+    description = description_of(fmu)
+    reals = variables_of(description)
+    settable = variables_of(description, "parameter")
     parameters = file.parameters or _declared(path, settable, FmuParameterTable)
-    outputs = file.outputs or _declared(path, variables_of(said, "output"), FmuOutputTable)
+    outputs = file.outputs or _declared(path, variables_of(description, "output"), FmuOutputTable)
     machine = file.machine
     refuse(path, _faults(parameters, outputs, reals))
     try:
-        times = times_of(said, machine.stop, machine.step)
+        times = times_of(description, machine.stop, machine.step)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
-    fields = {name: _field(name, one, reals) for name, one in parameters.items()}
-    returned = {name: _returned(name, one, reals) for name, one in outputs.items()}
-    inputs = {name: one.variable or name for name, one in parameters.items()}
+    fields = {name: _field(name, parameter, reals) for name, parameter in parameters.items()}
+    returned = {name: _returned(name, output, reals) for name, output in outputs.items()}
+    inputs = {name: parameter.variable or name for name, parameter in parameters.items()}
     folders = Folders(path.absolute().parent / f"{machine.name}.rows", _UNPACKED)
     runner = _Fmu(fmu, stamp_of(fmu), inputs, outputs, returned, times, folders)
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep, False)
-    title = machine.title or said.description or said.modelName
+    title = machine.title or description.description or description.modelName
     return model_from(machine.name, title, machine.version, fields, returned, batch, False)
 
 
@@ -83,8 +83,10 @@ def code_of_fmu(path: Path) -> str:
 def _file(path: Path) -> FmuFile:
     if path.suffix == ".toml":
         return read_fmu_file(path)
-    said = said_of(path)
-    table = FmuTable(name=_as_name(said.modelName), fmu=path.name, version=f"FMI {said.fmiVersion}")
+    description = description_of(path)
+    table = FmuTable(
+        name=_as_name(description.modelName), fmu=path.name, version=f"FMI {description.fmiVersion}"
+    )
     return FmuFile(machine=table)
 
 
@@ -101,14 +103,14 @@ def _as_name(variable: str) -> str:
 
 
 def _declared(path: Path, variables: Iterable[str], kind: Any) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for one in variables:
-        name = _as_name(one)
-        if name in found:
-            both = f"'{found[name].variable}' and '{one}'"
+    tables: dict[str, Any] = {}
+    for variable in variables:
+        name = _as_name(variable)
+        if name in tables:
+            both = f"'{tables[name].variable}' and '{variable}'"
             raise InputError(f"{path}: {both} would both be '{name}'; name them in a machine file")
-        found[name] = kind(variable=one)
-    return found
+        tables[name] = kind(variable=variable)
+    return tables
 
 
 def _faults(
@@ -116,49 +118,62 @@ def _faults(
     outputs: Mapping[str, FmuOutputTable],
     reals: Mapping[str, Any],
 ) -> Iterator[InputFault]:
-    settable = [name for name, one in reals.items() if one.causality in ("parameter", "input")]
-    for table, tables, known in (("parameters", parameters, settable), ("outputs", outputs, reals)):
+    settable = [name for name, real in reals.items() if real.causality in ("parameter", "input")]
+    for table, tables, allowed in (
+        ("parameters", parameters, settable),
+        ("outputs", outputs, reals),
+    ):
         if not tables:
             yield InputFault(
                 (table,), f"the FMU declares none; name its variables in [{table}.NAME]"
             )
-        for name, one in tables.items():
-            variable = one.variable or name
-            if variable not in known:
+        for name, entry in tables.items():
+            variable = entry.variable or name
+            if variable not in allowed:
                 kind = "parameter of the FMU" if table == "parameters" else "variable of the FMU"
                 yield InputFault(
-                    (table, name, "variable"), unknown(kind, variable, known), variable
+                    (table, name, "variable"), unknown(kind, variable, allowed), variable
                 )
     for name, given in parameters.items():
-        found = reals.get(given.variable or name)
-        if found is not None and given.nominal is None and found.start is None:
+        real = reals.get(given.variable or name)
+        if real is not None and given.nominal is None and real.start is None:
             yield InputFault((*("parameters", name), "nominal"), "is missing, and the FMU has none")
 
 
-def _field(name: str, one: FmuParameterTable, reals: Mapping[str, Any]) -> tuple[Parameter, float]:
-    variable = reals[one.variable or name]
-    nominal = float(variable.start) if one.nominal is None else one.nominal
-    bounds = bounds_of(variable) if one.bounds is None else (one.bounds[0], one.bounds[1])
-    meaning = one.meaning or variable.description or name.replace("_", " ")
-    source = one.source or "assumed: the start value of the FMU"
-    unit = one.unit or unit_of_variable(variable)
+def _field(
+    name: str, parameter: FmuParameterTable, reals: Mapping[str, Any]
+) -> tuple[Parameter, float]:
+    variable = reals[parameter.variable or name]
+    nominal = float(variable.start) if parameter.nominal is None else parameter.nominal
+    bounds = (
+        bounds_of(variable)
+        if parameter.bounds is None
+        else (parameter.bounds[0], parameter.bounds[1])
+    )
+    meaning = parameter.meaning or variable.description or name.replace("_", " ")
+    source = parameter.source or "assumed: the start value of the FMU"
+    unit = parameter.unit or unit_of_variable(variable)
     return Parameter(name, unit, " ".join(meaning.split()), bounds, source), nominal
 
 
-def _returned(name: str, one: FmuOutputTable, reals: Mapping[str, Any]) -> Returned:
-    variable = reals[one.variable or name]
-    said = " ".join((variable.description or variable.name).split())
-    if one.is_life:
-        level, sign = one.level
+def _returned(name: str, output: FmuOutputTable, reals: Mapping[str, Any]) -> Returned:
+    variable = reals[output.variable or name]
+    description = " ".join((variable.description or variable.name).split())
+    if output.is_life:
+        level, sign = output.level
         way = "above" if sign > 0 else "below"
-        return Returned("s", one.meaning or f"time until {said} is {way} {level:g}", life=True)
-    words = {"end": "", "max": "largest ", "min": "smallest ", "mean": "mean "}[one.over_time]
-    return Returned(one.unit or unit_of_variable(variable), one.meaning or f"{words}{said}")
+        return Returned(
+            "s", output.meaning or f"time until {description} is {way} {level:g}", life=True
+        )
+    words = {"end": "", "max": "largest ", "min": "smallest ", "mean": "mean "}[output.over_time]
+    return Returned(
+        output.unit or unit_of_variable(variable), output.meaning or f"{words}{description}"
+    )
 
 
 @dataclass(frozen=True)
 class _Fmu:
-    """What simulates a row.
+    """Simulator of a row.
 
     Attributes
     ----------
@@ -195,16 +210,16 @@ class _Fmu:
             log = list[str]()
             try:
                 history = self._history(folder / _UNPACKED, row, log)
-                found = {
-                    name: reduced(one, history["time"], history[one.variable or name])
-                    for name, one in self.outputs.items()
+                outputs = {
+                    name: reduced(output, history["time"], history[output.variable or name])
+                    for name, output in self.outputs.items()
                 }
-                list(checked(found, self.returned))  # here: the folder of a failed row is kept
-                return found
+                list(checked(outputs, self.returned))  # here: the folder of a failed row is kept
+                return outputs
             except Exception as error:
                 (folder / _LOG).write_text("\n".join(log), encoding="utf-8")
-                said = f" ({log[-1]})" if log else ""
-                text = f"{one_line(error)}{said}; see {self.folders.kept(numbers)}"
+                detail = f" ({log[-1]})" if log else ""
+                text = f"{one_line(error)}{detail}; see {self.folders.kept(numbers)}"
                 kind = NonFiniteError if isinstance(error, NonFiniteError) else FmuError
                 raise kind(text) from None
 
@@ -216,17 +231,17 @@ class _Fmu:
         import fmpy
         from fmpy.simulation import instantiate_fmu, simulate_fmu
 
-        def logger(*said: Any) -> None:
-            *_, status, _, text = said
+        def logger(*arguments: Any) -> None:
+            *_, status, _, text = arguments
             if status >= _DISCARDED:
                 log.append(" ".join(text.decode(errors="replace").split()))
 
         if stamp_of(self.path) != self.stamp:
             raise FmuError("the file was changed after the run began")
-        said, (start, stop, step) = said_of(self.path), self.times
+        description, (start, stop, step) = description_of(self.path), self.times
         wanted = "modelDescription.xml", "resources/", f"binaries/{fmpy.platform}/"
         fmpy.extract(str(self.path), str(unpacked), include=lambda name: name.startswith(wanted))
-        instance = instantiate_fmu(str(unpacked), said, logger=logger)
+        instance = instantiate_fmu(str(unpacked), description, logger=logger)
         fatal = False
         try:
             history = simulate_fmu(
@@ -235,8 +250,10 @@ class _Fmu:
                 stop_time=stop,
                 output_interval=step,
                 start_values={self.inputs[name]: value for name, value in row.items()},
-                output=list(dict.fromkeys(one.variable or n for n, one in self.outputs.items())),
-                model_description=said,
+                output=list(
+                    dict.fromkeys(output.variable or n for n, output in self.outputs.items())
+                ),
+                model_description=description,
                 fmu_instance=instance,
             )
         except Exception as error:
@@ -271,8 +288,8 @@ def reduced(output: FmuOutputTable, time: Floats, values: Floats) -> float | Cen
         return nan
     if not output.is_life:
         mean = np.trapezoid(values, time) / (time[-1] - time[0])
-        found = {"end": values[-1], "max": values.max(), "min": values.min(), "mean": mean}
-        return float(found[output.over_time])
+        reductions = {"end": values[-1], "max": values.max(), "min": values.min(), "mean": mean}
+        return float(reductions[output.over_time])
     level, sign = output.level
     beyond = sign * (values - level)
     if not (beyond >= 0).any():

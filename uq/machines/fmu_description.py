@@ -1,4 +1,4 @@
-"""What an FMU [1]_ says of itself, read by FMPy: its parameters, outputs and times.
+"""Description of an FMU [1]_, read by FMPy: its parameters, outputs and times.
 
 References
 ----------
@@ -21,7 +21,7 @@ _VERSION = "2.0"
 _UNBOUNDED = 1e300  # written by tools for no bound at all
 
 
-def said_of(path: Path) -> Any:
+def description_of(path: Path) -> Any:
     """Return the model description of an FMU, an `fmpy.model_description.ModelDescription`.
 
     Raises
@@ -34,9 +34,9 @@ def said_of(path: Path) -> Any:
 
 
 def stamp_of(path: Path) -> tuple[int, int]:
-    """Return what changes when a file is written again."""
-    found = path.stat()
-    return found.st_mtime_ns, found.st_size
+    """Return modification time and size of a file, which change when it is written again."""
+    status = path.stat()
+    return status.st_mtime_ns, status.st_size
 
 
 @cache
@@ -49,18 +49,18 @@ def _read(path: Path, stamp: tuple[int, int]) -> Any:
         version = _version_of(path)  # FMPy reads others too, and complains of what is in them
         if version != _VERSION:
             raise InputError(f"{path}: is of FMI {version}, not {_VERSION}; export it as such")
-        said = fmpy.read_model_description(str(path), validate=False)
+        description = fmpy.read_model_description(str(path), validate=False)
         platforms = fmpy.supported_platforms(str(path))
     except InputError:
         raise
     except Exception as error:
         raise InputError(f"{path}: not an FMU: {described(error)}") from None
-    if said.coSimulation is None and said.modelExchange is None:
+    if description.coSimulation is None and description.modelExchange is None:
         raise InputError(f"{path}: is neither for co-simulation nor for model exchange")
     if fmpy.platform not in platforms:
-        there = ", ".join(sorted(platforms)) or "none"
-        raise InputError(f"{path}: has no binary for {fmpy.platform} (there: {there})")
-    return said
+        available = ", ".join(sorted(platforms)) or "none"
+        raise InputError(f"{path}: has no binary for {fmpy.platform} (there: {available})")
+    return description
 
 
 def _version_of(path: Path) -> str:
@@ -70,16 +70,18 @@ def _version_of(path: Path) -> str:
     return root.attrib["fmiVersion"]
 
 
-def variables_of(said: Any, causality: str = "") -> dict[str, Any]:
+def variables_of(description: Any, causality: str = "") -> dict[str, Any]:
     """Return the real variables of an FMU, all or those of a causality, by name."""
     return {
-        one.name: one
-        for one in said.modelVariables
-        if one.type == "Real" and causality in ("", one.causality)
+        variable.name: variable
+        for variable in description.modelVariables
+        if variable.type == "Real" and causality in ("", variable.causality)
     }
 
 
-def times_of(said: Any, stop: float | None, step: float | None) -> tuple[float, float, float]:
+def times_of(
+    description: Any, stop: float | None, step: float | None
+) -> tuple[float, float, float]:
     """Return start, end and step of a simulation [s]: as asked for, else as the FMU says.
 
     Raises
@@ -87,7 +89,7 @@ def times_of(said: Any, stop: float | None, step: float | None) -> tuple[float, 
     ValueError
         When the FMU does not say how long, or cannot do such steps.
     """
-    experiment = said.defaultExperiment
+    experiment = description.defaultExperiment
 
     def default(name: str) -> float | None:
         value = getattr(experiment, name, None)
@@ -99,7 +101,7 @@ def times_of(said: Any, stop: float | None, step: float | None) -> tuple[float, 
         raise ValueError("states no stop time; give stop in a machine file")
     if not end > start:
         raise ValueError(f"ends at {end:g} s, but starts at {start:g} s")
-    how = said.coSimulation
+    how = description.coSimulation
     step = step or getattr(how, "fixedInternalStepSize", None) or default("stepSize")
     step = float(step or (end - start) / 1000)
     steps = (end - start) / step
@@ -111,20 +113,22 @@ def times_of(said: Any, stop: float | None, step: float | None) -> tuple[float, 
 
 def bounds_of(variable: Any) -> tuple[float, float]:
     """Return the bounds of a variable."""
-    ends = [_own(variable, name) for name in ("min", "max")]
-    low, high = (inf if one is None or abs(float(one)) > _UNBOUNDED else float(one) for one in ends)
+    ends = [_attribute(variable, name) for name in ("min", "max")]
+    low, high = (
+        inf if bound is None or abs(float(bound)) > _UNBOUNDED else float(bound) for bound in ends
+    )
     return (-inf if low == inf else low), high
 
 
 def unit_of_variable(variable: Any) -> str:
     """Return the unit of a variable as a CF string."""
-    return cf_unit(_own(variable, "unit") or "1")
+    return cf_unit(_attribute(variable, "unit") or "1")
 
 
-def _own(variable: Any, name: str) -> Any:
-    """Return what a variable says, or else its type."""
-    found = getattr(variable, name)
-    return getattr(variable.declaredType, name, None) if found is None else found
+def _attribute(variable: Any, name: str) -> Any:
+    """Return an attribute of a variable, by default that of its declared type."""
+    value = getattr(variable, name)
+    return getattr(variable.declaredType, name, None) if value is None else value
 
 
 def cf_unit(unit: str) -> str:
@@ -138,10 +142,10 @@ def cf_unit(unit: str) -> str:
     factors = []
     for place, part in enumerate(unit.strip().split("/")):
         for text in re.split(r"[.*]", part.strip().removeprefix("(").removesuffix(")")):
-            found = re.fullmatch(r"([A-Za-z\u00b5\u03a9%]+)\^?(-?\d*)", text)
-            if found:
-                power = int(found[2] or 1) * (-1 if place else 1)
-                factors.append(found[1] if power == 1 else f"{found[1]}{power}")
+            match = re.fullmatch(r"([A-Za-z\u00b5\u03a9%]+)\^?(-?\d*)", text)
+            if match:
+                power = int(match[2] or 1) * (-1 if place else 1)
+                factors.append(match[1] if power == 1 else f"{match[1]}{power}")
             elif text not in ("1", "-", ""):
                 return unit
     return " ".join(factors) or "1"

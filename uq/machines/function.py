@@ -96,9 +96,9 @@ def machine(
     return mark if function is None else mark(function)
 
 
-def is_machine(found: object) -> bool:
+def is_machine(candidate: object) -> bool:
     """Whether something was declared by `machine`."""
-    return isinstance(getattr(found, _MARK, None), Declared)
+    return isinstance(getattr(candidate, _MARK, None), Declared)
 
 
 def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | None = None) -> Model:
@@ -169,7 +169,7 @@ def _parameter(name: str, hint: Any) -> Parameter:
     for extra in get_args(hint)[1:] if hint is not float else ():
         if isinstance(extra, Parameter):
             return extra
-        if isinstance(extra, tuple) and [isinstance(one, Real) for one in extra] == [True] * 2:
+        if isinstance(extra, tuple) and [isinstance(bound, Real) for bound in extra] == [True] * 2:
             bounds = (float(extra[0]), float(extra[1]))
         elif isinstance(extra, str):
             if next(words, "") == "unit":

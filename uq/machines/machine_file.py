@@ -41,11 +41,13 @@ def file_there(path: Path) -> None:
     ------
     InputError
     """
-    if what := node(path):
-        raise InputError(f"{path}: is {what}, not a file")
+    if kind := node(path):
+        raise InputError(f"{path}: is {kind}, not a file")
     if not path.is_file():
         others = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else []
-        raise InputError(f"{path}: no such file{nearest(path.name, [one.name for one in others])}")
+        raise InputError(
+            f"{path}: no such file{nearest(path.name, [other.name for other in others])}"
+        )
 
 
 def data_of(path: Path) -> dict[str, Any]:
@@ -81,7 +83,7 @@ def read_as(kind: type[T], path: Path) -> T:
         One line for each mistake.
     """
 
-    def known(place: Sequence[Any]) -> list[str]:
+    def allowed_at(place: Sequence[Any]) -> list[str]:
         """Return what may stand in the place of an unknown key."""
         if len(place) == 1:
             return list(kind.model_fields)
@@ -90,7 +92,9 @@ def read_as(kind: type[T], path: Path) -> T:
     try:
         return kind.model_validate(data_of(path))
     except ValidationError as invalid:
-        refuse(path, (fault_of(dict(one), known) for one in invalid.errors(include_url=False)))
+        refuse(
+            path, (fault_of(dict(error), allowed_at) for error in invalid.errors(include_url=False))
+        )
         raise
 
 
@@ -198,9 +202,9 @@ def read_machine(path: Path) -> MachineFile:
     InputError
         One line for each mistake.
     """
-    found = read_as(MachineFile, path)
-    refuse(path, _faults(found, path.parent))
-    return found
+    machine_file = read_as(MachineFile, path)
+    refuse(path, _faults(machine_file, path.parent))
+    return machine_file
 
 
 def template_of(machine: MachineTable, folder: Path) -> str:
@@ -214,8 +218,8 @@ def template_of(machine: MachineTable, folder: Path) -> str:
     if not machine.template:
         return ""
     path = folder / machine.template
-    if what := node(path):
-        raise OSError(f"is {what}, not a file")
+    if kind := node(path):
+        raise OSError(f"is {kind}, not a file")
     with path.open("rb") as file:
         content = file.read(_LONGEST_TEMPLATE + 1)
     if len(content) > _LONGEST_TEMPLATE:
@@ -235,8 +239,8 @@ def code_files(machine: MachineTable, folder: Path) -> list[Path]:
     return named
 
 
-def _faults(found: MachineFile, folder: Path) -> Iterator[InputFault]:
-    machine = found.machine
+def _faults(machine_file: MachineFile, folder: Path) -> Iterator[InputFault]:
+    machine = machine_file.machine
     try:
         texts = [*machine.command, template_of(machine, folder)]
     except UnicodeDecodeError:
@@ -261,25 +265,25 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[InputFault]:
             yield InputFault(("machine", "environment", name), "must be a name without '='")
     if not _is_name(machine.input):
         yield InputFault(("machine", "input"), _IN_ROW, machine.input)
-    for name, output in found.outputs.items():
+    for name, output in machine_file.outputs.items():
         if not _is_within(output.file):
             yield InputFault(("outputs", name, "file"), _IN_ROW, output.file)
     try:
-        nominal = {name: one.nominal for name, one in found.parameters.items()}
+        nominal = {name: parameter.nominal for name, parameter in machine_file.parameters.items()}
         filled(" ".join(texts), {**nominal, SEED: 0, FOLDER: ""})
     except ValueError as error:
         yield InputFault(("machine", "command"), f"a place in it or in the template: {error}")
-    for name in found.parameters:
+    for name in machine_file.parameters:
         if name in (SEED, FOLDER):
             yield InputFault(("parameters", name), "is the name of another place; choose another")
         if not any(re.search(_PLACE % name, text) for text in texts):
             problem = f"has no place {{{name}}} in command{' or template' * bool(machine.template)}"
             yield InputFault(("parameters", name), problem)
-    for name, one in found.parameters.items():
-        low, high = one.bounds
-        if not (isfinite(one.nominal) and low <= one.nominal <= high):
+    for name, parameter in machine_file.parameters.items():
+        low, high = parameter.bounds
+        if not (isfinite(parameter.nominal) and low <= parameter.nominal <= high):
             yield InputFault(
-                ("parameters", name, "nominal"), "must lie within the bounds", one.nominal
+                ("parameters", name, "nominal"), "must lie within the bounds", parameter.nominal
             )
     for file in machine.files:
         if not (folder / file).exists():
@@ -299,8 +303,8 @@ def _program_problem(program: str, folder: Path) -> str:
         remedy = f"; the one beside this file is './{program}'" if path.is_file() else ""
         return f"'{program}' is not on the PATH{remedy}"
     if not path.is_file():
-        there = [f"./{one.name}" for one in folder.iterdir() if os.access(one, os.X_OK)]
-        return f"'{program}' is no file{nearest(program, there)}"
+        programs = [f"./{file.name}" for file in folder.iterdir() if os.access(file, os.X_OK)]
+        return f"'{program}' is no file{nearest(program, programs)}"
     return "" if os.access(path, os.X_OK) else f"'{program}' is not executable: chmod +x {program}"
 
 
@@ -327,11 +331,11 @@ def filled(text: str, values: Mapping[str, float | int | str]) -> str:
         When a format does not suit a number.
     """
 
-    def value(found: re.Match[str]) -> str:
-        one = values[found[1]]
-        how = found[2][1:] if found[2] else ""
+    def value(match: re.Match[str]) -> str:
+        substitute = values[match[1]]
+        how = match[2][1:] if match[2] else ""
         if re.search(r"\d{4}", how):
             raise ValueError(f"format '{how[:20]}' is wider than 999 characters")
-        return format(one, how)
+        return format(substitute, how)
 
     return re.sub(_PLACE % "|".join(map(re.escape, values)), value, text)

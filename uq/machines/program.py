@@ -62,16 +62,26 @@ def program_of(path: Path) -> Model:
     read = read_machine(path)
     returned = {
         name: Returned(
-            one.unit, one.meaning, one.life, tuple(one.shape), one.may_be_undefined, one.scales
+            output.unit,
+            output.meaning,
+            output.life,
+            tuple(output.shape),
+            output.may_be_undefined,
+            output.scales,
         )
-        for name, one in read.outputs.items()
+        for name, output in read.outputs.items()
     }
     folder = path.absolute().parent
     folders = Folders(folder / f"{read.machine.name}.rows")
     runner = _Program(read, returned, folder, folders)
     fields = {
-        name: (Parameter(name, one.unit, one.meaning or name, one.span, one.source), one.nominal)
-        for name, one in read.parameters.items()
+        name: (
+            Parameter(
+                name, parameter.unit, parameter.meaning or name, parameter.span, parameter.source
+            ),
+            parameter.nominal,
+        )
+        for name, parameter in read.parameters.items()
     }
     machine = read.machine
     random = _takes_seed(machine, folder)
@@ -87,13 +97,13 @@ def code_of_program(path: Path) -> str:
     if _takes_seed(read.machine, folder):
         whole.update(b"%d seeds\n" % _SEEDS)
     files = code_files(read.machine, folder)
-    if program := _found(read.machine.command[0], folder):
+    if program := _program_path(read.machine.command[0], folder):
         files.append(Path(program))
     for file in files:
-        for one in sorted(file.rglob("*")) if file.is_dir() else [file]:
-            if one.is_file():
-                content = one.read_bytes().removeprefix(BOM_UTF8)
-                whole.update(b"%s %d\n" % (one.name.encode(), len(content)))
+        for code_file in sorted(file.rglob("*")) if file.is_dir() else [file]:
+            if code_file.is_file():
+                content = code_file.read_bytes().removeprefix(BOM_UTF8)
+                whole.update(b"%s %d\n" % (code_file.name.encode(), len(content)))
                 whole.update(content)
     return whole.hexdigest()[:16]
 
@@ -103,7 +113,7 @@ def _takes_seed(machine: MachineTable, folder: Path) -> bool:
     return any(f"{{{SEED}" in text for text in texts)
 
 
-def _found(program: str, folder: Path) -> str | None:
+def _program_path(program: str, folder: Path) -> str | None:
     """Return the path of a program: beside the machine file if it has a slash, else searched."""
     if "/" in program:
         return str((folder / program).absolute())
@@ -112,7 +122,7 @@ def _found(program: str, folder: Path) -> str | None:
 
 @dataclass(frozen=True)
 class _Program:
-    """What runs a row."""
+    """Runner of a row."""
 
     read: MachineFile
     returned: Mapping[str, Returned]
@@ -144,12 +154,12 @@ class _Program:
                         break
                 else:
                     self._run(folder, row)
-                found = {
+                outputs = {
                     name: value_in(folder, name, output)
                     for name, output in self.read.outputs.items()
                 }
-                list(checked(found, self.returned))  # here: the folder of a failed row is kept
-                return found
+                list(checked(outputs, self.returned))  # here: the folder of a failed row is kept
+                return outputs
             except Exception as error:
                 error.args = (f"{error}; see {kept}",)
                 raise
@@ -163,7 +173,7 @@ class _Program:
             (folder / machine.input).write_bytes(filled(self.template, places).encode())
         program, *arguments = (filled(part, places) for part in machine.command)
         added = machine.environment
-        path = _found(program, self.folder) or program
+        path = _program_path(program, self.folder) or program
         largest = bound_files(folder)
         with (
             (folder / STDOUT_FILE).open("wb") as out,
@@ -180,8 +190,8 @@ class _Program:
                 )
             except OSError as error:
                 remedy = _REMEDIES.get(error.errno or 0, "")
-                said = f"'{program}' cannot be started: {error.strerror}{remedy}"
-                raise ProgramError(said) from None
+                message = f"'{program}' cannot be started: {error.strerror}{remedy}"
+                raise ProgramError(message) from None
             code = self._ended(process, folder, largest)
         if code == -signal.SIGXFSZ:
             raise ProgramError(f"was ended, as it wrote a file larger than {largest:.2g} bytes")
@@ -198,8 +208,8 @@ class _Program:
                 if time.monotonic() >= until:
                     fault = OverdueError(f"did not end within {self.limit:g} s")
                 elif size_of(folder) > largest:
-                    said = f"was ended, as it wrote files of more than {largest:.2g} bytes"
-                    fault = ProgramError(said)
+                    message = f"was ended, as it wrote files of more than {largest:.2g} bytes"
+                    fault = ProgramError(message)
                 if fault:
                     process.kill()
                     break
@@ -211,14 +221,14 @@ class _Program:
         return code
 
 
-def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:
+def _how_it_ended(code: int, meanings: Mapping[str, str], stderr_file: Path) -> str:
     if code < 0:
         text = f"was ended by signal {-code} ({signal.strsignal(-code)})"
     else:
         meaning = meanings.get(str(code))
         text = f"ended with exit code {code}" + (f": {meaning}" if meaning else "")
-    with said.open("rb") as file:
-        file.seek(max(said.stat().st_size - 10 * _LAST, 0))
+    with stderr_file.open("rb") as file:
+        file.seek(max(stderr_file.stat().st_size - 10 * _LAST, 0))
         lines = file.read().decode(errors="replace").split("\n")
     last = next((line.strip() for line in reversed(lines) if line.strip()), "")
     return f"{text} ({last[:_LAST]})" if last else text

@@ -62,26 +62,26 @@ def value_in(folder: Path, name: str, output: OutputTable) -> Any:
 
 
 def _in_json(text: str, path: str) -> Any:
-    found = json.loads(text, parse_float=read_number)
+    value = json.loads(text, parse_float=read_number)
     for part in path.split("."):
-        if isinstance(found, dict):
-            if part not in found:
+        if isinstance(value, dict):
+            if part not in value:
                 raise ValueError(f"no key '{part}' of '{path}'")
-            found = found[part]
-        elif isinstance(found, list):
-            found = found[int(part)]
+            value = value[part]
+        elif isinstance(value, list):
+            value = value[int(part)]
         else:
             raise ValueError(f"nothing at '{part}' of '{path}'")
-    return _number(found)
+    return _number(value)
 
 
-def _number(found: Any) -> Any:
+def _number(value: Any) -> Any:
     """Return numbers, which may be written as text: ``"inf"``, as JSON has no infinity."""
-    if isinstance(found, list):
-        return [_number(one) for one in found]
-    if not isinstance(found, str | int | float):
-        raise ValueError(f"no number: {json.dumps(found)[:_SHOWN]}")
-    return _real(found) if isinstance(found, str) else float(found)
+    if isinstance(value, list):
+        return [_number(element) for element in value]
+    if not isinstance(value, str | int | float):
+        raise ValueError(f"no number: {json.dumps(value)[:_SHOWN]}")
+    return _real(value) if isinstance(value, str) else float(value)
 
 
 def _real(text: str) -> float:

@@ -1,4 +1,4 @@
-"""What a function returns: numbers, arrays and lives, declared or found from rows."""
+"""Outputs of a function: numbers, arrays and lives, declared or inferred from rows."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -78,8 +78,8 @@ class Returned:
 
 def dimensions(name: str, shape: Sequence[int]) -> dict[str, list[int]]:
     """Return the dimensions of an array, with their coordinates, counted from 0."""
-    one = len(shape) == 1
-    return {f"{name}_{'index' if one else i}": list(range(n)) for i, n in enumerate(shape)}
+    is_vector = len(shape) == 1
+    return {f"{name}_{'index' if is_vector else i}": list(range(n)) for i, n in enumerate(shape)}
 
 
 def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> dict[str, Returned]:
@@ -94,24 +94,32 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
     if not isinstance(returns, Mapping):
         raise InputError(f"{label}: returns: must be a dict of outputs, not {returns!r}")
     wrong = [
-        f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {one!r}"
-        for name, one in returns.items()
-        if not (isinstance(one, str | Returned) and isinstance(name, str) and name.isidentifier())
+        f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {declaration!r}"
+        for name, declaration in returns.items()
+        if not (
+            isinstance(declaration, str | Returned)
+            and isinstance(name, str)
+            and name.isidentifier()
+        )
     ]
     wrong += [
-        f"{label}: returns: shape of '{name}' must be a tuple of numbers above 0, not {one.shape!r}"
-        for name, one in returns.items()
-        if isinstance(one, Returned) and not _is_shape(one.shape)
+        f"{label}: returns: shape of '{name}' must be a tuple of numbers above 0,"
+        f" not {declaration.shape!r}"
+        for name, declaration in returns.items()
+        if isinstance(declaration, Returned) and not _is_shape(declaration.shape)
     ]
     wrong += [
         f"{label}: returns: unit and meaning of '{name}' must be text"
-        for name, one in returns.items()
-        if isinstance(one, Returned)
-        and not (isinstance(one.unit, str) and isinstance(one.meaning, str))
+        for name, declaration in returns.items()
+        if isinstance(declaration, Returned)
+        and not (isinstance(declaration.unit, str) and isinstance(declaration.meaning, str))
     ]
     if wrong or not returns:
         raise InputError(*(wrong or [f"{label}: returns: name at least one output"]))
-    return {n: Returned(one) if isinstance(one, str) else one for n, one in returns.items()}
+    return {
+        n: Returned(declaration) if isinstance(declaration, str) else declaration
+        for n, declaration in returns.items()
+    }
 
 
 def _is_shape(shape: Any) -> bool:
@@ -137,8 +145,10 @@ def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.b
         given = np.asarray(value)
         cut = np.zeros(given.shape, dtype=bool)
         if given.dtype == object:
-            cut = np.asarray([isinstance(one, Censored) for one in given.flat]).reshape(given.shape)
-            given = np.asarray([_plain(one) for one in given.flat]).reshape(given.shape)
+            cut = np.asarray([isinstance(element, Censored) for element in given.flat]).reshape(
+                given.shape
+            )
+            given = np.asarray([_plain(element) for element in given.flat]).reshape(given.shape)
         if given.dtype.kind not in "fiub":
             raise TypeError
         if not given.size:
@@ -151,16 +161,16 @@ def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.b
         raise WrongReturnError(f"returned '{name}' as {kind}, not as a number or array") from None
 
 
-def _plain(one: Any) -> Any:
+def _plain(element: Any) -> Any:
     """Return a number as a float, such as an integer of many digits or the time of a `Censored`."""
-    if isinstance(one, Censored):
-        return one.time
-    number: Any = one
-    return float(number) if isinstance(one, Number) else one
+    if isinstance(element, Censored):
+        return element.time
+    number: Any = element
+    return float(number) if isinstance(element, Number) else element
 
 
 def seen_in(row: Any) -> dict[str, Returned]:
-    """Return what a row shows: names, shapes, and lives that are ``inf`` or `censored`.
+    """Return the outputs that a row shows: names, shapes, and lives that are ``inf`` or `censored`.
 
     Raises
     ------
@@ -171,18 +181,18 @@ def seen_in(row: Any) -> dict[str, Returned]:
         raise WrongReturnError(f"returned {type(row).__name__}, not a dict")
     if not row:
         raise WrongReturnError("returned an empty dict; name at least one output")
-    found = {}
+    outputs = {}
     for name, value in row.items():
         if not (isinstance(name, str) and name.isidentifier()):
             raise WrongReturnError(f"returned {name!r}, which cannot be the name of an output")
         numbers, cut = numbers_of(value, name)
         life = bool(cut.any() or np.isposinf(numbers).any())
-        found[name] = Returned(life=life, shape=numbers.shape)
-    return found
+        outputs[name] = Returned(life=life, shape=numbers.shape)
+    return outputs
 
 
 def joined(rows: Sequence[Mapping[str, Returned]]) -> dict[str, Returned]:
-    """Return what rows show together: names and shapes of the first, lives of any."""
+    """Return the outputs that rows show together: names and shapes of the first, lives of any."""
     return {
         name: replace(first, life=any(name in row and row[name].life for row in rows))
         for name, first in rows[0].items()
@@ -191,11 +201,11 @@ def joined(rows: Sequence[Mapping[str, Returned]]) -> dict[str, Returned]:
 
 def as_plain(returned: Mapping[str, Returned]) -> dict[str, dict[str, Any]]:
     """Return declarations as plain data, for `from_plain`."""
-    return {name: asdict(one) for name, one in returned.items()}
+    return {name: asdict(declaration) for name, declaration in returned.items()}
 
 
 def from_plain(data: Mapping[str, Mapping[str, Any]]) -> dict[str, Returned]:
-    """Return what `as_plain` was given."""
+    """Return declarations from plain data, the inverse of `as_plain`."""
     return {
         name: Returned(**{**entry, "shape": tuple(entry["shape"])}) for name, entry in data.items()
     }
@@ -221,28 +231,28 @@ def checked(
         raise WrongReturnError(f"returned {type(returned).__name__}, not a dict")
     for name in expected:
         if name not in returned:
-            there = [str(one) for one in returned]
-            listed = ", ".join(f"'{one}'" for one in there[:_MOST_NAMES])
-            listed += ", ..." * (len(there) > _MOST_NAMES)
-            what = f"it returned {listed or 'an empty dict'}"
-            raise WrongReturnError(f"returned no '{name}' ({what}){nearest(name, there)}")
+            names = [str(key) for key in returned]
+            listed = ", ".join(f"'{key}'" for key in names[:_MOST_NAMES])
+            listed += ", ..." * (len(names) > _MOST_NAMES)
+            explanation = f"it returned {listed or 'an empty dict'}"
+            raise WrongReturnError(f"returned no '{name}' ({explanation}){nearest(name, names)}")
     for name in returned:
         if name not in expected:
             raise WrongReturnError(f"returned '{name}', which 'returns' does not name")
-    for name, one in expected.items():
+    for name, declaration in expected.items():
         numbers, cut = numbers_of(returned[name], name)
-        if numbers.shape != one.shape:
-            shape = f"shape {numbers.shape}, expected {one.shape}"
+        if numbers.shape != declaration.shape:
+            shape = f"shape {numbers.shape}, expected {declaration.shape}"
             raise WrongReturnError(f"returned '{name}' with {shape}")
-        if not one.life and (cut.any() or np.isposinf(numbers).any()):
+        if not declaration.life and (cut.any() or np.isposinf(numbers).any()):
             raise WrongReturnError(
                 f"returned '{name}' as a life that has not ended, which it is not declared to be;"
                 f" in Python: returns={{'{name}': uq.Returned(life=True)}}, in a machine file:"
                 " life = true"
             )
-        output = one.output(name)
+        output = declaration.output(name)
         absent = output.is_absent(numbers)
-        if one.may_be_undefined:
+        if declaration.may_be_undefined:
             absent &= ~np.isnan(numbers)
         if absent.any():
             raise NonFiniteError(f"'{name}' {output.absence(numbers[absent][0])}")

@@ -47,19 +47,23 @@ def model_from(
     faults = [*_nominal_faults(fields), *_name_faults(fields, returned)]
     if faults := [*faults, *_unit_faults(fields, returned), *_scale_faults(fields, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
-    hints = [(one, Annotated[float, parameter]) for one, (parameter, _) in fields.items()]
+    hints = [
+        (field_name, Annotated[float, parameter]) for field_name, (parameter, _) in fields.items()
+    ]
     made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
-    made._field_defaults.update({one: nominal for one, (_, nominal) in fields.items()})
+    made._field_defaults.update(
+        {field_name: nominal for field_name, (_, nominal) in fields.items()}
+    )
     axes: dict[str, list[int]] = {}
-    for output, one in returned.items():
-        axes |= dimensions(output, one.shape)
+    for output, declaration in returned.items():
+        axes |= dimensions(output, declaration.shape)
     return Model(
         name,
         title,
         version,
         made,
         _NoSettings,
-        {output: one.output(output) for output, one in returned.items()},
+        {output: declaration.output(output) for output, declaration in returned.items()},
         batch,
         coordinates=lambda settings: axes,
         random=random,
@@ -80,17 +84,17 @@ def _nominal_faults(fields: Fields) -> Iterator[str]:
 
 def _unit_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
     units = {f"'{name}'": parameter.unit for name, (parameter, _) in fields.items()}
-    units |= {f"output '{name}'": one.unit for name, one in returned.items()}
+    units |= {f"output '{name}'": declaration.unit for name, declaration in returned.items()}
     for owner, unit in units.items():
         if fault := fault_of_unit(unit):
             yield f"unit '{unit}' of {owner}: {fault}"
 
 
 def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
-    for output, one in returned.items():
-        if one.scales and not one.life:
+    for output, declaration in returned.items():
+        if declaration.scales and not declaration.life:
             yield f"output '{output}': only a life has scales: life = true"
-        for name, exponent in one.scales.items():
+        for name, exponent in declaration.scales.items():
             if name not in fields:
                 yield f"output '{output}': scales: {unknown('parameter', name, fields)}"
             elif not (isinstance(exponent, int | float) and isfinite(exponent) and exponent):
@@ -100,7 +104,7 @@ def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[
 
 
 def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
-    """Yield what is wrong with names, all of which stand side by side in a result."""
+    """Yield faults of names, all of which share the variables of a result."""
     reserved = "of one of a result's own variables"
     taken = dict.fromkeys(fields, "of a parameter") | dict.fromkeys(_TAKEN, reserved)
     for name in fields:
@@ -108,8 +112,12 @@ def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[s
             yield f"parameter '{name}' cannot have this name in Python; choose another"
         if name in _TAKEN:
             yield f"parameter '{name}' is the name {taken[name]}; choose another"
-    for name, one in returned.items():
-        made = [name, *dimensions(name, one.shape), *([censored_name(name)] if one.life else [])]
+    for name, declaration in returned.items():
+        made = [
+            name,
+            *dimensions(name, declaration.shape),
+            *([censored_name(name)] if declaration.life else []),
+        ]
         for new in made:
             if new in taken:
                 yield f"output '{name}': '{new}' is the name {taken[new]}; choose another"
@@ -171,10 +179,10 @@ class RowByRow:
         """Compute rows; see `uq.contract.Batch`."""
         n = len(x)
         columns: dict[str, NDArray[Any]] = {}
-        for name, one in self.returned.items():
-            columns[name] = np.full((n, *one.shape), np.nan)
-            if one.life:
-                columns[censored_name(name)] = np.zeros((n, *one.shape), dtype=bool)
+        for name, declaration in self.returned.items():
+            columns[name] = np.full((n, *declaration.shape), np.nan)
+            if declaration.life:
+                columns[censored_name(name)] = np.zeros((n, *declaration.shape), dtype=bool)
         status, messages = np.zeros(n, np.int8), dict[int, str]()
         for i, row in enumerate(x.tolist()):
             try:

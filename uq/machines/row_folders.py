@@ -26,13 +26,13 @@ def size_of(folder: Path) -> int:
 
 
 def _sizes(folder: Path) -> dict[Path, int]:
-    found = {}
-    for one in folder.rglob("*"):
+    sizes = {}
+    for file in folder.rglob("*"):
         with suppress(OSError):  # it has just been removed
-            status = one.lstat()
+            status = file.lstat()
             if S_ISREG(status.st_mode):
-                found[one] = min(status.st_size, _BLOCK * status.st_blocks)
-    return found
+                sizes[file] = min(status.st_size, _BLOCK * status.st_blocks)
+    return sizes
 
 
 def _lighten(folder: Path, passing: str) -> None:
@@ -42,7 +42,7 @@ def _lighten(folder: Path, passing: str) -> None:
     sizes = _sizes(folder)
     left = sum(sizes.values())
     most = min(_MOST_KEPT, (shutil.disk_usage(folder).free + left) // _SHARE_KEPT)
-    for file in sorted(sizes, key=lambda one: sizes[one], reverse=True):
+    for file in sorted(sizes, key=lambda path: sizes[path], reverse=True):
         if left > most:
             file.unlink()
             left -= sizes[file]

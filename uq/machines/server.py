@@ -24,8 +24,8 @@ _turns = count(os.getpid())  # of several servers, each process begins with anot
 
 
 @dataclass(frozen=True)
-class _Known:
-    """What a server says of a model."""
+class _RemoteModel:
+    """A model as its server describes it."""
 
     server: str
     name: str
@@ -54,53 +54,53 @@ def server_model(address: str) -> Model:
         When no such model is there.
     """
     first, *others = address.split(",")
-    known = _known(first)
+    remote = _known(first)
     for other in others:
-        if replace(_known(other), server=known.server) != known:
+        if replace(_known(other), server=remote.server) != remote:
             raise InputError(f"{other}: is a different model than {first}")
-    described = known.information.get(DESCRIBED) or {}
+    described = remote.information.get(DESCRIBED) or {}
     try:
         fields = {
-            one["name"]: (
+            entry["name"]: (
                 Parameter(
-                    one["name"],
-                    one["unit"],
-                    one["meaning"],
-                    _bounds(*one["bounds"]),
+                    entry["name"],
+                    entry["unit"],
+                    entry["meaning"],
+                    _bounds(*entry["bounds"]),
                     "assumed: of the server",
                 ),
-                float(one["nominal"]),
+                float(entry["nominal"]),
             )
-            for one in described.get("parameters", ())
+            for entry in described.get("parameters", ())
         } or {
             name: (Parameter(name, "1", name, (-inf, inf), "assumed: none is stated"), 0.0)
-            for name in _names(known.inputs)
+            for name in _names(remote.inputs)
         }
         outputs = from_plain(described.get("outputs", {})) or {
             name: Returned(shape=() if size == 1 else (size,))
-            for name, size in zip(_vectors(len(known.outputs)), known.outputs, strict=True)
+            for name, size in zip(_vectors(len(remote.outputs)), remote.outputs, strict=True)
         }
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise InputError(f"{address}: describes itself wrongly: {error!r}") from None
-    servers = tuple(split_address(one)[0] for one in address.split(","))
-    evaluate = _Evaluate(known, servers, tuple(fields), tuple(outputs) if described else ())
-    name = re.sub(r"[^A-Za-z0-9_-]", "-", known.name)
+    servers = tuple(split_address(part)[0] for part in address.split(","))
+    evaluate = _Evaluate(remote, servers, tuple(fields), tuple(outputs) if described else ())
+    name = re.sub(r"[^A-Za-z0-9_-]", "-", remote.name)
     random = bool(described.get("random"))
     batch = RowByRow(evaluate, tuple(fields), outputs, random)
-    title = f"{known.name} on a UM-Bridge server"
+    title = f"{remote.name} on a UM-Bridge server"
     return model_from(name, title, f"UM-Bridge {VERSION:g}", fields, outputs, batch, random)
 
 
 def code_of_server(address: str) -> str:
-    """Return a hash of what a server says of a model: its code cannot be seen."""
-    known = _known(address.partition(",")[0])
-    sizes = known.inputs, known.outputs
-    said = json.dumps([known.name, VERSION, *sizes, known.information], sort_keys=True)
-    return hashlib.sha256(said.encode()).hexdigest()[:16]
+    """Return a hash of the description of a model by its server: its code cannot be seen."""
+    remote = _known(address.partition(",")[0])
+    sizes = remote.inputs, remote.outputs
+    text = json.dumps([remote.name, VERSION, *sizes, remote.information], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
-def _known(address: str) -> _Known:
+def _known(address: str) -> _RemoteModel:
     server, name = split_address(address)
     try:
         information = call(server, "Info", patience=_SOON)
@@ -112,10 +112,10 @@ def _known(address: str) -> _Known:
             )
         if name not in models:
             raise InputError(f"{address}: no such model (there: {', '.join(models)})")
-        own = {"name": name, "config": {}}
-        sizes = tuple(int(n) for n in call(server, "InputSizes", own)["inputSizes"])
-        outputs = tuple(int(n) for n in call(server, "OutputSizes", own)["outputSizes"])
-        about = call(server, "ModelInfo", own)
+        body = {"name": name, "config": {}}
+        sizes = tuple(int(n) for n in call(server, "InputSizes", body)["inputSizes"])
+        outputs = tuple(int(n) for n in call(server, "OutputSizes", body)["outputSizes"])
+        about = call(server, "ModelInfo", body)
         if not about["support"].get("Evaluate"):
             raise InputError(f"{address}: this model cannot be evaluated")
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -126,7 +126,7 @@ def _known(address: str) -> _Known:
         raise InputError(f"{address}: has {sum(sizes)} inputs")
     if not 0 < sum(outputs) <= _LARGEST or min(outputs) < 1:
         raise InputError(f"{address}: has outputs of sizes {outputs}")
-    return _Known(server, name, sizes, outputs, about)
+    return _RemoteModel(server, name, sizes, outputs, about)
 
 
 def _vectors(count: int) -> list[str]:
@@ -147,7 +147,7 @@ _ZEROS = "the server states no nominal values, so all inputs are 0: give others,
 class _Evaluate:
     """One call for a row."""
 
-    known: _Known
+    remote: _RemoteModel
     servers: tuple[str, ...]
     names: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -166,11 +166,11 @@ class _Evaluate:
         """
         flat = [float(row[name]) for name in self.names]
         vectors, first = [], 0
-        for size in self.known.inputs:
+        for size in self.remote.inputs:
             vectors.append(flat[first : first + size])
             first += size
         config = {"seed": row["seed"]} if "seed" in row else {}
-        body = {"name": self.known.name, "input": vectors, "config": config}
+        body = {"name": self.remote.name, "input": vectors, "config": config}
         turn = next(_turns) % len(self.servers)
         servers = self.servers[turn:] + self.servers[:turn]
         try:
@@ -180,8 +180,8 @@ class _Evaluate:
                 raise
             raise ServerError(f"{error}; {_ZEROS}") from None
         output = answer.get("output") if isinstance(answer, dict) else None
-        if not isinstance(output, list) or not all(isinstance(one, list) for one in output):
-            raise ServerError(f"{self.known.server} answers Evaluate without a list of vectors")
+        if not isinstance(output, list) or not all(isinstance(vector, list) for vector in output):
+            raise ServerError(f"{self.remote.server} answers Evaluate without a list of vectors")
         if self.outputs:
             return self._named(_numbers(output, answer.get(NEVER)))
         names = _vectors(len(output))
@@ -189,15 +189,15 @@ class _Evaluate:
 
     def _named(self, output: list[list[float]]) -> dict[str, Any]:
         """Return outputs of a server that describes them: vectors by name, then flags."""
-        described = self.known.information[DESCRIBED]
+        described = self.remote.information[DESCRIBED]
         columns = dict(zip(described["columns"], output, strict=True))
-        found: dict[str, Any] = {}
-        for name, one in described["outputs"].items():
+        outputs: dict[str, Any] = {}
+        for name, entry in described["outputs"].items():
             flags = columns.get(censored_name(name)) or [0.0] * len(columns[name])
             both = zip(columns[name], flags, strict=True)
             values = [Censored(value) if cut else value for value, cut in both]
-            found[name] = values if one["shape"] else values[0]
-        return found
+            outputs[name] = values if entry["shape"] else values[0]
+        return outputs
 
 
 def _bounds(low: float | None, high: float | None) -> tuple[float, float]:

@@ -47,7 +47,7 @@ def address_of(host: str, port: int, name: str) -> str:
 
 
 class _Offered:
-    """What is asked of a model."""
+    """Requests to a model, and their answers."""
 
     def __init__(self, model: Model):
         self._settings = model.settings()
@@ -131,21 +131,22 @@ class _Offered:
                 {
                     "name": name,
                     "nominal": model.nominal[name],
-                    "unit": one.unit,
-                    "bounds": finite(one.bounds),
-                    "meaning": one.meaning,
+                    "unit": parameter.unit,
+                    "bounds": finite(parameter.bounds),
+                    "meaning": parameter.meaning,
                 }
-                for name, one in declared
+                for name, parameter in declared
             ],
             "outputs": {
                 name: {
-                    "unit": one.unit,
-                    "meaning": one.meaning,
-                    "life": one.is_lifetime,
-                    "shape": [int(np.prod([len(axes[dim]) for dim in one.dims]))] * bool(one.dims),
-                    "may_be_undefined": one.may_be_undefined,
-                    "scales": dict(one.scales),
+                    "unit": output.unit,
+                    "meaning": output.meaning,
+                    "life": output.is_lifetime,
+                    "shape": [int(np.prod([len(axes[dim]) for dim in output.dims]))]
+                    * bool(output.dims),
+                    "may_be_undefined": output.may_be_undefined,
+                    "scales": dict(output.scales),
                 }
-                for name, one in model.outputs.items()
+                for name, output in model.outputs.items()
             },
         }

@@ -58,18 +58,18 @@ def split_address(address: str) -> tuple[str, str]:
     """
     try:
         parts: SplitResult = urlsplit(address)
-        known = parts.hostname is not None and parts.port != 0
+        valid = parts.hostname is not None and parts.port != 0
     except ValueError:
-        known = False
-    name = parts.path.strip("/") if known else ""
-    if not known or not name or "/" in name or parts.query or parts.fragment:
+        valid = False
+    name = parts.path.strip("/") if valid else ""
+    if not valid or not name or "/" in name or parts.query or parts.fragment:
         raise InputError(f"{address}: write it as http://HOST:PORT/NAME")
     return f"{parts.scheme}://{parts.netloc}", name
 
 
 def call(
     server: str | Sequence[str],
-    what: str,
+    request: str,
     body: Any = None,
     patience: float | None = None,
     limit: float = inf,
@@ -80,8 +80,8 @@ def call(
     ----------
     server : str or sequence of str
         ``http://HOST:PORT``; of several, any may answer, and those that lately did not come last.
-    what : str
-        Such as ``Evaluate``.
+    request : str
+        Its name, such as ``Evaluate``.
     body : object, optional
         What is sent; nothing is asked for by GET.
     patience : float, optional
@@ -98,19 +98,19 @@ def call(
     began, rounds = time.monotonic(), 0
     until = began + limit
     servers = [server] if isinstance(server, str) else list(server)
-    servers.sort(key=lambda one: began < _out.get(one, -inf) + _OUT_SECONDS)
+    servers.sort(key=lambda address: began < _out.get(address, -inf) + _OUT_SECONDS)
     while True:
-        for one in servers:
+        for address in servers:
             try:
-                answer = _answer(one, what, body, until)
-                _silent.discard(one)
-                _out.pop(one, None)
+                answer = _answer(address, request, body, until)
+                _silent.discard(address)
+                _out.pop(address, None)
                 return answer
             except (OSError, http.client.HTTPException) as error:
                 now, reason = time.monotonic(), one_line(error) or type(error).__name__
                 if now > until:
-                    raise OverdueError(f"{one} did not answer within {limit:g} s") from None
-                _out[one] = now
+                    raise OverdueError(f"{address} did not answer within {limit:g} s") from None
+                _out[address] = now
         longest = _PATIENCE if patience is None else patience
         if _silent.issuperset(servers) or now - began > longest:
             _silent.update(servers)
@@ -121,7 +121,7 @@ def call(
         rounds += 1
 
 
-def _answer(server: str, what: str, body: Any, until: float) -> Any:
+def _answer(server: str, request: str, body: Any, until: float) -> Any:
     parts = urlsplit(server)
     secure = parts.scheme == "https"
     kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
@@ -131,18 +131,18 @@ def _answer(server: str, what: str, body: Any, until: float) -> Any:
         with _cut(connection.sock, _left(until)):
             data = None if body is None else json.dumps(body)
             headers = {"Content-Type": "application/json", "Connection": "close"}
-            connection.request("GET" if body is None else "POST", f"/{what}", data, headers)
+            connection.request("GET" if body is None else "POST", f"/{request}", data, headers)
             response = connection.getresponse()
             text = bytearray()
             while part := response.read1(_PART):
                 text += part
                 if len(text) > _LONGEST:
                     most = f"{_LONGEST:.0e} bytes"
-                    raise ServerError(f"{server} answers {what} with more than {most}")
+                    raise ServerError(f"{server} answers {request} with more than {most}")
         _left(until)
         if response.length:
             raise http.client.IncompleteRead(bytes(text), response.length)
-    return _read(server, what, response.status, bytes(text))
+    return _read(server, request, response.status, bytes(text))
 
 
 @contextmanager
@@ -176,27 +176,27 @@ def _left(until: float) -> float | None:
     return left if isfinite(left) else None
 
 
-def _read(server: str, what: str, status: int, text: bytes) -> Any:
-    """Return what an answer says."""
+def _read(server: str, request: str, status: int, text: bytes) -> Any:
+    """Return the decoded answer of a server."""
     try:
         answer = json.loads(text, parse_float=read_number)
     except OverflowError as large:
-        raise ServerError(f"{server} answers {what}: {large}") from None
+        raise ServerError(f"{server} answers {request}: {large}") from None
     except (ValueError, RecursionError):
         if bare := _NO_NUMBER.search(text):
             raise ServerError(
-                f"{server} answers {what}: {bare[0].decode()} is not JSON; return finite numbers,"
-                ' or {"error": {"type": ..., "message": ...}} for a row without them'
+                f"{server} answers {request}: {bare[0].decode()} is not JSON; return finite"
+                ' numbers, or {"error": {"type": ..., "message": ...}} for a row without them'
             ) from None
-        said = " ".join(text[:80].decode(errors="replace").split())
+        excerpt = " ".join(text[:80].decode(errors="replace").split())
         raise ServerError(
-            f"{server} answers {what} with status {status} and no JSON ({said}); its own output may"
-            " say why"
+            f"{server} answers {request} with status {status} and no JSON ({excerpt}); its own"
+            " output may say why"
         ) from None
     if isinstance(answer, dict) and "error" in answer:
         error = answer["error"]
         words = error.get("message") or error.get("type") if isinstance(error, dict) else error
-        raise ServerError(f"{server} answers {what}: {' '.join(str(words).split())}")
+        raise ServerError(f"{server} answers {request}: {' '.join(str(words).split())}")
     if status != http.client.OK:
-        raise ServerError(f"{server} answers {what} with status {status}")
+        raise ServerError(f"{server} answers {request} with status {status}")
     return answer

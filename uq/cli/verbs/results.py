@@ -123,14 +123,14 @@ def summary(
         warn_if_altered(result)
         return
     asked = regime is not None or fits or plain
-    found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
+    statistics = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
     if not json:
-        summary_tables.show_summary(ds, found)
+        summary_tables.show_summary(ds, statistics)
         warn_if_altered(result)
         return
     answer = {"answer": answer_json(conclude(findings))} if answered else {}
     between = boundary_json(findings.boundary) if answered else {}
-    print_json(summary_json(found) | between | answer)
+    print_json(summary_json(statistics) | between | answer)
     warn_if_altered(result)
 
 
@@ -152,8 +152,8 @@ def sensitivity(
     from uq.result.result_file import open_result
 
     ds = open_result(result)
-    found = sensitivities(ds, method, output, regime)
-    print_json(sensitivity_json(found)) if json else show(ds, found)
+    indices = sensitivities(ds, method, output, regime)
+    print_json(sensitivity_json(indices)) if json else show(ds, indices)
 
 
 def levels(

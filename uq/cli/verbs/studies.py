@@ -99,11 +99,11 @@ def serve(
     from uq.execution.loading import load_model
     from uq.machines.serving import address_of, server_of
 
-    found = load_model(model)
-    server = server_of(found, host, port)
+    loaded_model = load_model(model)
+    server = server_of(loaded_model, host, port)
     say_when_interrupted("stopped")
     with server:
-        print(address_of(host, server.server_address[1], found.name), flush=True)
+        print(address_of(host, server.server_address[1], loaded_model.name), flush=True)
         with redirect_stdout(sys.stderr):  # who reads the address may leave before a row prints
             server.serve_forever()
 
