@@ -35,8 +35,8 @@ def nominal(frequency, n=1):
     return Params._make(np.full(n, float(value)) for value in fields.values())
 
 
-def error_of(rates, known):
-    return np.abs(np.sort(rates) / known - 1).max()
+def error_of(rates, reference):
+    return np.abs(np.sort(rates) / reference - 1).max()
 
 
 def by_lanes(frequency, steps):
@@ -73,7 +73,7 @@ def by_newmark(frequency, steps):
 
 def work_rates():
     print("Work-rate: error of the worse site, and microseconds per forcing period and row")
-    found = []
+    figures = []
     for frequency in KNOWN:
         print(f"  {frequency} Hz")
         for steps in (0, 96, 192, 400):
@@ -88,9 +88,9 @@ def work_rates():
             if error <= goal:
                 break
         print(f"    ratio at equal error: {seconds / fast:.0f}")
-        what = f"a forcing period of the beam at {frequency} Hz, work-rate to {goal:.1g}"
-        found.append(Figure(what, "Newmark's method", seconds / fast))
-    keep("beam", found)
+        task = f"a forcing period of the beam at {frequency} Hz, work-rate to {goal:.1g}"
+        figures.append(Figure(task, "Newmark's method", seconds / fast))
+    keep("beam", figures)
 
 
 if __name__ == "__main__":

@@ -51,18 +51,18 @@ def costs(name, accuracy):
     for code, regime in enumerate(REGIMES):
         mine = np.flatnonzero(outputs["regime"] == code)
         if len(mine) >= LANES:
-            some = SimpleNamespace(x=rows.x[mine], seed=rows.seed[mine])
-            print(f"    {regime:20s} {len(mine):4d} rows {lives(some, accuracy)[1]:8.2f}")
+            part = SimpleNamespace(x=rows.x[mine], seed=rows.seed[mine])
+            print(f"    {regime:20s} {len(mine):4d} rows {lives(part, accuracy)[1]:8.2f}")
 
 
 def errors(name, accuracy):
     rows = rows_of(name, ROWS, ROWS + CHECKED)
-    known = lives(rows, accuracy / 10)[0]
-    found = lives(rows, accuracy)[0]
-    life = known["first_time_to_depth"][:, 0]
-    off = np.abs(found["first_time_to_depth"][:, 0] / life - 1)
-    stated = found["first_time_to_depth_error"][:, 0] / life
-    same = np.mean(found["regime_changes"] == known["regime_changes"])
+    reference = lives(rows, accuracy / 10)[0]
+    computed = lives(rows, accuracy)[0]
+    life = reference["first_time_to_depth"][:, 0]
+    off = np.abs(computed["first_time_to_depth"][:, 0] / life - 1)
+    stated = computed["first_time_to_depth_error"][:, 0] / life
+    same = np.mean(computed["regime_changes"] == reference["regime_changes"])
     print(
         f"    error: median {np.median(off):.2%}, ninth decile {np.quantile(off, 0.9):.2%}; stated "
         f"{np.median(stated):.2%}; beyond it {np.mean(off > stated):.0%}, beyond twice "
@@ -94,7 +94,7 @@ def regimes(name, periods=4096):
         spy = SimpleNamespace(advance=advance, CLOCK=lanes.CLOCK)
         start = (spy, system, state, gaps, settled.work, settled.regime)
         life = wear_down(*start, share, growths, periods, settings.accuracy).history
-        row, at, regime = (np.concatenate(some) for some in zip(*seen, strict=True))
+        row, at, regime = (np.concatenate(arrays) for arrays in zip(*seen, strict=True))
         truth = np.full_like(life.regime, -1)
         for i, k in enumerate(system.beams.stiffness):  # no two rows have the same
             mine = np.flatnonzero(row == k)
@@ -103,9 +103,11 @@ def regimes(name, periods=4096):
                 truth[i, look] = regime[mine[apart.argmin()]]
         looks += (life.regime >= 0).sum()
         alike += ((life.regime == truth) & (truth >= 0)).sum()
-        found, known = (changes_of(confirmed_regimes(r)).sum(axis=1) for r in (life.regime, truth))
-        counts += (found == known).sum()
-        close += (np.abs(found - known) <= 1).sum()
+        changes, true_changes = (
+            changes_of(confirmed_regimes(r)).sum(axis=1) for r in (life.regime, truth)
+        )
+        counts += (changes == true_changes).sum()
+        close += (np.abs(changes - true_changes) <= 1).sum()
     print(
         f"{name}, regimes at frozen gaps: {alike / looks:.1%} of {looks} looks alike; as many "
         f"changes in {counts} of {SETTLED} lives, one more or less in {close - counts}"

@@ -84,22 +84,22 @@ def by_increments(rows, way, propagator, steps):
     return lives, (time.process_time() - began) / len(rows.x)
 
 
-def rival(name, rows, known, goal, own, propagator, every_steps):
+def rival(name, rows, reference, goal, our_seconds, propagator, every_steps):
     """Print a rival's cheapest setting of equal accuracy, and return its cost relative to ours."""
     by_increments(rows._replace(x=rows.x[:1]), WAYS[0], propagator, every_steps[0])  # compiles
     for way, steps in zip(WAYS, every_steps, strict=True):
         lives, seconds = by_increments(rows, way, propagator, steps)
-        off = np.median(np.abs(lives / known - 1))
+        off = np.median(np.abs(lives / reference - 1))
         if off <= goal:
             break
-    said = f"{way[0]} increments" + (f", {steps} steps" if steps else "")
+    label = f"{way[0]} increments" + (f", {steps} steps" if steps else "")
     verdict = "" if off <= goal else "  (not as good)"
     print(
-        f"    {name:18s} {said:28s} {off:7.2%} {seconds * 1e3:10.1f} ms "
-        f"{seconds / own:7.0f}{verdict}",
+        f"    {name:18s} {label:28s} {off:7.2%} {seconds * 1e3:10.1f} ms "
+        f"{seconds / our_seconds:7.0f}{verdict}",
         flush=True,
     )
-    return seconds / own
+    return seconds / our_seconds
 
 
 def report(name, count, settings, goal):
@@ -110,36 +110,39 @@ def report(name, count, settings, goal):
         rows = row_block(study, 0, count)
         by_rows(rows._replace(x=rows.x[:64], seed=rows.seed[:64]), study.settings)  # compiles
         print(f"{name}, {settings}: {count} rows in {wall_time(path, Path(folder)):.1f} s")
-    some = rows._replace(x=rows.x[:CHECKED], seed=rows.seed[:CHECKED])
-    known, _, _, _ = by_rows(some, TIGHT)
-    every, errors, regimes, own = by_rows(rows, study.settings)
-    off = np.abs(every[:CHECKED] / known - 1)
+    checked = rows._replace(x=rows.x[:CHECKED], seed=rows.seed[:CHECKED])
+    reference, _, _, _ = by_rows(checked, TIGHT)
+    every, errors, regimes, our_seconds = by_rows(rows, study.settings)
+    off = np.abs(every[:CHECKED] / reference - 1)
     print(
         f"  error of {CHECKED} lives: median {np.median(off):.2%}, mean {off.mean():.2%}, "
         f"ninth decile {np.quantile(off, 0.9):.2%}"
     )
-    beyond = np.mean(off > errors[:CHECKED] / known)
+    beyond = np.mean(off > errors[:CHECKED] / reference)
     stated, asked = errors / every, study.settings.accuracy
     print(
         f"  beyond the error stated: {beyond:.0%} of them; stated: median {np.median(stated):.2%}, "
         f"larger than the accuracy {np.mean(stated > asked):.0%}"
     )
-    print(f"  core-milliseconds per row: {own * 1e3:.2f}; of each regime alone:")
+    print(f"  core-milliseconds per row: {our_seconds * 1e3:.2f}; of each regime alone:")
     for code, regime in enumerate(REGIMES):
         mine = np.flatnonzero(regimes == code)
         if len(mine):
             part = rows._replace(x=rows.x[mine], seed=rows.seed[mine])
             each = by_rows(part, study.settings)[3] * 1e3
             print(f"    {regime:20s} {len(mine):5d} rows {each:8.2f}")
-    some = rows._replace(x=rows.x[:RIVALLED], seed=rows.seed[:RIVALLED])
-    known, off = known[:RIVALLED], off[:RIVALLED]
+    rivalled = rows._replace(x=rows.x[:RIVALLED], seed=rows.seed[:RIVALLED])
+    reference, off = reference[:RIVALLED], off[:RIVALLED]
     print(f"  a life of the first {RIVALLED} rows, to a median error of {100 * goal:g}%:")
-    print(f"    {'accelerated wear':47s} {np.median(off):7.2%} {own * 1e3:10.1f} ms")
+    print(f"    {'accelerated wear':47s} {np.median(off):7.2%} {our_seconds * 1e3:10.1f} ms")
     ways = {"exact": (exact, (0,) * len(WAYS)), "Newmark": (newmark, NEWMARK_STEPS)}
-    ratios = [rival(f"{way}, increments", some, known, goal, own, *ways[way]) for way in ways]
-    what = f"a life of `{name}`, median error {100 * goal:g}%"
+    ratios = [
+        rival(f"{way}, increments", rivalled, reference, goal, our_seconds, *ways[way])
+        for way in ways
+    ]
+    task = f"a life of `{name}`, median error {100 * goal:g}%"
     peers = (f"gaps that grow in increments, {way}" for way in ("exact", "Newmark's method"))
-    return [Figure(what, peer, ratio) for peer, ratio in zip(peers, ratios, strict=True)]
+    return [Figure(task, peer, ratio) for peer, ratio in zip(peers, ratios, strict=True)]
 
 
 if __name__ == "__main__":

@@ -35,30 +35,34 @@ def worlds(folder):
 
 def apart(rows, number):
     """Return the rods of one world, which is the truth, and the rows of all others."""
-    there = rows["world"].values == number
-    return rows.isel(sample=there), rows.isel(sample=~there)
+    in_world = rows["world"].values == number
+    return rows.isel(sample=in_world), rows.isel(sample=~in_world)
 
 
 def campaign(truth, rng):
-    """Return what two outages find on the rods of a world, and when the last one is."""
+    """Return the inspections of the rods of a world in two outages, and the time of the last."""
     lives = truth["first_time_to_depth"].values
     worn = WornDepths(truth["depth"].values, lives)
     median = np.median(lives[:, 2])
     times = 0.4 * median, 0.9 * median
     error = np.log1p(CV**2) ** 0.5
-    found = []
+    inspections = []
     for at in times:
         depth = worn.at(np.full((RODS, 1), at))[:, 0] * np.exp(error * rng.standard_normal(RODS))
         for rod, seen in enumerate(depth):
             if seen < LIMIT:
-                found.append(Inspection(f"{rod}", "depth", InspectionKind.BELOW, at, LIMIT, cv=CV))
+                inspections.append(
+                    Inspection(f"{rod}", "depth", InspectionKind.BELOW, at, LIMIT, cv=CV)
+                )
             elif seen > MOST:
-                found.append(Inspection(f"{rod}", "depth", InspectionKind.ABOVE, at, MOST, cv=CV))
+                inspections.append(
+                    Inspection(f"{rod}", "depth", InspectionKind.ABOVE, at, MOST, cv=CV)
+                )
             else:
-                found.append(
+                inspections.append(
                     Inspection(f"{rod}", "depth", InspectionKind.MEASURED, at, float(seen), cv=CV)
                 )
-    return found, times[-1]
+    return inspections, times[-1]
 
 
 def main():
@@ -67,9 +71,9 @@ def main():
         rows, rng, taken = worlds(folder), np.random.default_rng(1), []
         for number in np.unique(rows["world"].values)[:CAMPAIGNS]:
             truth, others = apart(rows, number)
-            found, _ = campaign(truth, rng)
+            inspections, _ = campaign(truth, rng)
             began = time.process_time()
-            posterior(others, found)
+            posterior(others, inspections)
             taken.append(time.process_time() - began)
     longest = max(taken)
     print(

@@ -145,18 +145,21 @@ def rates():
     """Print what a chunk and a row cost each part of a cluster."""
     for workers, processes in CREWS.items():
         print(f"{workers} workers", flush=True)
-        with tempfile.TemporaryDirectory() as folder, cluster(workers, processes, folder) as there:
-            with Client(there[0], set_as_default=False) as client:
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            cluster(workers, processes, folder) as members,
+        ):
+            with Client(members[0], set_as_default=False) as client:
                 client.wait_for_workers(workers)
-            costs(*there, 20_000, 250, folder)  # imports and first connections
-            found = []
+            costs(*members, 20_000, 250, folder)  # imports and first connections
+            cpu_times = []
             for chunk_rows, rows in CHUNKS.items():
-                cpu, seconds = costs(*there, rows, chunk_rows, folder)
-                found.append(cpu)
+                cpu, seconds = costs(*members, rows, chunk_rows, folder)
+                cpu_times.append(cpu)
                 print(f"  {rows:,} rows, {chunk_rows} a chunk: {seconds:.1f} s", flush=True)
         counts = [(rows / chunk_rows, rows) for chunk_rows, rows in CHUNKS.items()]
         for part, (chunk, row) in zip(
-            ("driver", "scheduler", "workers"), np.linalg.solve(counts, found).T, strict=True
+            ("driver", "scheduler", "workers"), np.linalg.solve(counts, cpu_times).T, strict=True
         ):
             print(f"  {part:10} {chunk * 1e3:7.2f} ms a chunk {row * 1e6:7.2f} us a row")
 

@@ -52,7 +52,7 @@ def cheapest(settings, error, goal):
     raise RuntimeError(f"no setting reaches {goal}")
 
 
-def compare(rivals, error_of, known, goal, unit="", amount=1.0):
+def compare(rivals, error_of, known_rows, goal, unit="", amount=1.0):
     """Print the tools' settings, errors and times, and the ratios of times to the first tool's.
 
     Returns these ratios by tool.
@@ -61,8 +61,8 @@ def compare(rivals, error_of, known, goal, unit="", amount=1.0):
     ----------
     rivals : dict of str to Rival
     error_of : callable
-        ``error_of(results)`` of a tool's first rows, `known` at most.
-    known : int
+        ``error_of(results)`` of a tool's first rows, `known_rows` at most.
+    known_rows : int
         Rows of known results; a tool that is timed on fewer is judged by fewer.
     goal : float
         Largest error.
@@ -71,11 +71,11 @@ def compare(rivals, error_of, known, goal, unit="", amount=1.0):
     amount : float
         Work done in a row, in the unit to which times refer.
     """
-    print(f"  largest error of up to {known} rows at most {goal:.0e}{unit}")
+    print(f"  largest error of up to {known_rows} rows at most {goal:.0e}{unit}")
     chosen = {
         name: cheapest(
             rival.settings,
-            lambda setting, rival=rival: error_of(rival.run(min(known, rival.rows), setting)),
+            lambda setting, rival=rival: error_of(rival.run(min(known_rows, rival.rows), setting)),
             goal,
         )
         for name, rival in rivals.items()

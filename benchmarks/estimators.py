@@ -25,13 +25,13 @@ G_WEIGHTS = np.array([0.0, 1.0, 4.5, 99.0])
 class Case(NamedTuple):
     """A function of four uniform inputs, with its indices."""
 
-    of: object
+    function: object
     first: np.ndarray
     total: np.ndarray
 
 
-def _additive(of, spread=1.0):
-    return Case(lambda u: spread * (of(u) @ np.sqrt(SHARES)), SHARES, SHARES)
+def _additive(transform, spread=1.0):
+    return Case(lambda u: spread * (transform(u) @ np.sqrt(SHARES)), SHARES, SHARES)
 
 
 def _uniform(u):
@@ -41,19 +41,21 @@ def _uniform(u):
 def _lognormal(sigma):
     parts, everything = np.expm1(sigma**2 * SHARES), np.expm1(sigma**2)
     rest = np.expm1(sigma**2 * (1 - SHARES))
-    of = lambda u: np.exp(sigma * (normal(u) @ np.sqrt(SHARES)))  # noqa: E731
-    return Case(of, parts / everything, 1 - rest / everything)
+    function = lambda u: np.exp(sigma * (normal(u) @ np.sqrt(SHARES)))  # noqa: E731
+    return Case(function, parts / everything, 1 - rest / everything)
 
 
-def _product(factors, of=_uniform):
+def _product(factors, transform=_uniform):
     """Return a product of 1 + factor times a function of each input, of mean 0 and variance 1."""
     everything = np.prod(1 + factors**2) - 1
     total = factors**2 * (everything + 1) / (1 + factors**2) / everything
-    return Case(lambda u: np.prod(1 + factors * of(u), axis=-1), factors**2 / everything, total)
+    return Case(
+        lambda u: np.prod(1 + factors * transform(u), axis=-1), factors**2 / everything, total
+    )
 
 
 def _far(case):
-    return case._replace(of=lambda u: 1e3 + case.of(u))
+    return case._replace(function=lambda u: 1e3 + case.function(u))
 
 
 CASES = {
@@ -100,20 +102,20 @@ def sample_of(case, samples, seed):
     """Return the rows of a design, with the output of a case."""
     sizes = {"seed": seed, "replicates": REPLICATES, "samples": samples}
     u = DESIGNS["saltelli"].unit_rows(d=D, second_order=False, start=0, stop=samples, **sizes)
-    y = np.moveaxis(case.of(u), 1, 0)
+    y = np.moveaxis(case.function(u), 1, 0)
     groups = np.arange(y.size).reshape(y.shape)
     return DesignSample(y.ravel(), {}, groups, ("A", *(f"AB_{name}" for name in NAMES), "B"))
 
 
 def estimates(blocks, y):
-    """Return what every estimator gives: kind -> "name, estimator" -> index."""
+    """Return the estimates: kind -> "name, estimator" -> index."""
     block = dict(zip(blocks, y.T, strict=True))
     a, b = block["A"], block["B"]
     return {
         kind: {
-            f"{name}, {by}": of(a, block[f"AB_{name}"], b)
+            f"{name}, {by}": estimator(a, block[f"AB_{name}"], b)
             for name in NAMES
-            for by, of in estimators.items()
+            for by, estimator in estimators.items()
         }
         for kind, estimators in ESTIMATORS.items()
     }
@@ -121,13 +123,13 @@ def estimates(blocks, y):
 
 def measured(case, samples, repetitions):
     """Return kind -> "name, estimator" -> value and interval of each repetition."""
-    found = {kind: {} for kind in ESTIMATORS}
+    numbers = {kind: {} for kind in ESTIMATORS}
     for seed in range(repetitions):
         values = sobol_indices(sample_of(case, samples, seed), estimates).values
-        for kind, of in values.items():
-            for label, one in of.items():
-                found[kind].setdefault(label, []).append(one.numbers)
-    return found
+        for kind, by_label in values.items():
+            for label, estimate in by_label.items():
+                numbers[kind].setdefault(label, []).append(estimate.numbers)
+    return numbers
 
 
 def main():
@@ -143,19 +145,19 @@ def main():
         print(f"\n## {label}\n", flush=True)
         print("| index | truth | estimator | bias | error | width | covered |")
         print("| --- | --- | --- | --- | --- | --- | --- |")
-        for kind, of in measured(case, asked.samples, asked.repetitions).items():
+        for kind, by_name in measured(case, asked.samples, asked.repetitions).items():
             truth = dict(zip(NAMES, case.first if kind is S1 else case.total, strict=True))
-            for named, numbers in of.items():
+            for named, numbers in by_name.items():
                 name, _, by = named.partition(", ")
                 print(_line(f"{kind.key} {name}", truth[name], by, np.array(numbers)), flush=True)
 
 
 def _line(label, truth, by, numbers):
     value, low, high = numbers.T
-    known = np.isfinite(low)
+    finite = np.isfinite(low)
     bias, error = (value - truth).mean(), np.sqrt(((value - truth) ** 2).mean())
-    width = np.median((high - low)[known]) if known.any() else np.nan
-    covered = ((low <= truth) & (truth <= high))[known].mean() if known.any() else np.nan
+    width = np.median((high - low)[finite]) if finite.any() else np.nan
+    covered = ((low <= truth) & (truth <= high))[finite].mean() if finite.any() else np.nan
     cells = (label, f"{truth:.3f}", by, f"{bias:+.4f}", f"{error:.4f}", f"{width:.4f}")
     return f"| {' | '.join(cells)} | {covered:.1%} |"
 

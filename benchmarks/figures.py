@@ -52,13 +52,13 @@ def keep(benchmark: str, figures: Sequence[Figure]) -> None:
 
 
 def kept() -> list[Kept]:
-    """Return what is kept, by name of the benchmark."""
-    found = []
+    """Return the figures kept of each benchmark, by its name."""
+    records = []
     for path in sorted(FOLDER.glob("*.json")):
         data = json.loads(path.read_text())
         figures = [Figure(**figure) for figure in data["figures"]]
-        found.append(Kept(path.stem, data["machine"], figures))
-    return found
+        records.append(Kept(path.stem, data["machine"], figures))
+    return records
 
 
 def machine() -> str:

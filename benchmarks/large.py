@@ -72,7 +72,7 @@ def main(chosen):
     with tempfile.TemporaryDirectory() as folder:
         files = {}
         for title, (name, arguments, most) in COMMANDS.items():
-            if chosen and not any(title.startswith(one) for one in chosen):
+            if chosen and not any(title.startswith(prefix) for prefix in chosen):
                 continue
             if name not in files:
                 files[name] = _written(Path(folder), name)

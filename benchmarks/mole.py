@@ -126,11 +126,11 @@ PEERS = {
 
 def settled_motion(frequency):
     stretch = Stretch(frequency)
-    known = stretch.by_exact(KNOWN, 1e-13)
-    scales = np.hstack([np.abs(known[:, :3]), np.tile(SCALES, (KNOWN, 1))])
+    reference = stretch.by_exact(KNOWN, 1e-13)
+    scales = np.hstack([np.abs(reference[:, :3]), np.tile(SCALES, (KNOWN, 1))])
 
     def error_of(results):
-        return (np.abs(results - known[: len(results)]) / scales[: len(results)]).max()
+        return (np.abs(results - reference[: len(results)]) / scales[: len(results)]).max()
 
     tolerances = 10.0 ** -np.arange(3, 13, 0.5)
     rivals = {
@@ -145,12 +145,12 @@ def settled_motion(frequency):
     steps = [round(100 * 1.5**k) for k in range(20)]
     jumps = {"Runge-Kutta, signum, steps": Rival(stretch.by_runge_kutta, steps, KNOWN)}
     print(f" {frequency:g} Hz")
-    found = []
+    figures = []
     for tools, goal in ((rivals | jumps, 1e-3), (rivals, 1e-6)):
-        what = f"settled motion of the mole at {frequency:g} Hz, to {goal:.0e}"
+        task = f"settled motion of the mole at {frequency:g} Hz, to {goal:.0e}"
         ratios = compare(tools, error_of, KNOWN, goal, amount=DURATION)
-        found += [Figure(what, PEERS[name], ratios[name]) for name in ratios if name in PEERS]
-    return found
+        figures += [Figure(task, PEERS[name], ratios[name]) for name in ratios if name in PEERS]
+    return figures
 
 
 def study():

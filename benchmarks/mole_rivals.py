@@ -46,11 +46,11 @@ def by_scipy(table, record, halves, tolerance):
     """Return the states, shape (10, n), of n machines after some halves of control periods."""
     end = np.empty((modes.STATE, len(table)))
     for row in range(len(table)):
-        some = table[row : row + 1]
-        half_period = 0.5 * mole_of(some, 0).control_period
+        machine = table[row : row + 1]
+        half_period = 0.5 * mole_of(machine, 0).control_period
         state, constants = np.empty((modes.STATE, 1)), np.empty((modes.CONSTANTS, 1))
         parts = state, constants, np.empty((modes.MODE, 1))
-        modes.begin(some, 0, record[row], *parts)
+        modes.begin(machine, 0, record[row], *parts)
         for _ in range(halves):
             time = 0.0
             while time < half_period:
@@ -68,8 +68,8 @@ def by_scipy(table, record, halves, tolerance):
                 time, state[:, 0] = run.t[-1], run.y[:, -1]
                 for which, times in enumerate(run.t_events):
                     if len(times):
-                        modes.happen(which, some, 0, *parts)
-            modes.turn_relay(some, 0, *parts)
+                        modes.happen(which, machine, 0, *parts)
+            modes.turn_relay(machine, 0, *parts)
         end[:, row] = state[:, 0]
     return end
 

@@ -48,8 +48,8 @@ class Taylor:
         end = np.empty((modes.STATE, len(table)))
         batch = len(self.table)
         for first in range(0, len(table), batch):
-            some = slice(first, first + batch)
-            self.table[:] = table[some]
+            chunk = slice(first, first + batch)
+            self.table[:] = table[chunk]
             parts = self.state, self.constants, self.mode
             for lane in range(batch):
                 modes.begin(self.table, lane, record[first + lane], *parts)
@@ -59,5 +59,5 @@ class Taylor:
                 self.integrator.propagate_until(half * half_period)
                 for lane in range(batch):
                     modes.turn_relay(self.table, lane, *parts)
-            end[:, some] = self.state
+            end[:, chunk] = self.state
         return end

@@ -52,11 +52,16 @@ def bare(folder):
     """Return the time of a row of subprocesses that write and read the same files."""
     began = time.perf_counter()
     for value in np.random.default_rng(0).random(ROWS).tolist():
-        with tempfile.TemporaryDirectory(dir=folder) as own:
-            Path(own, "input.txt").write_text(f"{value!r}\n")
-            with Path(own, "stdout.txt").open("wb") as out, Path(own, "stderr.txt").open("wb") as e:
-                subprocess.run([folder / "trivial"], cwd=own, stdout=out, stderr=e, check=True)
-            float(Path(own, "out.txt").read_text().split()[-1])
+        with tempfile.TemporaryDirectory(dir=folder) as row_folder:
+            Path(row_folder, "input.txt").write_text(f"{value!r}\n")
+            with (
+                Path(row_folder, "stdout.txt").open("wb") as out,
+                Path(row_folder, "stderr.txt").open("wb") as e,
+            ):
+                subprocess.run(
+                    [folder / "trivial"], cwd=row_folder, stdout=out, stderr=e, check=True
+                )
+            float(Path(row_folder, "out.txt").read_text().split()[-1])
     return (time.perf_counter() - began) / ROWS
 
 
@@ -88,15 +93,21 @@ def main():
             (folder / file).write_text(text)
         (folder / "trivial").chmod(0o755)
         model = program_of(folder / "m.toml")
-        own, least = by_turns(lambda: ours(model), lambda: bare(folder))
-        program = own / least
-        print(f"program            {own * 1e3:8.2f} ms a row {least * 1e3:8.2f} ms {program:6.2f}")
+        our_seconds, least = by_turns(lambda: ours(model), lambda: bare(folder))
+        program = our_seconds / least
+        print(
+            f"program            {our_seconds * 1e3:8.2f} ms a row"
+            f" {least * 1e3:8.2f} ms {program:6.2f}"
+        )
         with TheirServer(folder, "return [[parameters[0][0]]]", "trivial") as other:
             model = server_model(other.address)
             client = umbridge.HTTPModel(other.base, "trivial")
-            own, least = by_turns(lambda: ours(model), lambda: theirs(client))
-        server = own / least
-        print(f"UM-Bridge server   {own * 1e3:8.2f} ms a row {least * 1e3:8.2f} ms {server:6.2f}")
+            our_seconds, least = by_turns(lambda: ours(model), lambda: theirs(client))
+        server = our_seconds / least
+        print(
+            f"UM-Bridge server   {our_seconds * 1e3:8.2f} ms a row"
+            f" {least * 1e3:8.2f} ms {server:6.2f}"
+        )
     keep(
         "outside",
         [

@@ -55,15 +55,15 @@ def result():
     return ds
 
 
-def moved(browser, of, handle, steps):
+def moved(browser, selector, handle, steps):
     """Return the time from the move of a handle to the page drawn [ms]."""
-    found = browser.do(
+    reply = browser.do(
         "Runtime.evaluate",
-        expression=MOVE.format(of, handle, steps),
+        expression=MOVE.format(selector, handle, steps),
         awaitPromise=True,
         returnByValue=True,
     )
-    return found["result"]["value"]
+    return reply["result"]["value"]
 
 
 def main():
@@ -85,12 +85,12 @@ def main():
                 browser.painted()
                 times.append(time.perf_counter() - began)
             print(f"opened and drawn in {np.median(times):.2f} s (best {min(times):.2f} s)")
-            for name, what, first in (
+            for name, action, first in (
                 ("#explorer", "a brush", 20),
                 ("#tolerances", "a tolerance", 0.5),
             ):
                 moves = [moved(browser, name, 0, first * (1 + i / 20)) for i in range(REPEAT)]
-                print(f"{what} in {np.median(moves):.0f} ms (best {min(moves):.0f} ms)")
+                print(f"{action} in {np.median(moves):.0f} ms (best {min(moves):.0f} ms)")
 
 
 if __name__ == "__main__":

@@ -28,13 +28,13 @@ def timed(study, samples, workers, output):
 
 def main(study=STUDY):
     """Print the times of a study, and their ratio to those of one worker."""
-    own = load_study(study).design.samples
+    study_samples = load_study(study).design.samples
     figures = []
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "result.nc"
         timed(study, 256, WORKERS[-1], output)  # compiles
         for times in TIMES:
-            samples = own * times
+            samples = study_samples * times
             turns = [[timed(study, samples, n, output) for n in WORKERS] for _ in range(REPEAT)]
             best = [min(own_turns) for own_turns in zip(*turns, strict=True)]
             print(f"{study}, {samples:,} samples, the whole command, best of {REPEAT}")

@@ -37,22 +37,22 @@ sigma = 0.5
 def commands(folder: Path) -> dict[str, tuple[str, ...]]:
     """Return the commands by name; what they read is made here."""
     uq = (sys.executable, "-m", "uq")
-    found = {
+    by_name = {
         f"simulate {model}": (*uq, "simulate", model) for model in ("beam", "vibrator", "mole")
     }
-    found["simulate ishigami"] = (*uq, "simulate", "ishigami")
+    by_name["simulate ishigami"] = (*uq, "simulate", "ishigami")
     for name, samples in STUDIES.items():
         result = str(folder / f"{name}.nc")
         size = ("--samples", samples, "--quiet", "-o", result)
         subprocess.run((*uq, "run", f"studies/{name}.toml", *size), check=True)
         for verb in ("summary", "sensitivity"):
-            found[f"{verb} {name}"] = (*uq, verb, result)
+            by_name[f"{verb} {name}"] = (*uq, verb, result)
     study = folder / "few.toml"
     study.write_text(FEW_ROWS)
     for workers in ("0", "2"):
         options = ("-o", str(folder / "few.nc"), "--fresh", "--workers", workers)
-        found[f"run, {workers} workers"] = (*uq, "run", str(study), *options)
-    return found
+        by_name[f"run, {workers} workers"] = (*uq, "run", str(study), *options)
+    return by_name
 
 
 def main() -> None:

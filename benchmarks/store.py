@@ -89,9 +89,9 @@ def memory(study):
 
 def _memory(process):
     total = 0
-    for one in (process, *process.children(recursive=True)):
+    for member in (process, *process.children(recursive=True)):
         with contextlib.suppress(psutil.NoSuchProcess):  # it ended just now
-            total += one.memory_info().rss
+            total += member.memory_info().rss
     return total
 
 

@@ -29,30 +29,33 @@ def row(figure: Figure) -> str:
     return f"| {figure.what} | {figure.peer} | {ratio} {words} |"
 
 
-def page(found: Sequence[Kept]) -> str:
+def page(records: Sequence[Kept]) -> str:
     """Return the page."""
     lines = [_INTRODUCTION]
-    for one in found:
-        lines += [f"## `python -m benchmarks.{one.benchmark}`", "", f"On {one.machine}:", ""]
-        lines += [*_HEAD, *map(row, one.figures), ""]
+    for record in records:
+        lines += [f"## `python -m benchmarks.{record.benchmark}`", "", f"On {record.machine}:", ""]
+        lines += [*_HEAD, *map(row, record.figures), ""]
     return "\n".join(lines)
 
 
-def marked(readme: str, found: Sequence[Kept]) -> str:
+def marked(readme: str, records: Sequence[Kept]) -> str:
     """Return the README with the figures that it shows, between its marks."""
     shown = [
-        next((figure for figure in one.figures if IN_README[one.benchmark] in figure.peer), None)
-        for one in found
-        if one.benchmark in IN_README
+        next(
+            (figure for figure in record.figures if IN_README[record.benchmark] in figure.peer),
+            None,
+        )
+        for record in records
+        if record.benchmark in IN_README
     ]
     block = "\n".join([BEGIN, "", *_HEAD, *(row(figure) for figure in shown if figure), "", END])
     return re.sub(f"{BEGIN}.*{END}", lambda _: block, readme, flags=re.DOTALL)
 
 
 def main() -> None:
-    found = kept()
-    PAGE.write_text(page(found))
-    README.write_text(marked(README.read_text(), found))
+    records = kept()
+    PAGE.write_text(page(records))
+    README.write_text(marked(README.read_text(), records))
     print(f"written: {PAGE.relative_to(HOUSE)}, {README.relative_to(HOUSE)}")
 
 

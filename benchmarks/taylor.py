@@ -22,11 +22,11 @@ def _constants(m):
         )
         x, y = getattr(m, f"shaft_x_{i}"), getattr(m, f"shaft_y_{i}")
         f, slip = u * u * mobility, getattr(m, f"slip_{i}")
-        own = {"u": u, "mobility": mobility, "r": u * mobility, "loss": loss, "x": x, "y": y}
-        own |= {"f": f, "fx": f * x, "fy": f * y, "fxx": f * x * x, "fyy": f * y * y}
-        own |= {"fxx_yy": f * (y * y - x * x), "fxy2": 2 * f * x * y, "slip2": slip * slip}
-        own |= {"torque": getattr(m, f"torque_{i}"), "top": getattr(m, f"synchronous_speed_{i}")}
-        c |= {name + i: value for name, value in own.items()}
+        shaft = {"u": u, "mobility": mobility, "r": u * mobility, "loss": loss, "x": x, "y": y}
+        shaft |= {"f": f, "fx": f * x, "fy": f * y, "fxx": f * x * x, "fyy": f * y * y}
+        shaft |= {"fxx_yy": f * (y * y - x * x), "fxy2": 2 * f * x * y, "slip2": slip * slip}
+        shaft |= {"torque": getattr(m, f"torque_{i}"), "top": getattr(m, f"synchronous_speed_{i}")}
+        c |= {name + i: value for name, value in shaft.items()}
     for kind in ("stiffness", "damping"):
         along_x, along_y = getattr(m, f"{kind}_x"), getattr(m, f"{kind}_y")
         c |= {f"{kind}_x": along_x, f"{kind}_y": along_y}
@@ -101,10 +101,10 @@ class Taylor:
         """Return the states, shape (n, 10), of n machines (a multiple of 8) after some time."""
         end, ta = np.empty_like(state), self.integrator
         for first in range(0, len(state), BATCH):
-            some = slice(first, first + BATCH)
+            batch = slice(first, first + BATCH)
             ta.set_time(0.0)
-            ta.state[:] = state[some].T
-            ta.pars[:] = self.parameters[:, some]
+            ta.state[:] = state[batch].T
+            ta.pars[:] = self.parameters[:, batch]
             ta.propagate_until(duration)
-            end[some] = ta.state.T
+            end[batch] = ta.state.T
         return end

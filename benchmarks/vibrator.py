@@ -94,10 +94,14 @@ def by_lanes(rows, steps):
     return state
 
 
-def beside(rivals, known, goal):
+def beside(rivals, reference, goal):
     """Compare tools by the largest error of the angles [rad] of the first rows."""
     return compare(
-        rivals, lambda angles: np.abs(angles - known[: len(angles)]).max(), len(known), goal, " rad"
+        rivals,
+        lambda angles: np.abs(angles - reference[: len(angles)]).max(),
+        len(reference),
+        goal,
+        " rad",
     )
 
 
@@ -108,14 +112,14 @@ PEERS = {
 }
 
 
-def figures(what, ratios):
+def figures(task, ratios):
     """Return the figures of the first tool against its peers."""
-    return [Figure(what, PEERS[name], ratio) for name, ratio in ratios.items() if name in PEERS]
+    return [Figure(task, PEERS[name], ratio) for name, ratio in ratios.items() if name in PEERS]
 
 
 def run_ups():
     print(f"Run-up of {DURATION:g} s: setting, error, time per row, ratio")
-    known = angle_of(by_scipy(KNOWN, 1e-12))
+    reference = angle_of(by_scipy(KNOWN, 1e-12))
     tolerances = 10.0 ** -np.arange(2, 13, 0.5)
     rivals = {
         "lanes, steps": Rival(
@@ -145,11 +149,11 @@ def run_ups():
             return angle_of(made[tolerance].advance(START[:n], DURATION))
 
         rivals["heyoka, batches of 8, tolerance"] = Rival(by_taylor, tolerances, ROWS)
-    found = []
+    collected = []
     for goal in (1e-4, 1e-8):
-        what = f"run-up of the vibrator, angle to {goal:.0e} rad"
-        found += figures(what, beside(rivals, known, goal))
-    return found
+        task = f"run-up of the vibrator, angle to {goal:.0e} rad"
+        collected += figures(task, beside(rivals, reference, goal))
+    return collected
 
 
 def steady_states():
@@ -158,9 +162,12 @@ def steady_states():
     ones = [
         prepare(Params._make(float(field[i]) for field in P), "small", budget) for i in range(KNOWN)
     ]
-    guesses = [orbit.proposal(one) for one in ones]
-    orbits = [orbit.find_orbit(one, guess, 1e-12) for one, guess in zip(ones, guesses, strict=True)]
-    known = np.array([found.measures.disphasing for found in orbits])
+    guesses = [orbit.proposal(machine) for machine in ones]
+    orbits = [
+        orbit.find_orbit(machine, guess, 1e-12)
+        for machine, guess in zip(ones, guesses, strict=True)
+    ]
+    reference = np.array([solution.measures.disphasing for solution in orbits])
 
     def by_shooting(n, steps):
         return np.array(
@@ -180,14 +187,14 @@ def steady_states():
             by_shooting, [round(16 * 1.1**k) for k in range(60)], KNOWN
         ),
     }
-    what = "steady state of the vibrator, angle to 1e-08 rad"
-    return figures(what, beside(rivals, known, 1e-8))
+    task = "steady state of the vibrator, angle to 1e-08 rad"
+    return figures(task, beside(rivals, reference, 1e-8))
 
 
 def study():
     tolerances = load_study(STUDY)
-    some = row_block(tolerances, 0, ROWS)
-    (outputs, _), seconds = clock(lambda: MODEL.batch(some.x, some.seed, tolerances.settings))
+    rows = row_block(tolerances, 0, ROWS)
+    (outputs, _), seconds = clock(lambda: MODEL.batch(rows.x, rows.seed, tolerances.settings))
     print(f"Shipped study: {ROWS / seconds:.0f} rows per second and core")
     pair = np.stack([outputs["disphasing_angle"], outputs["theory_disphasing_angle"]])
     pair = pair[:, np.isfinite(pair).all(axis=0)]

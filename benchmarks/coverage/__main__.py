@@ -43,9 +43,9 @@ def main():
         _file(name).write_text(json.dumps(kept, indent=1))
     done = [name for name in PARTS if _file(name).exists()]
     counted = [json.loads(_file(name).read_text()) for name in done]
-    lines = [Line(**line) for one in counted for line in one["lines"]]
+    lines = [Line(**line) for record in counted for line in record["lines"]]
     missing = [name for name in PARTS if name not in done]
-    PAGE.write_text(page(lines, sum(one["seconds"] for one in counted), missing))
+    PAGE.write_text(page(lines, sum(record["seconds"] for record in counted), missing))
     print(f"written: {PAGE}")
     off = [shown(line) for line in lines if line.unexplained]
     if off:

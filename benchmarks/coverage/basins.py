@@ -84,7 +84,7 @@ def exponents(repetitions):
 def _of(shape, repetitions):
     rows, d = shape
     tally = Tally(f"basins, {rows} independent rows of {d} inputs")
-    for basins, known in KNOWN.items():
-        for found in estimates(basins, shape, repetitions):
-            tally.estimate(f"uncertainty exponent, {basins.__name__}", known(d), found)
+    for basins, exponent in KNOWN.items():
+        for estimate in estimates(basins, shape, repetitions):
+            tally.estimate(f"uncertainty exponent, {basins.__name__}", exponent(d), estimate)
     return tally.lines()

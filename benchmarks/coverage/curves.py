@@ -22,7 +22,7 @@ class _Infant:
 
     def rvs(self, size, random_state):
         soon = random_state.random(size) < EARLY
-        parts = (one.rvs(size, random_state=random_state) for one in (self.early, self.late))
+        parts = (law.rvs(size, random_state=random_state) for law in (self.early, self.late))
         return np.where(soon, *parts)
 
     def ppf(self, p):
@@ -46,8 +46,8 @@ def wrong_fits(repetitions):
                 if not fit.refused:
                     for label, p in B_LIVES.items():
                         marked = ", extrapolated" * (label in fit.extrapolated)
-                        found = fit.b_lives[label]
-                        tally.estimate(f"{label} of {family}{marked}", law.ppf(p), found)
+                        estimate = fit.b_lives[label]
+                        tally.estimate(f"{label} of {family}{marked}", law.ppf(p), estimate)
         lines += tally.lines()
     return lines
 
@@ -129,8 +129,8 @@ def _count_at(tally, curve, times):
             continue
         low, high = (float(curve[name][max(place, 0)]) for name in ("low", "high"))
         held = place < 0 or np.isnan(low) or low <= WEIBULL.sf(time) <= high
-        what = f"S(t), {share:.0%} of ends seen by t, held or before the first end"
-        tally.add(what, 1.0, 1.0, 2.0 if held else 0.0)
+        quantity = f"S(t), {share:.0%} of ends seen by t, held or before the first end"
+        tally.add(quantity, 1.0, 1.0, 2.0 if held else 0.0)
 
 
 FEW_ENDS = "few ends: counts are discrete; without any, no band"
@@ -139,10 +139,10 @@ FEW_AT_RISK = "few ends or few rows at risk: conservative beta products"
 
 def _holds(curve, truth):
     low, high, of_time = (curve[name].values for name in ("band_low", "band_high", "time"))
-    known, true = np.isfinite(low), truth(of_time)
+    finite, true = np.isfinite(low), truth(of_time)
     at = (low <= true) & (true <= high)
     before_next = (low[:-1] <= true[1:]) & (true[1:] <= high[:-1])
-    return bool(at[known].all() and before_next[known[:-1] & known[1:]].all())
+    return bool(at[finite].all() and before_next[finite[:-1] & finite[1:]].all())
 
 
 LAW_ALONE = (

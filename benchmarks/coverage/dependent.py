@@ -51,7 +51,7 @@ class Inputs(NamedTuple):
 def _batch(x, seed, settings):
     x1, x2, x3, _ = np.ascontiguousarray(x.T)
     weighted = x1 + x2 + 2 * x3
-    found = {
+    outputs = {
         "weighted": weighted,
         "interacting": weighted + x1 * x3,
         "mild": np.exp(MILD * weighted),
@@ -59,7 +59,7 @@ def _batch(x, seed, settings):
         "sum": x1 + x2 + x3,
         "waves": np.sin(x1) * (1 + 0.1 * x3**4) + 7 * np.sin(x2) ** 2,
     }
-    return found, np.zeros(len(x), np.int8)
+    return outputs, np.zeros(len(x), np.int8)
 
 
 SUMS = Model(
@@ -84,9 +84,9 @@ NAME = "benchmarks.coverage.dependent:SUMS"
 
 def ranks(correlations):
     """Return the rank correlations of normal variables with some correlations."""
-    found = 6 / np.pi * np.arcsin(np.asarray(correlations) / 2)
-    np.fill_diagonal(found, 1.0)
-    return found.tolist()
+    rank_correlations = 6 / np.pi * np.arcsin(np.asarray(correlations) / 2)
+    np.fill_diagonal(rank_correlations, 1.0)
+    return rank_correlations.tolist()
 
 
 def study(output, laws, correlations, samples, method="shapley"):
@@ -176,12 +176,12 @@ def of_residuals(ds, output):
     mean = parts.mean(axis=0)
     shares = mean / mean.sum()
     errors = (parts - mean - shares * (parts - mean).sum(axis=1, keepdims=True)) / mean.sum()
-    ends = [scatter_interval(*one) for one in zip(shares, errors.T, strict=True)]
+    ends = [scatter_interval(*pair) for pair in zip(shares, errors.T, strict=True)]
     return dict(zip(sample.inputs, ends, strict=True))
 
 
 def title(words, rows):
-    """Return what a table of some case is called."""
+    """Return the title of the table of a case."""
     return f"dependent inputs, {words}, shapley, {PATHS} paths of {rows} rows"
 
 
@@ -190,8 +190,8 @@ def shapley(repetitions, cases=CASES):
     lines = []
     for words, case in cases.items():
         tally = Tally(title(words, len(case.laws) + 1), {"shapley": case.reason})
-        of = study(case.output, case.laws, case.correlations, PATHS)
-        for ds in repeated(of, repetitions):
+        case_study = study(case.output, case.laws, case.correlations, PATHS)
+        for ds in repeated(case_study, repetitions):
             ours = indices_of(ds, output=[case.output])[case.output].get("shapley", REFUSED)
             alone = of_paths_alone(ds, case.output)
             unraised = of_residuals(ds, case.output) if case.reason == FAR else {}

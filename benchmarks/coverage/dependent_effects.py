@@ -24,21 +24,21 @@ def shares(value, d):
 
     L. S. Shapley, "A value for n-person games", Contributions to the Theory of Games 2 (1953).
     """
-    found = np.zeros(d)
+    effects = np.zeros(d)
     for i in range(d):
         others = [j for j in range(d) if j != i]
         for k in range(d):
             weight = factorial(k) * factorial(d - k - 1) / factorial(d)
-            for some in combinations(others, k):
-                found[i] += weight * (value((*some, i)) - value(some))
-    return found / value(range(d))
+            for subset in combinations(others, k):
+                effects[i] += weight * (value((*subset, i)) - value(subset))
+    return effects / value(range(d))
 
 
 def matrix(r):
     """Return the correlations of the normal inputs."""
-    found = np.eye(4)
-    found[1, 2] = found[2, 1] = found[0, 3] = found[3, 0] = r
-    return found
+    correlations = np.eye(4)
+    correlations[1, 2] = correlations[2, 1] = correlations[0, 3] = correlations[3, 0] = r
+    return correlations
 
 
 def of_normal(r, interaction=0.0):
@@ -80,7 +80,7 @@ def of_exponential(r, degrees=60):
         squares.append((weight @ (x * now)) ** 2)
 
     def variance(q):
-        return sum(one * WEIGHTS @ q ** (n + 1) @ WEIGHTS for n, one in enumerate(squares))
+        return sum(square * WEIGHTS @ q ** (n + 1) @ WEIGHTS for n, square in enumerate(squares))
 
     return _of_explained(matrix(r), variance)
 
@@ -88,9 +88,13 @@ def of_exponential(r, degrees=60):
 def _of_explained(c, variance):
     """Return the effects where some inputs u explain a variance that C_u C_uu^-1 C_u' decides."""
 
-    def explained(some):
-        some = list(some)
-        return variance(c[:, some] @ np.linalg.solve(c[np.ix_(some, some)], c[some])) if some else 0
+    def explained(subset):
+        subset = list(subset)
+        return (
+            variance(c[:, subset] @ np.linalg.solve(c[np.ix_(subset, subset)], c[subset]))
+            if subset
+            else 0
+        )
 
     return dict(zip(NAMES, shares(explained, 4).tolist(), strict=True))
 
@@ -110,7 +114,7 @@ def of_signs(points=1201):
     for a, b in signs:
         law = both if a == b else stats.multivariate_normal(cov=_mirrored(rest / np.outer(sd, sd)))
         given[a, b] = law.cdf(np.stack([a * slopes[0] * z / sd[0], b * slopes[1] * z / sd[1]], 1))
-    joint = np.stack([given[one] * density for one in signs])  # (4, points)
+    joint = np.stack([given[sign] * density for sign in signs])  # (4, points)
     y = np.array([a + b for a, b in signs])[:, None] + z
     cells = {
         (): np.zeros((4, points), int),
@@ -119,13 +123,13 @@ def of_signs(points=1201):
         (0, 1): np.array([[2 * a + b] * points for a, b in signs]),
     }
 
-    def explained(some):
-        some = tuple(sorted(some))
-        cell = cells[tuple(i for i in some if i < 2)] * 10_000
-        cell = cell + np.arange(points) if 2 in some else cell
+    def explained(subset):
+        subset = tuple(sorted(subset))
+        cell = cells[tuple(i for i in subset if i < 2)] * 10_000
+        cell = cell + np.arange(points) if 2 in subset else cell
         _, place = np.unique(cell, return_inverse=True)
         weight, total = (np.bincount(place.ravel(), w.ravel()) for w in (joint, joint * y))
-        weight, total = (one[weight > 0] / joint.sum() for one in (weight, total))
+        weight, total = (sums[weight > 0] / joint.sum() for sums in (weight, total))
         return float((total**2 / weight).sum() - total.sum() ** 2)
 
     return dict(zip(NAMES[:3], shares(explained, 3).tolist(), strict=True))
@@ -133,9 +137,9 @@ def of_signs(points=1201):
 
 def among_waves(r):
     """Return the correlations of the normal variables behind the inputs of Ishigami's function."""
-    found = np.eye(3)
-    found[0, 2] = found[2, 0] = r
-    return found
+    correlations = np.eye(3)
+    correlations[0, 2] = correlations[2, 0] = r
+    return correlations
 
 
 def of_waves(r, points=1601):
@@ -153,14 +157,14 @@ def of_waves(r, points=1601):
     given = [(centred.sum(axis=i) ** 2 / weight.sum(axis=i)).sum() for i in (1, 0)]
     whole = (centred**2 / weight).sum()
 
-    def explained(some):
+    def explained(subset):
         of_both = {(): 0.0, (0,): given[0], (2,): given[1], (0, 2): whole}
-        return of_both[tuple(sorted(set(some) - {1}))] + 49 / 8 * (1 in some)
+        return of_both[tuple(sorted(set(subset) - {1}))] + 49 / 8 * (1 in subset)
 
     return dict(zip(NAMES[:3], shares(explained, 3).tolist(), strict=True))
 
 
 def _mirrored(matrix):
-    found = matrix.copy()
-    found[0, 1] = found[1, 0] = -matrix[0, 1]
-    return found
+    mirrored = matrix.copy()
+    mirrored[0, 1] = mirrored[1, 0] = -matrix[0, 1]
+    return mirrored

@@ -30,16 +30,16 @@ def differences(repetitions):
         wide, narrow = _studies(*design)
         for seed in range(repetitions):
             pair = computed(with_seed(wide, seed)), computed(with_seed(narrow, seed + apart))
-            found = comparison_json(comparison(*pair))["outputs"]["y"]
-            entries = {f"quantile {p}": found["quantiles"][p] for p in QUANTILES} | {
-                "sd": found["sd"],
-                f"P(> {THRESHOLD})": found["thresholds"][str(THRESHOLD)]["above"],
+            compared = comparison_json(comparison(*pair))["outputs"]["y"]
+            entries = {f"quantile {p}": compared["quantiles"][p] for p in QUANTILES} | {
+                "sd": compared["sd"],
+                f"P(> {THRESHOLD})": compared["thresholds"][str(THRESHOLD)]["above"],
             }
             if design[0] != "sobol":  # whose points have this mean to rounding: nothing to count
-                entries["mean"] = found["mean"]
+                entries["mean"] = compared["mean"]
             for name, entry in entries.items():
                 tally.entry(f"difference of {name}", truth[name], entry["difference"])
-            tally.entry("ratio of sd", truth["ratio"], found["sd"]["ratio"])
+            tally.entry("ratio of sd", truth["ratio"], compared["sd"]["ratio"])
         lines += tally.lines()
     return lines
 
@@ -54,14 +54,14 @@ def _studies(*design):
 @cache
 def _truth():
     """Return the differences, from points that integrate shares to 1e-5."""
-    found = []
+    statistics = []
     for study in _studies("sobol", 2**18):
         y = computed(study)["y"].values
-        found.append(
+        statistics.append(
             {f"quantile {p}": np.quantile(y, float(p)) for p in QUANTILES}
             | {"mean": y.mean(), "sd": y.std(), f"P(> {THRESHOLD})": np.mean(y > THRESHOLD)}
         )
-    wide, narrow = found
+    wide, narrow = statistics
     return {name: narrow[name] - wide[name] for name in wide} | {"ratio": narrow["sd"] / wide["sd"]}
 
 

@@ -45,9 +45,9 @@ def _count(tally, truth, normal, replicate, rng):
     logs = dict(zip(SIGMAS, (normal * [*SIGMAS.values()]).T, strict=True))
     noise = 0.2 * np.exp(2 * logs["x"]) * rng.normal(size=len(normal))
     y = -2 * logs["x"] + CURVED * logs["x"] ** 2 + logs["z"] + noise
-    found = effects(y, {name: np.exp(one) for name, one in logs.items()}, replicate)
+    fitted = effects(y, {name: np.exp(values) for name, values in logs.items()}, replicate)
     for name, slope in truth.items():
-        tally.estimate(f"slope of {name}", slope, found[name].slope)
+        tally.estimate(f"slope of {name}", slope, fitted[name].slope)
 
 
 def _latin(rows, rng):

@@ -62,8 +62,8 @@ OUTPUTS = {
     f"event of {share:.1%}": (_event(share, np.ones_like, np.zeros_like), True)
     for share in (0.013, 0.03, 0.05, 0.1)
 } | {
-    f"two regimes, {name}, {share:.0%}": (of(share), False)
-    for name, of in (("one of scatter 30", _regimes), ("one shifted, of scatter 10", _shifted))
+    f"two regimes, {name}, {share:.0%}": (build(share), False)
+    for name, build in (("one of scatter 30", _regimes), ("one shifted, of scatter 10", _shifted))
     for share in (0.03, 0.05, 0.1)
 }
 
@@ -71,10 +71,10 @@ OUTPUTS = {
 RAREST = next(iter(OUTPUTS))
 
 
-def truths(of, n=600, thin=60):
+def truths(function, n=600, thin=60):
     """Return S1 and ST of a function of three uniform inputs, by the midpoint rule."""
     mid, few = (np.arange(n) + 0.5) / n, (np.arange(thin) + 0.5) / thin
-    y = of(mid[:, None, None], mid[None, :, None], few[None, None, :])
+    y = function(mid[:, None, None], mid[None, :, None], few[None, None, :])
     first = {f"x{i + 1}": y.mean(axis=tuple({0, 1, 2} - {i})).var() / y.var() for i in range(3)}
     total = {f"x{i + 1}": y.var(axis=i).mean() / y.var() for i in range(3)}
     return {"S1": first, "ST": total}
@@ -90,22 +90,22 @@ def indices(repetitions):
         )
         for name in OUTPUTS
     }
-    known = {name: truths(of) for name, (of, _) in OUTPUTS.items()}
+    expected = {name: truths(function) for name, (function, _) in OUTPUTS.items()}
     for ds in repeated(study, repetitions):
         sample = sample_of(ds)
-        for name, (of, is_event) in OUTPUTS.items():
-            values = of(*(ds[x].values for x in UNIFORMS)).astype(float)
+        for name, (function, is_event) in OUTPUTS.items():
+            values = function(*(ds[x].values for x in UNIFORMS)).astype(float)
             try:
                 few_hits(ds, IndexTarget(name, None, values, event=is_event))
-                found = METHODS["sobol"].indices(replace(sample, values=values)).values
+                by_kind = METHODS["sobol"].indices(replace(sample, values=values)).values
             except RefusedError:
-                found = {}
-            by_key = {kind.key: of_inputs for kind, of_inputs in found.items()}
-            for kind, of_inputs in known[name].items():
+                by_kind = {}
+            by_key = {kind.key: of_inputs for kind, of_inputs in by_kind.items()}
+            for kind, of_inputs in expected[name].items():
                 for x, truth in of_inputs.items():
                     if truth > 1e-6:
-                        one = by_key[kind][x] if found else NOTHING
-                        tallies[name].add(f"{kind} {x}", truth, one.low, one.high)
+                        index = by_key[kind][x] if by_kind else NOTHING
+                        tallies[name].add(f"{kind} {x}", truth, index.low, index.high)
     return [line for tally in tallies.values() for line in tally.lines()]
 
 
@@ -125,9 +125,9 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        found = with_twin(ds, NAME).outputs["ishigami"]
+        estimates = with_twin(ds, NAME).outputs["ishigami"]
         for hits, limit in limits.items():
-            estimate = found[f"P(>{limit!r})"].estimate
+            estimate = estimates[f"P(>{limit!r})"].estimate
             tally.estimate(f"by the twin, {hits:g} hits expected", hits / 300, estimate)
     return tally.lines()
 
@@ -157,13 +157,18 @@ def failed(repetitions):
         entry = summary_json(summarise(ds))["outputs"]["life"]
         above = entry["thresholds"]["5.0"]["above"]
         median, b10 = entry["quantiles"]["0.5"], entry["b_lives"]["B10"]
-        for what, truth, one in (
+        for quantity, truth, statistic in (
             ("P(> 5.0)", LIFE.sf(5.0), above),
             ("quantile 0.5", LIFE.median(), median),
             ("B10", LIFE.ppf(0.1), b10),
         ):
-            tally.add(f"{what}, with failed rows", truth, one["failed_low"], one["failed_high"])
-            tally.entry(what, truth, one, by="uq, of the rows that did not fail")
+            tally.add(
+                f"{quantity}, with failed rows",
+                truth,
+                statistic["failed_low"],
+                statistic["failed_high"],
+            )
+            tally.entry(quantity, truth, statistic, by="uq, of the rows that did not fail")
     return tally.lines()
 
 
@@ -175,5 +180,5 @@ REASONS = (
     {f"{hits:g} hits expected": EXACT for hits in EXPECTED}
     | {f"by the twin, {hits:g} hits expected": EXACT for hits in HITS}
     | {f"{kind} {x}": WIDENED for kind in ("S1", "ST") for x in UNIFORMS}
-    | {f"{what}, with failed rows": BOUNDS for what in ("P(> 5.0)", "quantile 0.5", "B10")}
+    | {f"{quantity}, with failed rows": BOUNDS for quantity in ("P(> 5.0)", "quantile 0.5", "B10")}
 )

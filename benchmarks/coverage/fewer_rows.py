@@ -41,11 +41,11 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        found = with_twin(ds, NAME).outputs["ishigami"]
+        estimates = with_twin(ds, NAME).outputs["ishigami"]
         # A sample in a thousand seems to have a tail too heavy for a mean.
-        mean = found["mean"].estimate if "mean" in found else NOTHING
+        mean = estimates["mean"].estimate if "mean" in estimates else NOTHING
         tally.estimate("mean by the twin", ISHIGAMI_MEAN, mean)
-        above = found["P(>9.0)"].estimate
+        above = estimates["P(>9.0)"].estimate
         tally.estimate("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), above)
     return tally.lines()
 
@@ -85,8 +85,8 @@ def subset(repetitions):
         tally = Tally(f"P = 1e-5, subset simulation, 8 replicates of 1000 rows: {name}", REASONS)
         truth = _jump_probability() if margin is _jump else RARE
         for seed in range(repetitions):
-            found = subset_simulation(margin, d, 1000, np.random.default_rng(seed).spawn(8))
-            tally.add("probability", truth, *subset_interval(found, 1000))
+            replicates = subset_simulation(margin, d, 1000, np.random.default_rng(seed).spawn(8))
+            tally.add("probability", truth, *subset_interval(replicates, 1000))
         lines += tally.lines()
     return lines
 
@@ -125,9 +125,9 @@ def hidden(method, repetitions):
             f"P = {truth:.1e}, {method}, 8 replicates of 1000 rows: {name}", HIDDEN_REASONS
         )
         for seed in range(repetitions):
-            of = _Space(margin, d)
+            space = _Space(margin, d)
             first, second = (np.random.default_rng((seed, k)).spawn(8) for k in (1, 2))
-            outcome = ESTIMATORS[method](of, 1000, first)
+            outcome = ESTIMATORS[method](space, 1000, first)
             wide = wide_search(margin, d, 1000, second)
             _, ends = estimate_of(outcome, wide)
             tally.add("probability", truth, *ends)
@@ -160,11 +160,13 @@ def plateau(repetitions):
     tally = Tally("subset simulation on a plateau, 8 replicates of 1000 rows", REASONS)
     for share in PLATEAU:
         for steps in (1, 2):
-            what = f"P = {share:g}" + ", half of the rows on a step" * (steps == 2)
+            quantity = f"P = {share:g}" + ", half of the rows on a step" * (steps == 2)
             margin = partial(_flat, share, steps)
             for seed in range(repetitions):
-                found = subset_simulation(margin, 2, 1000, np.random.default_rng(seed).spawn(8))
-                tally.add(what, share, *subset_interval(found, 1000))
+                replicates = subset_simulation(
+                    margin, 2, 1000, np.random.default_rng(seed).spawn(8)
+                )
+                tally.add(quantity, share, *subset_interval(replicates, 1000))
     return tally.lines()
 
 
@@ -195,8 +197,8 @@ def importance(repetitions):
             drawn = [
                 drawn_around(points, 1000, rng) for rng in np.random.default_rng(seed).spawn(8)
             ]
-            found = [np.mean(weight * (margin(u) > 0)) for u, weight in drawn]
-            tally.add("probability", RARE, *log_scatter_interval(np.array(found)))
+            estimates = [np.mean(weight * (margin(u) > 0)) for u, weight in drawn]
+            tally.add("probability", RARE, *log_scatter_interval(np.array(estimates)))
         lines += tally.lines()
     return lines
 

@@ -39,8 +39,8 @@ def _added(*parts):
     return output, len(parts), tuple(np.array(variances) / sum(variances))
 
 
-def _scaled(by, of=_normal):
-    return lambda u: by * of(u)
+def _scaled(by, function=_normal):
+    return lambda u: by * function(u)
 
 
 def _ishigami(u):
@@ -142,15 +142,15 @@ def rows(n, repetitions):
             except RefusedError:
                 continue
             for i, share in enumerate(shares[:COUNTED]):
-                what = f"S1 = {share:.3f}"
+                quantity = f"S1 = {share:.3f}"
                 by = np.nan, np.nan
-                tally.add(what, share, *by, by=RANK, value=rank_statistic(x[:, i], y))
-                tally.add(what, share, *by, by=RATIO, value=correlation_ratio(x[:, i], y))
+                tally.add(quantity, share, *by, by=RANK, value=rank_statistic(x[:, i], y))
+                tally.add(quantity, share, *by, by=RATIO, value=correlation_ratio(x[:, i], y))
                 value = float(first_order(x[:, i : i + 1], y)[0])
                 if n >= 512:
                     parts = [first_order(x[k::8, i : i + 1], y[k::8])[0] for k in range(8)]
                     by = scatter_interval(value, np.array(parts))
-                tally.add(what, share, *by, by=BALANCE, value=value)
+                tally.add(quantity, share, *by, by=BALANCE, value=value)
         lines += tally.lines()
     return lines
 

@@ -39,8 +39,8 @@ REASONS = {
     "median of the first, ": BEYOND,
 }
 OF_COUNTS = {
-    f"{what}, {share} % of samples": "conservative where units are counted: whatever the law"
-    for what in ("median of the first", "number ended", "P(at most 1)", "P(at most 5)")
+    f"{quantity}, {share} % of samples": "conservative where units are counted: whatever the law"
+    for quantity in ("median of the first", "number ended", "P(at most 1)", "P(at most 5)")
     for share in (5, 95)
 }
 
@@ -93,8 +93,8 @@ def other_laws(name, repetitions):
         failed = FleetNumbers(units, COUNTED_SIZE, 0, None, True).failed(BY)
         for end, share in (("low", LOW), ("high", HIGH)):
             truth = COUNTED_SIZE * -np.expm1(-((BY / law.ppf(1 - share)) ** 2))
-            what = f"number ended, {100 * share:g} % of samples"
-            tally.estimate(what, truth, getattr(failed, end))
+            quantity = f"number ended, {100 * share:g} % of samples"
+            tally.estimate(quantity, truth, getattr(failed, end))
     return tally.lines()
 
 
@@ -147,8 +147,8 @@ def shared_scale(repetitions):
         tally = Tally(name + f" and {rest:g} beside it" * bool(rest), REASONS | OF_COUNTS)
         rng = np.random.default_rng(3)
         for _ in range(repetitions):
-            of = FleetNumbers(worlds_scaled(rest, rng), size, allow, None, True)
-            failed, kept = of.failed(time), of.at_most_allowed(time)
+            fleet = FleetNumbers(worlds_scaled(rest, rng), size, allow, None, True)
+            failed, kept = fleet.failed(time), fleet.at_most_allowed(time)
             tally.estimate("number ended", size * over_worlds(ended), failed.estimate)
             share = over_worlds(lambda z, p=ended: special.bdtr(allow, size, p(z)))
             tally.estimate(f"P(at most {allow})", share, kept.estimate)
@@ -174,8 +174,8 @@ def fleets(name, repetitions):
     reached = -np.expm1(np.log(0.5) / size)
     rng = np.random.default_rng(7)
     for _ in range(repetitions):
-        of = FleetNumbers(drawn(units, integrated, weighted, rng), size, allow, None, True)
-        first, failed, kept = of.first(0.5), of.failed(time), of.at_most_allowed(time)
+        fleet = FleetNumbers(drawn(units, integrated, weighted, rng), size, allow, None, True)
+        first, failed, kept = fleet.first(0.5), fleet.failed(time), fleet.at_most_allowed(time)
         tally.estimate("median of the first", np.exp(middle), first.estimate)
         mean = over_worlds(lambda z: given(time, z))
         tally.estimate("number ended", size * mean, failed.estimate)

@@ -72,12 +72,12 @@ def sobol_of_others(repetitions):
     pairs = [(i, j) for i in range(3) for j in range(i + 1, 3)]
     for seed in range(repetitions):
         x = salib_design.sample(PROBLEM, 1024, calc_second_order=True, scramble=True, seed=seed)
-        found = salib_sobol.analyze(PROBLEM, ishigami(x), True, num_resamples=100, seed=seed + 1)
+        reported = salib_sobol.analyze(PROBLEM, ishigami(x), True, num_resamples=100, seed=seed + 1)
         by = "SALib, bootstrap of one scramble"
         for kind in ("S1", "ST"):
-            _halves(tally, kind, found[kind], found[f"{kind}_conf"], by)
+            _halves(tally, kind, reported[kind], reported[f"{kind}_conf"], by)
         for i, j in pairs:
-            value, half = found["S2"][i, j], found["S2_conf"][i, j]
+            value, half = reported["S2"][i, j], reported["S2_conf"][i, j]
             pair = f"{NAMES[i]},{NAMES[j]}"
             tally.add(f"S2 {pair}", ISHIGAMI["S2"][pair], value - half, value + half, by)
         ot.RandomGenerator.SetSeed(seed)
@@ -103,15 +103,15 @@ def sobol_of_scipy(repetitions):
     tally = Tally("Ishigami, saltelli, 8 replicates of 128 groups of 8 rows")
     uniform = [stats.uniform(-np.pi, 2 * np.pi)] * 3
     for seed in range(repetitions):
-        found = stats.sobol_indices(
+        reported = stats.sobol_indices(
             func=lambda x: ishigami(x.T)[None], n=1024, dists=uniform, rng=seed
         )
-        band = found.bootstrap(n_resamples=200)
-        for kind, one in (("S1", band.first_order), ("ST", band.total_order)):
+        band = reported.bootstrap(n_resamples=200)
+        for kind, index in (("S1", band.first_order), ("ST", band.total_order)):
             for i, name in enumerate(NAMES):
                 ends = (
-                    np.ravel(one.confidence_interval.low)[i],
-                    np.ravel(one.confidence_interval.high)[i],
+                    np.ravel(index.confidence_interval.low)[i],
+                    np.ravel(index.confidence_interval.high)[i],
                 )
                 tally.add(f"{kind} {name}", ISHIGAMI[kind][name], *ends, "scipy, bootstrap")
     return tally.lines()
@@ -119,9 +119,9 @@ def sobol_of_scipy(repetitions):
 
 def _halves(tally, kind, values, halves, by, truth=None, skip=""):
     for name, value, half in zip(NAMES, values, halves, strict=True):
-        known = (truth or ISHIGAMI[kind])[name]
+        expected = (truth or ISHIGAMI[kind])[name]
         if name != skip:
-            tally.add(f"{kind} {name}", known, value - half, value + half, by)
+            tally.add(f"{kind} {name}", expected, value - half, value + half, by)
 
 
 # Morris -------------------------------------------------------------------------------------------
@@ -130,18 +130,18 @@ def _halves(tally, kind, values, halves, by, truth=None, skip=""):
 def exact_effects(levels, step):
     """Return mu, sigma and mu* of Ishigami's function over all steps that the levels allow."""
     starts = np.array(list(product(levels, repeat=3)))
-    found = {}
+    measures = {}
     for i, name in enumerate(NAMES):
         below = starts[np.isin(starts[:, i], levels[: LEVELS // 2])]
         above = below.copy()
         above[:, i] += step
         effects = np.diff([ishigami(2 * np.pi * u - np.pi) for u in (below, above)], axis=0) / step
-        found[name] = {
+        measures[name] = {
             "mu": effects.mean(),
             "sigma": effects.std(),
             "mu_star": np.abs(effects).mean(),
         }
-    return found
+    return measures
 
 
 def morris(repetitions):
@@ -158,9 +158,11 @@ def morris(repetitions):
                 if name != "x2" or kind == "sigma":  # its steps are all as large: no interval
                     tally.entry(f"{kind} {name}", value, entry[kind][name])
         x = salib_trajectories.sample(PROBLEM, 128, LEVELS, seed=seed)
-        found = salib_morris.analyze(PROBLEM, x, ishigami(x), num_resamples=100, seed=seed + 1)
+        reported = salib_morris.analyze(PROBLEM, x, ishigami(x), num_resamples=100, seed=seed + 1)
         stars = {name: kinds["mu_star"] for name, kinds in theirs.items()}
-        _halves(tally, "mu_star", found["mu_star"], found["mu_star_conf"], "SALib", stars, "x2")
+        _halves(
+            tally, "mu_star", reported["mu_star"], reported["mu_star_conf"], "SALib", stars, "x2"
+        )
     return tally.lines()
 
 
@@ -178,15 +180,17 @@ def bootstraps(repetitions):
         rng = np.random.default_rng(seed)
         x = rng.uniform(-np.pi, np.pi, (1024, 3))
         y = ishigami(x)
-        found = salib_rbd_fast.analyze(PROBLEM, x, y, num_resamples=100, seed=seed + 1)
-        _halves(tally, "S1", found["S1"], found["S1_conf"], "SALib rbd_fast")
-        found = salib_delta.analyze(PROBLEM, x, y, num_resamples=20, method="delta", seed=seed + 1)
-        values, halves = found["delta_raw"], found["delta_raw_conf"]
+        reported = salib_rbd_fast.analyze(PROBLEM, x, y, num_resamples=100, seed=seed + 1)
+        _halves(tally, "S1", reported["S1"], reported["S1_conf"], "SALib rbd_fast")
+        reported = salib_delta.analyze(
+            PROBLEM, x, y, num_resamples=20, method="delta", seed=seed + 1
+        )
+        values, halves = reported["delta_raw"], reported["delta_raw_conf"]
         _halves(tally, "delta", values, halves, "SALib delta", DELTA)
         x = fast_sampler.sample(PROBLEM, 341, seed=seed)
-        found = salib_fast.analyze(PROBLEM, ishigami(x), num_resamples=100, seed=seed + 1)
+        reported = salib_fast.analyze(PROBLEM, ishigami(x), num_resamples=100, seed=seed + 1)
         for kind in ("S1", "ST"):
-            _halves(tally, kind, found[kind], found[f"{kind}_conf"], "SALib fast")
+            _halves(tally, kind, reported[kind], reported[f"{kind}_conf"], "SALib fast")
     return tally.lines()
 
 

@@ -22,6 +22,6 @@ def bounds(repetitions):
         for rows in ROWS:
             rng = np.random.default_rng(rows)
             for _ in range(repetitions):
-                found = joint_bounds(values(rng.random((OUTPUTS, rows))), 0, 0.95, 0.95)
-                tally.add(f"{how} outputs, {rows} rows", 0.95, -np.inf, within(*found))
+                limits = joint_bounds(values(rng.random((OUTPUTS, rows))), 0, 0.95, 0.95)
+                tally.add(f"{how} outputs, {rows} rows", 0.95, -np.inf, within(*limits))
     return tally.lines()

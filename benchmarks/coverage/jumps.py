@@ -43,11 +43,11 @@ def means(repetitions):
             )
             for name in FUNCTIONS
         }
-        of = np.repeat(np.arange(REPLICATES), rows)
+        replicate = np.repeat(np.arange(REPLICATES), rows)
         for seed in range(repetitions):
             rng = np.random.default_rng(seed)
             x = np.concatenate([DRAWN[method](3, rng=rng).random(rows) for _ in range(REPLICATES)])
-            part = EvenReplicates(of, x)
+            part = EvenReplicates(replicate, x)
             for name, (function, truth) in FUNCTIONS.items():
                 tallies[name].estimate("mean", truth, moments(function(x), part).mean)
         lines += [line for tally in tallies.values() for line in tally.lines()]

@@ -125,8 +125,8 @@ def life_truths():
 
 def _by_midpoints(value, points=2000):
     middle = (np.arange(points) + 0.5) / points
-    one, others = stats.expon.ppf(middle), stats.gamma.ppf(middle, 2)
-    y = value(one[:, None] + others)
+    values, others = stats.expon.ppf(middle), stats.gamma.ppf(middle, 2)
+    y = value(values[:, None] + others)
     first, rest = (float(y.mean(axis=axis).var() / y.var()) for axis in (1, 0))
     return {"S1": first, "ST": 1 - rest}
 

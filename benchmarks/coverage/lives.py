@@ -61,10 +61,10 @@ def lives(design, repetitions):
             for time in TIMES:
                 at = curve.sel(time=time, method="ffill")
                 tally.add(f"survival at {time}", 1 - cdf(time), float(at["low"]), float(at["high"]))
-        found = outputs["never"]["thresholds"]["2.0"]["below"]
-        tallies["never"].entry("P(< 2.0)", never_cdf(2.0), found)
-        found = outputs["left"]["thresholds"]["0.5"]["kaplan_meier"]["below"]
-        tallies["left"].entry("P(< 0.5)", LIFE.cdf(0.5), found)
+        entry = outputs["never"]["thresholds"]["2.0"]["below"]
+        tallies["never"].entry("P(< 2.0)", never_cdf(2.0), entry)
+        entry = outputs["left"]["thresholds"]["0.5"]["kaplan_meier"]["below"]
+        tallies["left"].entry("P(< 0.5)", LIFE.cdf(0.5), entry)
         if replicates == 1:
             _rivals(tallies["left"], ds)
     return [line for tally in tallies.values() for line in tally.lines()]
@@ -96,10 +96,10 @@ def mixed(design, samples, repetitions):
     rows = f"{design}, {replicates} replicates of " * (replicates > 1) + f"{samples} rows"
     tally = Tally(f"60 % never end, known at once, the others may be censored; {rows}")
     for ds in repeated(study, repetitions):
-        found = summary_json(summarise(ds))["outputs"]["mixed"]
-        tally.entry("B10", MIXED.ppf(0.1 / ENDS), found["b_lives"]["B10"])
+        entry = summary_json(summarise(ds))["outputs"]["mixed"]
+        tally.entry("B10", MIXED.ppf(0.1 / ENDS), entry["b_lives"]["B10"])
         for time in LIMITS:
-            below = found["thresholds"][repr(time)]["kaplan_meier"]["below"]
+            below = entry["thresholds"][repr(time)]["kaplan_meier"]["below"]
             tally.entry(f"P(< {time})", ENDS * MIXED.cdf(time), below)
     return tally.lines()
 
@@ -167,8 +167,8 @@ def fits(law, censored, repetitions):
         tally.add("not refused, where the law is true", 1.0, 1.0, 2.0 - bool(fit.refused) * 2)
         if fit.refused:
             continue
-        for name, found in fit.parameters.items():
-            tally.estimate(name, parameters[name], found)
+        for name, estimate in fit.parameters.items():
+            tally.estimate(name, parameters[name], estimate)
         for name, p in B_LIVES.items():
             tally.estimate(name, truth.ppf(p), fit.b_lives[name])
         if not censored:
@@ -204,9 +204,9 @@ def _asymptotic(tally, law, life, parameters):
     sample = ot.Sample(np.log(life)[:, None])
     if law == "weibull":
         return
-    found = ot.NormalFactory().buildEstimator(sample).getParameterDistribution()
+    distribution = ot.NormalFactory().buildEstimator(sample).getParameterDistribution()
     low, high = (
-        [found.getMarginal(i).computeQuantile(q)[0] for i in (0, 1)] for q in (0.025, 0.975)
+        [distribution.getMarginal(i).computeQuantile(q)[0] for i in (0, 1)] for q in (0.025, 0.975)
     )
     by = "OpenTURNS NormalFactory of the logarithms"
     tally.add("median", parameters["median"], np.exp(low[0]), np.exp(high[0]), by=by)

@@ -24,10 +24,10 @@ def by_neighbours(x, y):
     d = x.shape[1]
     left = {(): y.var(ddof=1), tuple(range(d)): 0.0}
     for size in range(1, d):
-        for some in combinations(range(d), size):
-            _, near = cKDTree(x[:, some]).query(x[:, some], NEIGHBOURS)
-            left[some] = y[near].var(axis=1, ddof=1).mean()
-    return shares(lambda some: left[()] - left[tuple(sorted(some))], d)
+        for subset in combinations(range(d), size):
+            _, near = cKDTree(x[:, subset]).query(x[:, subset], NEIGHBOURS)
+            left[subset] = y[near].var(axis=1, ddof=1).mean()
+    return shares(lambda subset: left[()] - left[tuple(sorted(subset))], d)
 
 
 def neighbours(repetitions, cases=CASES):
@@ -36,12 +36,12 @@ def neighbours(repetitions, cases=CASES):
     for words, case in cases.items():
         names, rows = list(case.laws), len(case.laws) + 1
         tally = Tally(title(words, rows))
-        of = study(case.output, case.laws, case.correlations, PATHS * rows, "monte-carlo")
-        for ds in repeated(of, repetitions):
+        case_study = study(case.output, case.laws, case.correlations, PATHS * rows, "monte-carlo")
+        for ds in repeated(case_study, repetitions):
             x, y = ds[names].to_dataarray().values.T, ds[case.output].values
-            found = np.array([by_neighbours(x[i::PARTS], y[i::PARTS]) for i in range(PARTS)])
-            for name, one in zip(names, found.T, strict=True):
-                ends = scatter_interval(one.mean(), one)
+            effects = np.array([by_neighbours(x[i::PARTS], y[i::PARTS]) for i in range(PARTS)])
+            for name, values in zip(names, effects.T, strict=True):
+                ends = scatter_interval(values.mean(), values)
                 by = f"nearest neighbours in {PARTS} parts"
                 if case.truth[name] > 0:
                     tally.add(f"shapley {name}", case.truth[name], *ends, by)

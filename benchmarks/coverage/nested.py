@@ -104,8 +104,8 @@ def statistics(name, repetitions):
 
 
 def _count(tally, ds, quantiles):
-    found = summary_json(summarise(ds))
-    entry = found["outputs"]["y"]
+    summary = summary_json(summarise(ds))
+    entry = summary["outputs"]["y"]
     tally.entry("mean", MEAN, entry["mean_interval"])
     tally.entry("sd", np.sqrt(VARIANCE), entry["sd_interval"])
     for p, truth in quantiles.items():
@@ -113,7 +113,7 @@ def _count(tally, ds, quantiles):
     for threshold in (THRESHOLD, RARE):
         side = entry["thresholds"][repr(threshold)]["above"]
         tally.entry(f"P(> {threshold})", 1 - cdf(threshold), side)
-    tally.entry("regime", UPPER, found["regime"]["upper"])
+    tally.entry("regime", UPPER, summary["regime"]["upper"])
     levels = by_level(ds)
     for level, part in PARTS.items():
         share = levels.outputs["y"].shares[level]
@@ -154,9 +154,9 @@ def effects(name, repetitions):
         for _ in range(repetitions):
             for truth in SHARES:
                 y = _drawn(draw, rng, truth, (samples, units, repeats))
-                found = nested_shares(y)
-                for level, share, one in zip(PARTS, truth, found[:3], strict=True):
-                    tally.estimate(f"{level}, {share:g}", share, one)
+                estimates = nested_shares(y)
+                for level, share, estimate in zip(PARTS, truth, estimates[:3], strict=True):
+                    tally.estimate(f"{level}, {share:g}", share, estimate)
         lines += tally.lines()
     return lines
 
@@ -174,14 +174,14 @@ def integrated(repetitions):
         tally = Tally(f"random effects (normal) beside known ones, {size}", reasons)
         rng = np.random.default_rng(0)
         for _ in range(repetitions):
-            for rest, known in product(SHARES, KNOWN):
+            for rest, exact in product(SHARES, KNOWN):
                 y = _drawn(EFFECTS["normal"], rng, rest, (samples, units, repeats))
-                added = np.broadcast_to(np.reshape(known, (3, 1, 1, 1)), (3, *y.shape))
-                truth = np.add(rest, known) / (1 + sum(known))
-                found = nested_shares(y, analytic=added)
-                for level, share, one in zip(PARTS, truth, found[:3], strict=True):
-                    part = sum(known) / (1 + sum(known))
-                    tally.estimate(f"{level}, {share:.3g}, {part:.0%} known", share, one)
+                added = np.broadcast_to(np.reshape(exact, (3, 1, 1, 1)), (3, *y.shape))
+                truth = np.add(rest, exact) / (1 + sum(exact))
+                estimates = nested_shares(y, analytic=added)
+                for level, share, estimate in zip(PARTS, truth, estimates[:3], strict=True):
+                    part = sum(exact) / (1 + sum(exact))
+                    tally.estimate(f"{level}, {share:.3g}, {part:.0%} known", share, estimate)
         lines += tally.lines()
     return lines
 
@@ -200,16 +200,16 @@ def weighted(repetitions):
                 outer, weights = weighted_normals(samples, rng)
                 y = _drawn(EFFECTS["normal"], rng, (0.0, *truth[1:]), (samples, units, repeats))
                 y = y + truth[0] ** 0.5 * outer[:, None, None]
-                found = nested_shares(y, weights=weights)
-                for level, share, one in zip(PARTS, truth, found[:3], strict=True):
-                    tally.estimate(f"{level}, {share:g}", share, one)
+                estimates = nested_shares(y, weights=weights)
+                for level, share, estimate in zip(PARTS, truth, estimates[:3], strict=True):
+                    tally.estimate(f"{level}, {share:g}", share, estimate)
         lines += tally.lines()
     return lines
 
 
 def _drawn(draw, rng, variances, shape):
     shapes = ((shape[0], 1, 1), (*shape[:2], 1), shape)
-    return sum(v**0.5 * draw(rng, one) for v, one in zip(variances, shapes, strict=True))
+    return sum(v**0.5 * draw(rng, size) for v, size in zip(variances, shapes, strict=True))
 
 
 HEAVY = "few samples of effects with a heavy tail hold too few of the largest"

@@ -62,9 +62,9 @@ def page(lines, seconds, missing=()):
     chapters = {title: [] for title in (*CHAPTERS, OTHERS)}
     for line in lines:
         chapters[chapter_of(line.problem)].append(line)
-    known = {title: own for title, own in chapters.items() if own}
-    texts = [_chapter(title, own) for title, own in known.items()]
-    return "\n".join([HEAD, summary, _contents(known), *texts])
+    filled = {title: chapter_lines for title, chapter_lines in chapters.items() if chapter_lines}
+    texts = [_chapter(title, chapter_lines) for title, chapter_lines in filled.items()]
+    return "\n".join([HEAD, summary, _contents(filled), *texts])
 
 
 def _counts(lines):
@@ -95,7 +95,7 @@ def _chapter(title, lines):
     problems = {}
     for line in lines:
         problems.setdefault(line.problem, []).append(line)
-    tables = [_folded(problem, own) for problem, own in problems.items()]
+    tables = [_folded(problem, problem_lines) for problem, problem_lines in problems.items()]
     return "\n".join([f"## {title}", "", *tables])
 
 
@@ -107,8 +107,8 @@ def _folded(problem, lines):
     """Return the table of one problem, under a line that says how many of our intervals are off."""
     _, more, less = _counts(lines)
     off = [f"{count} {words}" for count, words in ((more, "more"), (less, "less")) if count]
-    said = f" ({', '.join(off)} often than stated)" if off else ""
-    name = html.escape(f"{problem[0].upper()}{problem[1:]}{said}", quote=False)
+    suffix = f" ({', '.join(off)} often than stated)" if off else ""
+    name = html.escape(f"{problem[0].upper()}{problem[1:]}{suffix}", quote=False)
     head = f"<details><summary>{name}</summary>"
     return "\n".join([head, "", _table(lines), "", "</details>", ""])
 
@@ -116,7 +116,7 @@ def _folded(problem, lines):
 def _table(lines):
     """Return a table, ours first and the others' below each."""
     order = list(dict.fromkeys(line.what for line in lines))
-    ordered = sorted(lines, key=lambda one: (order.index(one.what), one.by != OURS))
+    ordered = sorted(lines, key=lambda line: (order.index(line.what), line.by != OURS))
     columns = ["", "by", "covered", "of", "width", "remark"]
     with_bias = any(math.isfinite(line.bias) for line in lines)
     columns[5:5] = ["bias", "sd"] * with_bias
@@ -126,12 +126,12 @@ def _table(lines):
 
 def _row(line, with_bias):
     value, low, high = line.coverage
-    what, by = line.what.replace("|", "\\|"), line.by
-    name = f"**{what}**" if by == OURS else what
+    quantity, by = line.what.replace("|", "\\|"), line.by
+    name = f"**{quantity}**" if by == OURS else quantity
     covered = f"{value:.1%} ({low:.1%} to {high:.1%})" if line.given else "none given"
     width = f"{line.width:.3g}" if math.isfinite(line.width) else ""
-    told = line.by != OURS or not line.given or _is_off(line)
-    remark = line.reason if told else ""
+    is_explained = line.by != OURS or not line.given or _is_off(line)
+    remark = line.reason if is_explained else ""
     if line.given < line.repetitions:
         remark = "; ".join(filter(None, [f"{line.repetitions - line.given} not given", remark]))
     error = f" {line.bias:+.4f} | {line.scatter:.4f} |" if with_bias else ""

@@ -83,18 +83,18 @@ def plain(design, repetitions):
         for name in TRUTH
     }
     for number, ds in enumerate(repeated(study, repetitions)):
-        found = summary_json(summarise(ds))
+        summary = summary_json(summarise(ds))
         for name, tally in tallies.items():
-            _summary(tally, found["outputs"][name], *TRUTH[name])
+            _summary(tally, summary["outputs"][name], *TRUTH[name])
         shares = tallies["jump"]
-        shares.entry("share of a regime", jump()["share"], found["regime"]["upper"])
-        between = found["outputs"]["jump"]["between_regimes"]
+        shares.entry("share of a regime", jump()["share"], summary["regime"]["upper"])
+        between = summary["outputs"]["jump"]["between_regimes"]
         shares.entry("variance between regimes", jump()["between"], between)
         if independent:
             within = summary_json(summarise(ds, regime="upper"))["outputs"]["jump"]
             shares.entry("mean in a regime", jump()["within"]["upper"], within["mean_interval"])
-            found = within["quantiles"]["0.5"]
-            shares.entry("median in a regime", jump_ppf(0.5, "upper"), found)
+            median = within["quantiles"]["0.5"]
+            shares.entry("median in a regime", jump_ppf(0.5, "upper"), median)
             if number % EVERY == 0:
                 _rivals(tallies, ds)
         elif design == "sobol":
@@ -104,10 +104,10 @@ def plain(design, repetitions):
 
 def _summary(tally, entry, mean, ppf, cdf):
     tally.entry("mean", mean(), entry["mean_interval"])
-    for p, found in entry["quantiles"].items():
-        tally.entry(f"quantile {p}", ppf(float(p)), found)
-    for t, found in entry["thresholds"].items():
-        tally.entry(f"P(> {t})", 1 - cdf(float(t)), found["above"])
+    for p, interval in entry["quantiles"].items():
+        tally.entry(f"quantile {p}", ppf(float(p)), interval)
+    for t, interval in entry["thresholds"].items():
+        tally.entry(f"P(> {t})", 1 - cdf(float(t)), interval["above"])
     if bounds := entry["tolerance"]:
         tally.add("tolerance 95/95, lower", ppf(0.05), bounds["lower"], np.inf)
         tally.add("tolerance 95/95, upper", ppf(0.95), -np.inf, bounds["upper"])
@@ -119,30 +119,30 @@ def _rivals(tallies, ds):
         y = ds[name].values
         mean, ppf, cdf = TRUTH[name]
         t = THRESHOLDS[name][0]
-        found = stats.ttest_1samp(y, 0.0).confidence_interval()
-        tally.add("mean", mean(), *found, by="scipy ttest_1samp")
+        interval = stats.ttest_1samp(y, 0.0).confidence_interval()
+        tally.add("mean", mean(), *interval, by="scipy ttest_1samp")
         for p in QUANTILES:
-            found = stats.quantile_test(y, p=p).confidence_interval()
-            tally.add(f"quantile {p}", ppf(p), *found, by="scipy quantile_test")
+            interval = stats.quantile_test(y, p=p).confidence_interval()
+            tally.add(f"quantile {p}", ppf(p), *interval, by="scipy quantile_test")
         hits = stats.binomtest(int((y > t).sum()), len(y))
         for method in ("exact", "wilson"):
-            found = hits.proportion_ci(method=method)
-            tally.add(f"P(> {t})", 1 - cdf(t), *found, by=f"scipy binomtest, {method}")
+            interval = hits.proportion_ci(method=method)
+            tally.add(f"P(> {t})", 1 - cdf(t), *interval, by=f"scipy binomtest, {method}")
         half = 1.96 * np.sqrt(hits.statistic * (1 - hits.statistic) / len(y))
         ends = hits.statistic - half, hits.statistic + half
         tally.add(f"P(> {t})", 1 - cdf(t), *ends, by="OpenTURNS, normal law")
         sample = ot.Sample(y[:, None])
         for p in QUANTILES:
             algorithm = otx.QuantileConfidence(p, 0.95)
-            found, sure = algorithm.computeBilateralConfidenceIntervalWithCoverage(sample)
+            interval, sure = algorithm.computeBilateralConfidenceIntervalWithCoverage(sample)
             # Of the quantile 0.95 it gives the largest row twice, and says itself: coverage 0.
-            ends = _ends(found) if sure else (None, None)
+            ends = _ends(interval) if sure else (None, None)
             tally.add(f"quantile {p}", ppf(p), *ends, by="OpenTURNS QuantileConfidence")
-        for what, p, lower in (("lower", 0.05, True), ("upper", 0.95, False)):
+        for side, p, lower in (("lower", 0.05, True), ("upper", 0.95, False)):
             algorithm = otx.QuantileConfidence(p, 0.95)
             low, high = _ends(algorithm.computeUnilateralConfidenceInterval(sample, lower))
             ends = (low, np.inf) if lower else (-np.inf, high)
-            tally.add(f"tolerance 95/95, {what}", ppf(p), *ends, by="OpenTURNS QuantileConfidence")
+            tally.add(f"tolerance 95/95, {side}", ppf(p), *ends, by="OpenTURNS QuantileConfidence")
 
 
 def _ends(interval):
@@ -153,8 +153,8 @@ def _taken_for_independent(tally, y):
     """Count the intervals of formulas for independent rows, applied to rows that are not."""
     by = "scipy, rows assumed independent"
     tally.add("mean", ISHIGAMI_MEAN, *stats.ttest_1samp(y, 0.0).confidence_interval(), by=by)
-    found = stats.quantile_test(y, p=0.5).confidence_interval()
-    tally.add("quantile 0.5", ishigami_ppf(0.5), *found, by=by)
+    interval = stats.quantile_test(y, p=0.5).confidence_interval()
+    tally.add("quantile 0.5", ishigami_ppf(0.5), *interval, by=by)
 
 
 REASONS = {(design, "life"): {"mean": TAIL} for design in DESIGNS} | {

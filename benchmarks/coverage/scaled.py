@@ -58,14 +58,14 @@ def scaled(repetitions):
             rng = np.random.default_rng(rows)
             for _ in range(repetitions):
                 rest = spread * rng.standard_normal(rows)
-                found = Population(element(rest, rng.standard_normal(rows), term), None)
+                population = Population(element(rest, rng.standard_normal(rows), term), None)
                 for p in PROBABILITIES:
                     time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
-                    below = found.below(time)
+                    below = population.below(time)
                     tally.add(f"P(T < t) = {p:g}", p, below.low, below.high)
                 for p in (0.01, 0.1, 0.5):
                     time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
-                    quantile = found.quantile(p)
+                    quantile = population.quantile(p)
                     tally.add(f"B{100 * p:g}", time, quantile.low, quantile.high)
             lines += tally.lines()
     return lines

@@ -98,19 +98,21 @@ def rows(method, samples, replicates, repetitions):
     design = _design(method, samples, replicates)
     sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
     part = np.arange(samples * replicates) % replicates
-    for what, (function, output, asked, truth) in ROWS.items():
+    for quantity, (function, output, asked, truth) in ROWS.items():
         until, looks = Until(output="y", half_width=1.0, **asked), []
         for seed in range(repetitions):
             whole = _element(function(_points(design, INPUTS, seed)), output)
-            own = [_first(whole, size * replicates) for size in sizes]
-            replicate = [None if replicates == 1 else part[: len(one.values)] for one in own]
+            elements = [_first(whole, size * replicates) for size in sizes]
+            replicate = [
+                None if replicates == 1 else part[: len(element.values)] for element in elements
+            ]
             looks.append(
                 [
-                    stopping.statistic(one, until, of, level)
-                    for one, of in zip(own, replicate, strict=True)
+                    stopping.statistic(element, until, labels, level)
+                    for element, labels in zip(elements, replicate, strict=True)
                 ]
             )
-        _stop(tally, what, looks, [[truth] * len(sizes)] * repetitions)
+        _stop(tally, quantity, looks, [[truth] * len(sizes)] * repetitions)
     return tally.lines()
 
 
@@ -122,8 +124,8 @@ def integrated(repetitions):
     until, looks = Until(output="y", half_width=1.0, b_life="B10"), []
     for seed in range(repetitions):
         rest, drawn = np.random.default_rng(seed).standard_normal((2, design.samples))
-        own = [scaled.element(rest[:n], drawn[:n], scaled.lognormal_term(1.0)) for n in sizes]
-        looks.append([stopping.statistic(one, until, None, level) for one in own])
+        elements = [scaled.element(rest[:n], drawn[:n], scaled.lognormal_term(1.0)) for n in sizes]
+        looks.append([stopping.statistic(element, until, None, level) for element in elements])
     truth = float(np.exp(np.sqrt(2) * stats.norm.ppf(0.1)))
     _stop(tally, "B10", looks, [[truth] * len(sizes)] * repetitions)
     return tally.lines()
@@ -147,8 +149,10 @@ def _points(design, inputs, seed):
     return points.reshape(-1, *points.shape[2 if points.shape[2] > 1 else 3 :])
 
 
-def _element(found, output):
-    values, censored = found if isinstance(found, tuple) else (found, np.zeros(len(found), bool))
+def _element(computed, output):
+    values, censored = (
+        computed if isinstance(computed, tuple) else (computed, np.zeros(len(computed), bool))
+    )
     return Element("y", "y", output, {}, values, censored, np.zeros(len(values), bool))
 
 
@@ -174,19 +178,19 @@ def indices(name, repetitions, replicates=8):
     tally = Tally(words, REASONS)
     design = _design("saltelli", GROUPS, replicates)
     sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
-    blocks = ("A", *(f"AB_{one}" for one in NAMES), "B")
+    blocks = ("A", *(f"AB_{input_name}" for input_name in NAMES), "B")
     seen = []
     for seed in range(repetitions):
         values = function(_points(design, len(NAMES), seed))
         values = values.reshape(GROUPS, replicates, -1).swapaxes(0, 1)
         seen.append([_indices_of(values[:, :size], blocks, level) for size in sizes])
     for kind in (S1, ST):
-        known = dict(truth[kind.key])
-        known[" - ".join(PAIR)] = known[PAIR[0]] - known[PAIR[1]]
+        expected = dict(truth[kind.key])
+        expected[" - ".join(PAIR)] = expected[PAIR[0]] - expected[PAIR[1]]
         asked = {"widest": NAMES, "of x1": NAMES[:1], " - ".join(PAIR): (" - ".join(PAIR),)}
-        for what, names in asked.items():
-            looks = [[_widest(found[kind], names) for found in own] for own in seen]
-            _stop_at(tally, f"{kind.key} {what}", looks, known)
+        for quantity, names in asked.items():
+            looks = [[_widest(estimates[kind], names) for estimates in run] for run in seen]
+            _stop_at(tally, f"{kind.key} {quantity}", looks, expected)
     return tally.lines()
 
 
@@ -207,8 +211,8 @@ def shapley(repetitions):
     for words in DEPENDENT:
         case = dependent.CASES[words]
         study = dependent.study(case.output, case.laws, case.correlations, PATHS)
-        known = {name: effect for name, effect in case.truth.items() if effect > 0}
-        lines += _paths(words, study, case.output, known, repetitions)
+        effects = {name: effect for name, effect in case.truth.items() if effect > 0}
+        lines += _paths(words, study, case.output, effects, repetitions)
     return lines
 
 
@@ -217,16 +221,16 @@ def _paths(title, study, output, truth, repetitions):
     until = Until(output=output, half_width=1.0, index="shapley")
     design = study.design.model_copy(update={"until": until})
     sizes, level = stopping.interim_sizes(design), stopping.confidence(design)
-    known = truth | {" - ".join(PAIR): truth[PAIR[0]] - truth[PAIR[1]]}
+    expected = truth | {" - ".join(PAIR): truth[PAIR[0]] - truth[PAIR[1]]}
     asked = {"widest": tuple(truth), "of x1": PAIR[:1], " - ".join(PAIR): (" - ".join(PAIR),)}
     seen = []
     for ds in repeated(study, repetitions):
         sample = replace(sample_of(ds), confidence=level, difference=PAIR)
         sample = replace(sample, values=ds[output].values)
         seen.append([_effects(sample, size) for size in sizes])
-    for what, names in asked.items():
-        looks = [[_widest(found, names) for found in own] for own in seen]
-        _stop_at(tally, f"shapley {what}", looks, known)
+    for quantity, names in asked.items():
+        looks = [[_widest(estimates, names) for estimates in run] for run in seen]
+        _stop_at(tally, f"shapley {quantity}", looks, expected)
     return tally.lines()
 
 
@@ -239,27 +243,30 @@ def _effects(sample, size):
         return dict.fromkeys((*sample.inputs, " - ".join(PAIR)), NOTHING)
 
 
-def _stop_at(tally, what, looks, known):
+def _stop_at(tally, quantity, looks, expected):
     """Count the intervals of labelled estimates at which runs stop."""
-    truths = [[known[label] for label, _ in own] for own in looks]
-    _stop(tally, what, [[estimate for _, estimate in own] for own in looks], truths)
+    truths = [[expected[label] for label, _ in run] for run in looks]
+    _stop(tally, quantity, [[estimate for _, estimate in run] for run in looks], truths)
 
 
-def _widest(found, names):
-    return max(((name, found[name]) for name in names), key=lambda one: _half(one[1]))
+def _widest(estimates, names):
+    return max(((name, estimates[name]) for name in names), key=lambda pair: _half(pair[1]))
 
 
 def _half(estimate):
     return (estimate.high - estimate.low) / 2
 
 
-def _stop(tally, what, looks, truths):
+def _stop(tally, quantity, looks, truths):
     """Count the intervals at which runs stop, for the worst of many required half-widths."""
-    half = np.array([[_half(one) for one in own] for own in looks])
+    half = np.array([[_half(estimate) for estimate in run] for run in looks])
     wrong = np.array(
         [
-            [not one.low <= truth <= one.high for one, truth in zip(own, known, strict=True)]
-            for own, known in zip(looks, truths, strict=True)
+            [
+                not estimate.low <= truth <= estimate.high
+                for estimate, truth in zip(run, true_values, strict=True)
+            ]
+            for run, true_values in zip(looks, truths, strict=True)
         ]
     )
     stops = []
@@ -269,8 +276,8 @@ def _stop(tally, what, looks, truths):
         stops.append(enough.argmax(axis=1))
     runs = np.arange(len(looks))
     worst = max(stops, key=lambda stop: wrong[runs, stop].mean())
-    for own, known, stop in zip(looks, truths, worst, strict=True):
-        tally.estimate(what, known[stop], own[stop])
+    for run, true_values, stop in zip(looks, truths, worst, strict=True):
+        tally.estimate(quantity, true_values[stop], run[stop])
 
 
 WIDEST = "conservative: of all inputs, that with the widest interval counts"

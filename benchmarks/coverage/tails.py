@@ -31,11 +31,11 @@ def means(repetitions):
     lines = []
     for name, law, rows in MEANS:
         tally = Tally(f"{name}, {rows} independent rows", REASONS.get((name, rows)))
-        for found in _found(law, rows, repetitions):
-            refused = bool(found.mean.reason)
-            _count(tally, "mean", law.mean(), found.mean, refused)
-            open_ = refused or found.caution is not None
-            tally.add(CAUTIONED, 1.0, *_held(law.mean(), found.mean, open_))
+        for computed in _moments_of(law, rows, repetitions):
+            refused = bool(computed.mean.reason)
+            _count(tally, "mean", law.mean(), computed.mean, refused)
+            open_ = refused or computed.caution is not None
+            tally.add(CAUTIONED, 1.0, *_held(law.mean(), computed.mean, open_))
         lines += tally.lines()
     return lines
 
@@ -47,9 +47,9 @@ def scatters(repetitions):
         for rows, replicates in ((64, 1), (200, 1), (1000, 1), (125, 8)):
             how = f"{rows} independent rows" if replicates == 1 else LATIN
             tally = Tally(f"{name}, {how}", REASONS.get((name, rows)))
-            for found in _found(law, rows, repetitions, replicates):
-                refused = bool(found.sd.reason)
-                _count(tally, "sd", law.std(), found.sd, refused)
+            for computed in _moments_of(law, rows, repetitions, replicates):
+                refused = bool(computed.sd.reason)
+                _count(tally, "sd", law.std(), computed.sd, refused)
             lines += tally.lines()
     return lines
 
@@ -57,20 +57,20 @@ def scatters(repetitions):
 LATIN = "latin-hypercube of one input, 8 replicates of 125 rows"
 
 
-def _found(law, rows, repetitions, replicates=1):
-    """Yield what the summary prints of values of a law, again and again."""
+def _moments_of(law, rows, repetitions, replicates=1):
+    """Yield the moments of samples of a law, once for each repetition."""
     rng = np.random.default_rng(rows)
-    of = np.repeat(np.arange(replicates), rows)
+    replicate = np.repeat(np.arange(replicates), rows)
     for _ in range(repetitions):
         share = rng.random((replicates, rows))
         if replicates > 1:  # each replicate has a row in each of its slices
             share = (np.arange(rows) + share) / rows
-        yield moments(law.ppf(share).ravel(), None if replicates == 1 else of)
+        yield moments(law.ppf(share).ravel(), None if replicates == 1 else replicate)
 
 
-def _count(tally, what, truth, interval, refused):
-    tally.add(what, truth, interval.low, interval.high)
-    tally.add(f"{what}, held or refused", 1.0, *_held(truth, interval, refused))
+def _count(tally, quantity, truth, interval, refused):
+    tally.add(quantity, truth, interval.low, interval.high)
+    tally.add(f"{quantity}, held or refused", 1.0, *_held(truth, interval, refused))
 
 
 def _held(truth, interval, excused):

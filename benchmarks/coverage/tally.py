@@ -46,8 +46,8 @@ class Line(NamedTuple):
         """Share of the intervals given that held the truth, with its own interval (exact)."""
         if not self.given:
             return np.nan, np.nan, np.nan
-        found = stats.binomtest(self.held, self.given).proportion_ci()
-        return self.held / self.given, found.low, found.high
+        interval = stats.binomtest(self.held, self.given).proportion_ci()
+        return self.held / self.given, interval.low, interval.high
 
     @property
     def unexplained(self):
@@ -76,46 +76,46 @@ class Tally:
         self._held = {}
         self._errors = {}
 
-    def add(self, what, truth, low, high, by=OURS, value=None):
+    def add(self, quantity, truth, low, high, by=OURS, value=None):
         """Count one interval, an end of which may be None or NaN, and the error of a value."""
-        known = all(end is not None and not np.isnan(end) for end in (low, high))
-        held = (bool(low <= truth <= high), float(high) - float(low)) if known else None
-        self._held.setdefault((what, by), []).append(held)
+        given = all(end is not None and not np.isnan(end) for end in (low, high))
+        held = (bool(low <= truth <= high), float(high) - float(low)) if given else None
+        self._held.setdefault((quantity, by), []).append(held)
         if value is not None:
-            self._errors.setdefault((what, by), []).append(value - truth)
+            self._errors.setdefault((quantity, by), []).append(value - truth)
 
-    def entry(self, what, truth, entry, by=OURS):
+    def entry(self, quantity, truth, entry, by=OURS):
         """Count the interval of an entry with ``low`` and ``high``; without one, none is given."""
         low, high = (None, None) if entry is None else (entry["low"], entry["high"])
-        self.add(what, truth, low, high, by)
+        self.add(quantity, truth, low, high, by)
 
-    def estimate(self, what, truth, estimate, by=OURS):
+    def estimate(self, quantity, truth, estimate, by=OURS):
         """Count the interval of an `uq.stats.estimate.Estimate`."""
-        self.add(what, truth, estimate.low, estimate.high, by)
+        self.add(quantity, truth, estimate.low, estimate.high, by)
 
     def lines(self):
-        """Return what was counted."""
-        return [self._line(what, by, held) for (what, by), held in self._held.items()]
+        """Return the line of each quantity."""
+        return [self._line(quantity, by, held) for (quantity, by), held in self._held.items()]
 
-    def _line(self, what, by, held):
-        given = [one for one in held if one is not None]
+    def _line(self, quantity, by, held):
+        given = [entry for entry in held if entry is not None]
         widths = [width for _, width in given if np.isfinite(width)]
         return Line(
             self.problem,
-            what,
+            quantity,
             by,
             len(held),
             len(given),
-            sum(one for one, _ in given),
+            sum(hit for hit, _ in given),
             float(np.median(widths)) if widths else np.nan,
-            self._reason(what) if by == OURS else "",
-            *self._error(what, by),
+            self._reason(quantity) if by == OURS else "",
+            *self._error(quantity, by),
         )
 
-    def _error(self, what, by):
-        errors = self._errors.get((what, by))
+    def _error(self, quantity, by):
+        errors = self._errors.get((quantity, by))
         return (float(np.mean(errors)), float(np.std(errors))) if errors else (np.nan, np.nan)
 
-    def _reason(self, what):
-        fitting = [start for start in self.reasons if what.startswith(start)]
+    def _reason(self, quantity):
+        fitting = [start for start in self.reasons if quantity.startswith(start)]
         return self.reasons[max(fitting, key=len)] if fitting else ""

@@ -63,8 +63,8 @@ def truths():
     shared = of_worn - first["r1"] - first["r2"]
     worn = {
         "S1": first,
-        "ST": {name: one + shared for name, one in first.items()},
-        "shapley": {name: one + shared / 2 for name, one in first.items()},
+        "ST": {name: variance + shared for name, variance in first.items()},
+        "shapley": {name: variance + shared / 2 for name, variance in first.items()},
     }
     return {"front": _shares(front, everything), "worn": _shares(worn, of_worn)}
 
@@ -82,7 +82,7 @@ def _of_front(n=1000):
         both[i] = fading**2 / 12 + JUMP**2 * share * (1 - share) + together
     shared, of_x3 = both - first["x1"] - first["x2"], np.full(len(TIMES), 1 / 12)
     parts = {
-        kind: {name: one + part * shared for name, one in first.items()} | {"x3": of_x3}
+        kind: {name: variance + part * shared for name, variance in first.items()} | {"x3": of_x3}
         for kind, part in (("S1", 0), ("ST", 1), ("shapley", 0.5))
     }
     return parts, both + of_x3
@@ -90,8 +90,10 @@ def _of_front(n=1000):
 
 def _shares(parts, variance):
     return {
-        kind: {name: float(one.sum() / variance.sum()) for name, one in of.items()}
-        for kind, of in parts.items()
+        kind: {
+            name: float(variances.sum() / variance.sum()) for name, variances in by_input.items()
+        }
+        for kind, by_input in parts.items()
     }
 
 
@@ -111,9 +113,9 @@ def whole(method, repetitions):
         for name, words, reasons in (("front", "a front", {}), ("worn", "worn depth", REASONS))
     }
     for ds in repeated(study, repetitions):
-        found = indices_of(ds, output=[f"{name}[:]" for name in tallies])
+        entries = indices_of(ds, output=[f"{name}[:]" for name in tallies])
         for name, tally in tallies.items():
-            entry = found[f"{name}[:]"]
+            entry = entries[f"{name}[:]"]
             for kind in KINDS[method]:
                 for label, truth in truths()[name][kind].items():
                     index = entry[kind][label] if kind in entry else {"low": None, "high": None}

@@ -51,18 +51,18 @@ def read(folder: Path, only: str) -> dict[str, object]:
     for module in pkgutil.walk_packages(uq.__path__, "uq."):  # loaded once, for all forks
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
-    found: dict[str, object] = {}
+    entries: dict[str, object] = {}
     for path in sorted(folder.glob("*.nc")):
         if re.search(only, path.stem):
-            found |= {f"{path.stem}: {entry}": value for entry, value in _of_result(path)}
+            entries |= {f"{path.stem}: {entry}": value for entry, value in _of_result(path)}
             print(path.stem, flush=True)
     for pair in PAIRS:
         files = [str(folder / f"{name}.nc") for name in pair]
         if re.search(only, "compare") and all(map(os.path.exists, files)):
-            found |= _reported("compare", *files)
+            entries |= _reported("compare", *files)
     if re.search(only, "commands"):
-        found |= _commands()
-    return found
+        entries |= _commands()
+    return entries
 
 
 def _of_result(path: Path) -> Iterator[tuple[str, object]]:
@@ -83,31 +83,31 @@ def _of_result(path: Path) -> Iterator[tuple[str, object]]:
     commands += [["twin"]] if "tolerances" in path.stem else []
     for verb, *options in commands:
         yield from _reported(verb, str(path), *options).items()
-    with tempfile.TemporaryDirectory() as there:
-        page = Path(there, "report.html")
+    with tempfile.TemporaryDirectory() as scratch:
+        page = Path(scratch, "report.html")
         yield "report", _without_paths(reported("report", str(path), "-o", str(page)))
         text = page.read_text() if page.exists() else ""
         yield "report page", re.sub(r"base64,[^\"')]*", "base64,...", text)
-        yield "plot", _without_paths(reported("plot", str(path), "-o", f"{there}/plots"))
+        yield "plot", _without_paths(reported("plot", str(path), "-o", f"{scratch}/plots"))
         yield (
             "figures",
             {
                 file.name: hashlib.sha256(file.read_bytes()).hexdigest()[:16]
-                for file in sorted(Path(there, "plots").glob("*"))
+                for file in sorted(Path(scratch, "plots").glob("*"))
             },
         )
 
 
 def _commands() -> dict[str, object]:
-    found = _reported("models") | {command: reported(command) for command in ("schema", "--help")}
+    entries = _reported("models") | {command: reported(command) for command in ("schema", "--help")}
     for model in model_names():
-        found |= _reported("models", model) | _reported("simulate", model)
-        found[f"init {model}"] = reported("init", model)
+        entries |= _reported("models", model) | _reported("simulate", model)
+        entries[f"init {model}"] = reported("init", model)
     for study in sorted(SHIPPED.glob("*.toml")):
-        found[f"check {study}"] = reported("check", str(study))
+        entries[f"check {study}"] = reported("check", str(study))
     rare = ["rare-event", str(SHIPPED / "exponential-wear.toml"), "--output", "life"]
     rare += ["--below", "3e4", "--samples", "200", "--workers", "0"]
-    return found | _reported(*rare) | _reported(*rare, "--method", "importance")
+    return entries | _reported(*rare) | _reported(*rare, "--method", "importance")
 
 
 def _reported(*command: str) -> dict[str, object]:
@@ -117,8 +117,8 @@ def _reported(*command: str) -> dict[str, object]:
     }
 
 
-def _without_paths(said: dict[str, object]) -> dict[str, object]:
-    return said | {"out": re.sub(r"\S*/(\S+)", r"\1", re.sub(r"\s+", " ", str(said["out"])))}
+def _without_paths(outcome: dict[str, object]) -> dict[str, object]:
+    return outcome | {"out": re.sub(r"\S*/(\S+)", r"\1", re.sub(r"\s+", " ", str(outcome["out"])))}
 
 
 def compare(first: Path, second: Path, only: str) -> int:

@@ -63,8 +63,8 @@ def batch(
     shared = [] if settings.instants else _SCALES
     dynamic = np.hstack([np.delete(given, shared, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
-    some: Rows = Params._make(np.ascontiguousarray(x[first].T))
-    simulated = simulate_rows(some, settings, seed[first])
+    distinct: Rows = Params._make(np.ascontiguousarray(x[first].T))
+    simulated = simulate_rows(distinct, settings, seed[first])
     return _in_units(p, _take(simulated, back.reshape(-1)), settings)
 
 
@@ -91,8 +91,8 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     lives = Lives.nothing(n, len(settings.depths), len(settings.instants))
     whole = Simulated(Response.nothing(n), lives, b.frequency[:, 0])
     possible = np.flatnonzero(has_band(p))
-    for some, system in propagator.groups(b.take(possible), settings):
-        rows = possible[some]
+    for group, system in propagator.groups(b.take(possible), settings):
+        rows = possible[group]
         q = Params._make(field[rows] for field in p)
         settled, lives = _simulate_group(propagator, system, q, settings)
         fields: tuple[Any, ...] = (*whole.response, *whole.lives)
@@ -115,9 +115,9 @@ def _simulate_group(
     growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     clock = np.asarray(settings.instants) * (p.forcing_frequency * wear_per_work(p))[:, None]
     lives = Lives.nothing(len(growths), growths.shape[1], clock.shape[1])
-    known = np.isfinite(settled.work).all(axis=1)
+    valid = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
-        rows = np.flatnonzero(known & (system.beams.is_random == is_random))
+        rows = np.flatnonzero(valid & (system.beams.is_random == is_random))
         if not len(rows):
             continue
         start = (propagator, system.take(rows), state[rows], gaps[rows], first.work[rows])
@@ -127,8 +127,8 @@ def _simulate_group(
             if is_random
             else find_lives(*start, first.regime[rows], *wear)
         )
-        for field, some in zip(lives, part, strict=True):
-            field[rows] = some
+        for field, values in zip(lives, part, strict=True):
+            field[rows] = values
     return settled, lives
 
 

@@ -56,7 +56,7 @@ def batch(
 
 
 def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArray[Any]]:
-    known = np.isfinite(response.time)
+    valid = np.isfinite(response.time)
     repeats = response.period > 0
     progression, progression_error = _mean(response.progress, response.time, repeats)
     impact, impact_error = _mean(response.impact, response.time, repeats)
@@ -70,15 +70,15 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
     regime = np.where(repeats, PERIODIC, other)
     regime[(contacts == 0) & ~response.touching] = NO_IMPACT
     regime[(contacts == 0) & response.touching & (high - low < REPEAT * SCALES[0])] = ON_STOP
-    regime[~known] = -1
+    regime[~valid] = -1
     gap, stiffness = p.stop_gap[:, None], p.contact_stiffness[:, None]
     forces = stiffness * np.maximum(response.high - gap, 0.0)
     blows = np.where(contacts > 0, contacts, np.nan)
     return {
         "progression_rate": progression,
         "progression_rate_error": progression_error,
-        "peak_contact_force": np.where(known, forces.max(axis=1), np.nan),
-        "peak_contact_force_error": _growth(known, repeats, forces),
+        "peak_contact_force": np.where(valid, forces.max(axis=1), np.nan),
+        "peak_contact_force_error": _growth(valid, repeats, forces),
         "impact_work_rate": impact,
         "impact_work_rate_error": impact_error,
         "impacts_per_period": contacts / periods,
@@ -87,8 +87,8 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
         "impact_impulse_error": _ratio_error(response.impulse, response.contacts, repeats),
         "impact_energy": response.impact.sum(axis=1) / blows,
         "impact_energy_error": _ratio_error(response.impact, response.contacts, repeats),
-        "displacement_range": np.where(known, high - low, np.nan),
-        "displacement_range_error": _growth(known, repeats, response.high, -response.low),
+        "displacement_range": np.where(valid, high - low, np.nan),
+        "displacement_range_error": _growth(valid, repeats, response.high, -response.low),
         "electrical_power": electrical,
         "electrical_power_error": electrical_error,
         "efficiency": impact / electrical,
@@ -96,7 +96,7 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
         "lyapunov_exponent": exponent,
         "lyapunov_exponent_error": exponent_error,
         "regime": regime.astype(np.int8),
-        "period": np.where(known, response.period, -1).astype(np.int8),
+        "period": np.where(valid, response.period, -1).astype(np.int8),
     }
 
 
@@ -107,15 +107,15 @@ def _mean(parts: Any, time: Any, repeats: Any) -> tuple[Any, Any]:
     return mean * BATCHES / time, error * BATCHES / time
 
 
-def _ratio_error(parts: Any, of: Any, repeats: Any) -> Any:
+def _ratio_error(parts: Any, denominator: Any, repeats: Any) -> Any:
     """Return the standard error of the ratio of two quantities given in batches."""
-    exact = np.where(of.any(axis=1), 0.0, np.nan)
-    return np.where(repeats, exact, ratio_error(parts, of))
+    exact = np.where(denominator.any(axis=1), 0.0, np.nan)
+    return np.where(repeats, exact, ratio_error(parts, denominator))
 
 
-def _growth(known: Any, repeats: Any, *maxima: Any) -> Any:
+def _growth(valid: Any, repeats: Any, *maxima: Any) -> Any:
     """Return by how much a sum of largest values may grow; maxima are given in batches."""
-    error = np.where(known, 0.0, np.nan)
-    other = known & ~repeats
+    error = np.where(valid, 0.0, np.nan)
+    other = valid & ~repeats
     error[other] = sum(maximum_and_growth(largest[other])[1] for largest in maxima)
     return error

@@ -53,10 +53,10 @@ def folder_of(function: Callable[..., Any]) -> Path | None:
     roots = {_NUMERICS}.union(*(_roots(file) for file in _files(function, set())))
     whole = hashlib.sha256(repr(_versions()).encode())
     for root in sorted(roots):
-        found = _snapshot(root)
-        if any(_stamp(path) != stamp for path, stamp in found.stamps.items()):
+        snapshot = _snapshot(root)
+        if any(_stamp(path) != stamp for path, stamp in snapshot.stamps.items()):
             return None
-        whole.update(found.digest)
+        whole.update(snapshot.digest)
     names = sorted(root.stem for root in roots - {_NUMERICS}) or [_NUMERICS.name]
     name = f"{names[0]}-{whole.hexdigest()[:16]}"
     users = user_cache_path("vibrolife", appauthor=False) / "numba"
@@ -100,8 +100,8 @@ def _files(value: Any, seen: set[int]) -> Iterator[Path]:
             owner = value if callable(value) else type(value)
             yield Path(inspect.getfile(owner)).resolve(strict=True)
     if isinstance(value, tuple | list):
-        for one in value:
-            yield from _files(one, seen)
+        for member in value:
+            yield from _files(member, seen)
     for cell in getattr(value, "__closure__", None) or ():
         with suppress(ValueError):  # not assigned yet
             yield from _files(cell.cell_contents, seen)
@@ -111,10 +111,10 @@ def _roots(file: Path) -> set[Path]:
     """Return the packages and modules whose functions those of a file may call."""
     if _is_ours(file):
         return {_MODELS / file.relative_to(_MODELS).parts[0]}
-    own = _importable(file)
-    words = frozenset().union(*(_snapshot(root).words for root in own))
+    roots = _importable(file)
+    words = frozenset().union(*(_snapshot(root).words for root in roots))
     named = (part for part in _MODELS.iterdir() if os.fsencode(part.stem) in words)
-    return {*own, *(named if os.fsencode(_MODELS.name) in words else ())}
+    return {*roots, *(named if os.fsencode(_MODELS.name) in words else ())}
 
 
 def _importable(file: Path) -> set[Path]:
@@ -124,7 +124,7 @@ def _importable(file: Path) -> set[Path]:
         package, folder = folder, folder.parent
     if package != file or folder.name in _INSTALLED:
         return {package}
-    return {*folder.glob("*.py"), *(one.parent for one in folder.glob("*/__init__.py"))}
+    return {*folder.glob("*.py"), *(init_file.parent for init_file in folder.glob("*/__init__.py"))}
 
 
 def _is_ours(path: Path) -> bool:

@@ -74,8 +74,8 @@ def theory_batch(
 
 
 def _theory_angle(p: Rows) -> NDArray[np.float64]:
-    found = averaged.disphasing(p)
-    return np.where(found.stable, found.angle, np.nan)
+    predicted = averaged.disphasing(p)
+    return np.where(predicted.stable, predicted.angle, np.nan)
 
 
 def _run(
@@ -87,7 +87,7 @@ def _run(
     status: NDArray[np.int8],
 ) -> None:
     if len(rows):
-        some, status[rows] = road(Params._make(field[rows] for field in p), settings)
+        outcome_of_rows, status[rows] = road(Params._make(field[rows] for field in p), settings)
         whole: tuple[Any, ...] = outcome
-        for field, part in zip(whole, some, strict=True):
+        for field, part in zip(whole, outcome_of_rows, strict=True):
             field[rows] = part

@@ -37,7 +37,7 @@ def row(
                 raise InputError(
                     f"{result}: row {recomputed.number}: no trajectory: {recomputed.reason}"
                 )
-            draw(with_trajectory(recomputed.there, recomputed.again), plot)
+            draw(with_trajectory(recomputed.stored, recomputed.again), plot)
     print_json(plain(recomputed)) if json else _show(recomputed, ds.sizes["sample"])
     return 1 if recomputed.differing else 0
 
@@ -84,8 +84,8 @@ def _show(recomputed: RowAgain, rows: int) -> None:
         [
             (name, quantity(value, unit))
             for name, value in stored.values.items()
-            if recomputed.there[name].attrs.get("role") == "input"
-            for unit in [recomputed.there[name].attrs["units"]]
+            if recomputed.stored[name].attrs.get("role") == "input"
+            for unit in [recomputed.stored[name].attrs["units"]]
         ]
     )
     show_outputs(stored)

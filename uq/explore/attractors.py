@@ -1,4 +1,4 @@
-"""Which rows settled on the same attractor, judged by their outputs alone.
+"""Clustering of rows by the attractor on which they settled, from their outputs alone.
 
 Sorted by one output, rows of two attractors are separated by a gap. Rows are split at every gap of
 every output, and the parts again until no gap is left. So rows that differ no more than neighbours
@@ -51,8 +51,8 @@ def attractors(compared: Sequence[AttractorNumber], rows: int) -> NDArray[np.int
     """
     labels, count = np.zeros(rows, np.int64), 0
     while count < (count := len(np.unique(labels))):
-        for one in compared:
-            labels = _parted(labels, one)
+        for number in compared:
+            labels = _parted(labels, number)
     _, first, place, frequency = np.unique(
         labels, return_index=True, return_inverse=True, return_counts=True
     )
@@ -61,15 +61,15 @@ def attractors(compared: Sequence[AttractorNumber], rows: int) -> NDArray[np.int
     return rank[place]
 
 
-def _parted(labels: NDArray[np.int64], one: AttractorNumber) -> NDArray[np.int64]:
+def _parted(labels: NDArray[np.int64], number: AttractorNumber) -> NDArray[np.int64]:
     """Split each group of rows at the gaps of one output."""
-    size = np.abs(one.values[np.isfinite(one.values)]).max(initial=0.0)
-    order = np.lexsort((one.values, labels))
-    values, errors, groups = one.values[order], one.errors[order], labels[order]
-    here, there = values[:-1], values[1:]
-    slack = one.tolerance * size + STANDARD_ERRORS * np.hypot(errors[:-1], errors[1:])
+    size = np.abs(number.values[np.isfinite(number.values)]).max(initial=0.0)
+    order = np.lexsort((number.values, labels))
+    values, errors, groups = number.values[order], number.errors[order], labels[order]
+    lower, upper = values[:-1], values[1:]
+    slack = number.tolerance * size + STANDARD_ERRORS * np.hypot(errors[:-1], errors[1:])
     with np.errstate(invalid="ignore"):
-        alike = (here == there) | (there - here <= slack) | (np.isnan(here) & np.isnan(there))
+        alike = (lower == upper) | (upper - lower <= slack) | (np.isnan(lower) & np.isnan(upper))
     new = np.concatenate([[False], ~alike | (groups[:-1] != groups[1:])])[: len(labels)]
     parted = np.empty_like(labels)
     parted[order] = np.cumsum(new)

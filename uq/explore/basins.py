@@ -99,7 +99,7 @@ def basins(
         return runner.carry_out(workload, options)
     path = Path(output)
     if path.is_file():
-        return _found(path, identity)
+        return _reused(path, identity)
     whole_files.check_target(path, tally.row_bytes(workload) * workload.total)
     ds = runner.carry_out(workload, options)
     whole_files.write(ds, path)
@@ -116,7 +116,7 @@ def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]
     return tuple(name for name in names if name in by or model.outputs[name].is_category)
 
 
-def _found(path: Path, identity: str) -> xr.Dataset:
+def _reused(path: Path, identity: str) -> xr.Dataset:
     try:
         refuse_tricks(path)
         ds = xr.load_dataset(path, engine="netcdf4", decode_timedelta=False)
@@ -144,10 +144,10 @@ def _finish(
         for i, name in enumerate(model.parameter_names)
     }
     flat = result_file.build_rows(model, grid.settings, values, columns, status, failures)
-    known = np.flatnonzero(~result_file.failed(flat))
+    valid = np.flatnonzero(~result_file.failed(flat))
     labels = np.full(grid.rows, -1, np.int32)
-    numbers = list(_numbers(flat.isel(sample=known), compared, tolerance))
-    labels[known] = attractors(numbers, len(known))
+    numbers = list(_numbers(flat.isel(sample=valid), compared, tolerance))
+    labels[valid] = attractors(numbers, len(valid))
     about = {
         "long_name": "attractor, -1 where the row failed",
         "compared": " ".join(compared),
@@ -155,7 +155,7 @@ def _finish(
         "standard_errors": STANDARD_ERRORS,
     }
     flat["attractor"] = ("sample", labels, about)
-    ds = _folded(flat, grid).merge(_table(flat.isel(sample=known), grid))
+    ds = _folded(flat, grid).merge(_table(flat.isel(sample=valid), grid))
     title = f"Basins of attraction of model '{model.name}'"
     ds.attrs = flat.attrs | {"title": title, "basins_identity": identity}
     for variable in ds.variables.values():
@@ -192,11 +192,13 @@ def _folded(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
 def _table(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
     """Return the table of attractors, given the rows that did not fail."""
     _, first, count = np.unique(flat["attractor"], return_index=True, return_counts=True)
-    some = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)
+    representatives = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)
     for name, output in grid.model.outputs.items():
         if output.is_category:
-            words = np.array(["none", *output.categories])[some[name].values + 1]
-            some[name] = some[name].dims, words, {"long_name": output.meaning}
-    table = some.rename({"sample": "basin"} | {name: f"representative_{name}" for name in some})
+            words = np.array(["none", *output.categories])[representatives[name].values + 1]
+            representatives[name] = representatives[name].dims, words, {"long_name": output.meaning}
+    table = representatives.rename(
+        {"sample": "basin"} | {name: f"representative_{name}" for name in representatives}
+    )
     table["share"] = ("basin", count / grid.rows, {"units": "1", "long_name": "share of all rows"})
     return table.assign_coords(basin=("basin", np.arange(len(first)), {"long_name": "attractor"}))

@@ -64,25 +64,25 @@ def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
         if calls > _CALLS:
             raise ValueError("too long a search")
         try:
-            there = margin(np.array(points))
+            values = margin(np.array(points))
         except Exception as error:  # OpenTURNS would turn it into text
             refused.append(error)
             raise
-        if not np.isfinite(there).all():
+        if not np.isfinite(values).all():
             raise ValueError("a row without a value")
-        return there[:, None]
+        return values[:, None]
 
     function = ot.PythonFunction(u.shape[1], 1, func_sample=sample)
     limit = ot.CompositeRandomVector(function, ot.RandomVector(ot.Normal(u.shape[1])))
     event = ot.ThresholdEvent(limit, ot.Greater(), 0.0)
-    found: list[Floats] = []
+    candidates: list[Floats] = []
     with undone(partial(ot.Log.Show, ot.Log.Flags())):
         ot.Log.Show(ot.Log.NONE)  # a failed search is reported in our own words
         searches = 0
         for start in np.argsort(-margins, kind="stable")[: max(_STARTS, len(u) // 10)]:
             if searches == _STARTS:
                 break
-            if any(_cosine(u[start], point) > _SAME_WAY for point in found):
+            if any(_cosine(u[start], point) > _SAME_WAY for point in candidates):
                 continue
             searches += 1
             calls = 0
@@ -94,12 +94,12 @@ def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
                 search.run()
                 point = np.array(search.getResult().getStandardSpaceDesignPoint())
                 if solver.getResult().getConstraintError() < 1e-3 * (1 + np.ptp(margins)):
-                    found.append(point)
+                    candidates.append(point)
             if refused:
                 raise refused[0]
-    found.sort(key=lambda point: float(np.linalg.norm(point)))
+    candidates.sort(key=lambda point: float(np.linalg.norm(point)))
     apart: list[Floats] = []
-    for point in found:
+    for point in candidates:
         if all(np.linalg.norm(point - other) > _APART for other in apart):
             apart.append(point)
     return np.array(apart).reshape(-1, u.shape[1])

@@ -34,18 +34,22 @@ def with_given_rows(study: Study, scores: Floats, name: str, seed: int) -> Study
     """
     names = study.model.parameter_names
     x = physical(study, special.ndtr(scores))
-    columns = {one: x[:, names.index(one)] for one in study.uncertain}
+    columns = {input_name: x[:, names.index(input_name)] for input_name in study.uncertain}
     tables = {
         table: entries
         for table, entries in read_toml(study.text).items()
         if table not in ("analysis", "dependence")
     }
     tables["uncertain"] = {
-        one: _within(columns[one]) if one in columns and "times" in entry else entry
-        for one, entry in tables["uncertain"].items()
+        input_name: _within(columns[input_name])
+        if input_name in columns and "times" in entry
+        else entry
+        for input_name, entry in tables["uncertain"].items()
     }
     tables["design"] = {"method": "imported", "file": _FILE, "seed": seed}
-    listed = {one: " ".join(map(repr, values.tolist())) for one, values in columns.items()}
+    listed = {
+        input_name: " ".join(map(repr, values.tolist())) for input_name, values in columns.items()
+    }
     tables["data"] = tables.get("data", {}) | {_FILE: listed}
     text = "\n".join(f"{table} = {toml(entries)}" for table, entries in tables.items())
     return study_from_text(text, name, study.model_reference)

@@ -104,29 +104,33 @@ def grid_of(
         Everything that is wrong, one line each.
     """
     if isinstance(model, str):
-        found, reference = model_at(model), model
+        resolved, reference = model_at(model), model
     else:
         installed = model.name in model_names() and find_model(model.name) is model
-        found, reference = model, model.name if installed else ""
-    for what, given in (("axes", axes), ("fixed", fixed), ("settings", settings)):
+        resolved, reference = model, model.name if installed else ""
+    for argument, given in (("axes", axes), ("fixed", fixed), ("settings", settings)):
         if not isinstance(given, Mapping):
-            raise InputError(f"{what} must be a dictionary with names as keys: {given!r}")
+            raise InputError(f"{argument} must be a dictionary with names as keys: {given!r}")
     faults = [] if axes else ["axes: nothing varies; give at least one parameter its values"]
-    wrong_axes = {name: _axis_problem(found, name, axis) for name, axis in axes.items()}
+    wrong_axes = {name: _axis_problem(resolved, name, axis) for name, axis in axes.items()}
     twice = dict.fromkeys(axes, "is among the axes too; keep one of the two")
     wrong_fixed = {
-        name: twice.get(name) or parameter_problem(found, name, value)
+        name: twice.get(name) or parameter_problem(resolved, name, value)
         for name, value in fixed.items()
     }
-    frozen, wrong = read_settings(found, settings)
+    frozen, wrong = read_settings(resolved, settings)
     faults += fault_lines("axes: ", axes, wrong_axes) + fault_lines("fixed: ", fixed, wrong_fixed)
     if faults := faults + fault_lines("settings: ", settings, wrong):
         raise InputError(*faults)
     return ParameterGrid(
-        found.given(frozen),
+        resolved.given(frozen),
         reference,
         {name: (float(a), float(b), index(n)) for name, (a, b, n) in axes.items()},
-        {name: float(x) for name, x in (found.nominal | dict(fixed)).items() if name not in axes},
+        {
+            name: float(x)
+            for name, x in (resolved.nominal | dict(fixed)).items()
+            if name not in axes
+        },
         frozen,
     )
 

@@ -1,4 +1,4 @@
-"""How far rows of a study lie beyond a threshold, as a function on standard normal space."""
+"""Limit state: the margin of rows beyond a threshold, as a function on standard normal space."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -63,19 +63,19 @@ class Enlarged(NamedTuple):
     Attributes
     ----------
     rows : xarray.Dataset
-    found : Posterior
+    updated : Posterior
     kept : list of Path
         Files of the new rows, no longer needed once the posterior is written.
     """
 
     rows: xr.Dataset
-    found: Posterior
+    updated: Posterior
     kept: list[Path]
 
 
 def enlarged(
-    own: xr.Dataset,
-    found: Posterior,
+    study_rows: xr.Dataset,
+    updated: Posterior,
     inspections: Sequence[Inspection],
     model_cv: float,
     budget: Budget,
@@ -84,9 +84,9 @@ def enlarged(
 
     Parameters
     ----------
-    own : xarray.Dataset
+    study_rows : xarray.Dataset
         A result.
-    found : Posterior
+    updated : Posterior
         What the inspections leave of it.
     inspections : sequence of Inspection
     model_cv : float
@@ -120,18 +120,18 @@ def enlarged(
     .. [1] J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, "Adaptive multiple importance
        sampling", Scand. J. Stat. 39, 798-812 (2012).
     """
-    study = _study_of(own, found, budget.model)
-    n, of = own.sizes["sample"], repetitions_of(own)
-    count = len(np.unique(of))
-    step = count * nesting_of(own).units
+    study = _study_of(study_rows, updated, budget.model)
+    n, repetition_of = study_rows.sizes["sample"], repetitions_of(study_rows)
+    count = len(np.unique(repetition_of))
+    step = count * nesting_of(study_rows).units
     each = -(-max(n // _SHARE, _FEWEST) // step) * step
     if budget.rows < each:
         raise InputError(f"rows = {budget.rows}: a round of new rows takes {each}")
     scores = special.ndtri(unit_block(study, 0, n))
-    rounds = _Rounds(study, own, inspections, model_cv, budget, each)
-    seeking = [Repetition(scores[of == r], each // count) for r in range(count)]
-    settled = rounds.settled(seeking, *rounds.until_enough(seeking, own, found))
-    return Enlarged(*rounds.until_enough(settled, own, found), rounds.kept)
+    rounds = _Rounds(study, study_rows, inspections, model_cv, budget, each)
+    seeking = [Repetition(scores[repetition_of == r], each // count) for r in range(count)]
+    settled = rounds.settled(seeking, *rounds.until_enough(seeking, study_rows, updated))
+    return Enlarged(*rounds.until_enough(settled, study_rows, updated), rounds.kept)
 
 
 class _Rounds:
@@ -140,59 +140,67 @@ class _Rounds:
     def __init__(
         self,
         study: Study,
-        own: xr.Dataset,
+        study_rows: xr.Dataset,
         inspections: Sequence[Inspection],
         model_cv: float,
         budget: Budget,
         each: int,
     ):
-        self._study, self._own, self._budget, self._each = study, own, budget, each
+        self._study, self._study_rows, self._budget, self._each = study, study_rows, budget, each
         self._inspections, self._cv = inspections, model_cv
-        self._name = _digest(own, inspections, model_cv)
+        self._name = _digest(study_rows, inspections, model_cv)
         self._number = 0
         self.kept: list[Path] = []
 
     def until_enough(
-        self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
+        self, repetitions: Sequence[Repetition], rows: xr.Dataset, updated: Posterior
     ) -> tuple[xr.Dataset, Posterior]:
         """Add rounds to the rows of the study until they represent what the inspections leave."""
-        rounds, of, why = list[xr.Dataset](), repetitions_of(rows), distrust(found)
-        while why or min(one.effective for one in found.weights) < ENOUGH:
+        rounds, repetition_of, why = list[xr.Dataset](), repetitions_of(rows), distrust(updated)
+        while why or min(weights.effective for weights in updated.weights) < ENOUGH:
             if (self._number + 1) * self._each > self._budget.rows:
                 if not why:
                     break
                 raise RunError(f"after {self._number * self._each} new rows: {_short(rounds, why)}")
-            rounds.append(self._computed(self._drawn(repetitions, found, of)))
+            rounds.append(self._computed(self._drawn(repetitions, updated, repetition_of)))
             count = len(repetitions)
-            of = np.append(of, np.repeat(np.arange(count, dtype=of.dtype), self._each // count))
-            log_importance = np.empty(len(of))
-            for r, one in enumerate(repetitions):
-                log_importance[of == r] = one.log_importance
-            rows = with_rounds(self._own, rounds, log_importance, of)
-            found = posterior(rows, self._inspections, self._cv)
-            if censored := censoring(found):
+            repetition_of = np.append(
+                repetition_of,
+                np.repeat(np.arange(count, dtype=repetition_of.dtype), self._each // count),
+            )
+            log_importance = np.empty(len(repetition_of))
+            for r, repetition in enumerate(repetitions):
+                log_importance[repetition_of == r] = repetition.log_importance
+            rows = with_rounds(self._study_rows, rounds, log_importance, repetition_of)
+            updated = posterior(rows, self._inspections, self._cv)
+            if censored := censoring(updated):
                 raise RunError(censored)
-            why = distrust(found)
-        return rows, found
+            why = distrust(updated)
+        return rows, updated
 
     def settled(
-        self, repetitions: Sequence[Repetition], rows: xr.Dataset, found: Posterior
+        self, repetitions: Sequence[Repetition], rows: xr.Dataset, updated: Posterior
     ) -> list[Repetition]:
         """Return repetitions that draw around the rows of these, and drop them."""
-        of, likelihoods = rows["replicate"].values, _log_likelihoods(found)
-        each = [[log[of == r] for log in likelihoods] for r in range(len(repetitions))]
+        repetition_of, likelihoods = rows["replicate"].values, _log_likelihoods(updated)
+        each = [[log[repetition_of == r] for log in likelihoods] for r in range(len(repetitions))]
         return Repetition.settled(
-            repetitions, each, _columns(self._study, found), self._rng(len(repetitions))
+            repetitions, each, _columns(self._study, updated), self._rng(len(repetitions))
         )
 
     def _drawn(
-        self, repetitions: Sequence[Repetition], found: Posterior, of: NDArray[np.integer]
+        self,
+        repetitions: Sequence[Repetition],
+        updated: Posterior,
+        repetition_of: NDArray[np.integer],
     ) -> list[Floats]:
         """Return the part of a round that each repetition draws."""
-        likelihoods, columns = _log_likelihoods(found), _columns(self._study, found)
+        likelihoods, columns = _log_likelihoods(updated), _columns(self._study, updated)
         return [
-            one.drawn([log[of == r] for log in likelihoods], columns, self._rng(r))
-            for r, one in enumerate(repetitions)
+            repetition.drawn(
+                [log[repetition_of == r] for log in likelihoods], columns, self._rng(r)
+            )
+            for r, repetition in enumerate(repetitions)
         ]
 
     def _rng(self, part: int) -> np.random.Generator:
@@ -215,62 +223,64 @@ def _short(rounds: Sequence[xr.Dataset], why: str) -> str:
     return why if rounds else "all were needed to find where to draw; allow more"
 
 
-def why_no_new_rows(own: xr.Dataset, found: Posterior) -> str:
+def why_no_new_rows(study_rows: xr.Dataset, updated: Posterior) -> str:
     """Return why new rows of a result cannot be drawn, or ""."""
-    method, place = own.attrs["design"], nesting_of(own)
+    method, place = study_rows.attrs["design"], nesting_of(study_rows)
     design = DESIGNS[method]
     if not design.nests:
-        able = " or ".join(f"'{name}'" for name, one in DESIGNS.items() if one.nests)
+        able = " or ".join(f"'{name}'" for name, candidate in DESIGNS.items() if candidate.nests)
         return f"the design is '{method}', not {able}"
-    if not design.independent and int(own.attrs["replicates"]) == 1:
+    if not design.independent and int(study_rows.attrs["replicates"]) == 1:
         return f"a '{method}' design shows errors only by replicates: set [design] replicates = 8"
     if place.repeats > 1:
         return f"each unit has {place.repeats} repeats, not one"
-    if place.units > 1 and (shared := shared_inputs(own, found.scale)):
+    if place.units > 1 and (shared := shared_inputs(study_rows, updated.scale)):
         return f"units share {choices(shared)}, and may share only what scales lives"
-    if taken := [name for name in (IMPORTANCE, ROUND) if name in own.variables]:
+    if taken := [name for name in (IMPORTANCE, ROUND) if name in study_rows.variables]:
         return f"the model has a '{taken[0]}', which is what a variable of new rows is called"
     return ""
 
 
-def _study_of(own: xr.Dataset, found: Posterior, model: str | None) -> Study:
+def _study_of(study_rows: xr.Dataset, updated: Posterior, model: str | None) -> Study:
     """Return the study of a result, if more rows can be drawn from its laws."""
-    if why := why_no_new_rows(own, found):
+    if why := why_no_new_rows(study_rows, updated):
         raise InputError(
             f"new rows cannot be drawn: {why}; run the study with more samples, or with a law that"
             " allows for what was found"
         )
-    attrs = own.attrs
+    attrs = study_rows.attrs
     recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
-    samples = nesting_of(own).samples // int(attrs["replicates"])
+    samples = nesting_of(study_rows).samples // int(attrs["replicates"])
     study, change = study_here(*recorded, samples, "result", model)
     if change:
         raise InputError(f"the result was computed with another model ({change}): run it again")
     return study
 
 
-def _columns(study: Study, found: Posterior) -> NDArray[np.intp]:
+def _columns(study: Study, updated: Posterior) -> NDArray[np.intp]:
     """Return the inputs to draw from a law of their own: all but the integrated one."""
-    integrated = found.scale.name if found.scale else ""
+    integrated = updated.scale.name if updated.scale else ""
     names = list(study.uncertain)
     return np.array([i for i, name in enumerate(names) if name != integrated], dtype=np.intp)
 
 
-def _log_likelihoods(found: Posterior) -> list[Floats]:
+def _log_likelihoods(updated: Posterior) -> list[Floats]:
     """Return the likelihood of each row as each inspected unit, given all other inspections."""
-    grids, evidence = on_wide_grids(found)
+    grids, evidence = on_wide_grids(updated)
     likelihoods = []
     for unit, (grid, rest) in enumerate(zip(grids, evidence.rest, strict=True)):
-        block = found.likelihoods.blocks[unit]
-        joint = rest[found.world[block]] + found.likelihoods.of(unit, grid.values)
-        counted, log_before = special.logsumexp(joint, axis=1), found.likelihoods.log_before(unit)
-        known = np.isfinite(log_before)
-        likelihoods.append(np.where(known, counted - np.where(known, log_before, 0.0), -np.inf))
+        block = updated.likelihoods.blocks[unit]
+        joint = rest[updated.world[block]] + updated.likelihoods.log_likelihood(unit, grid.values)
+        counted, log_before = special.logsumexp(joint, axis=1), updated.likelihoods.log_before(unit)
+        finite = np.isfinite(log_before)
+        likelihoods.append(np.where(finite, counted - np.where(finite, log_before, 0.0), -np.inf))
     return likelihoods
 
 
-def _digest(own: xr.Dataset, inspections: Sequence[Inspection], model_cv: float) -> str:
-    """Return what new rows depend on, in short."""
-    asked = [digest(one) for one in inspections]
-    what = repr((own.attrs["study_identity"], own.sizes["sample"], asked, float(model_cv)))
-    return sha256(what.encode()).hexdigest()[:8]
+def _digest(study_rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float) -> str:
+    """Return a short digest of everything that new rows depend on."""
+    asked = [digest(inspection) for inspection in inspections]
+    key = repr(
+        (study_rows.attrs["study_identity"], study_rows.sizes["sample"], asked, float(model_cv))
+    )
+    return sha256(key.encode()).hexdigest()[:8]

@@ -34,7 +34,7 @@ _Generators = list[np.random.Generator]
 
 
 class _Outcome(NamedTuple):
-    """What a method found.
+    """Outcome of a method: its estimates, interval and bounds.
 
     Attributes
     ----------
@@ -137,8 +137,8 @@ def rare_event(
 
     Examples
     --------
-    >>> found = uq.rare_event("studies/exponential-wear.toml", "life", 1e5, below=True)
-    >>> bool(found["low"] < 3.155e-6 < found["high"])  # the true value
+    >>> event = uq.rare_event("studies/exponential-wear.toml", "life", 1e5, below=True)
+    >>> bool(event["low"] < 3.155e-6 < event["high"])  # the true value
     True
     """
     if not isinstance(study, Study):
@@ -256,22 +256,22 @@ def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outco
         failed.append(margin.failed)
         return margins
 
-    found = subset_simulation(counting, margin.dimension, samples, generators)
-    hits, rows = sum(one.first_hits for one in found), samples * len(found)
-    inside = margin.uncertain(np.concatenate([one.inside for one in found]))
+    replicates = subset_simulation(counting, margin.dimension, samples, generators)
+    hits, rows = sum(replicate.first_hits for replicate in replicates), samples * len(replicates)
+    inside = margin.uncertain(np.concatenate([replicate.inside for replicate in replicates]))
     nothing = np.full(margin.dimension, np.nan)
     variables = {
-        "levels": ("replicate", np.array([one.levels for one in found])),
-        "ended": ("replicate", np.array([one.ended for one in found])),
+        "levels": ("replicate", np.array([replicate.levels for replicate in replicates])),
+        "ended": ("replicate", np.array([replicate.ended for replicate in replicates])),
         "typical": ("parameter", np.median(inside, axis=0) if len(inside) else nothing),
     }
-    estimates = np.array([one.probability for one in found])
+    estimates = np.array([replicate.probability for replicate in replicates])
     supported, failed_high = (
         float(binomial_interval(k / rows, rows)[1]) for k in (hits, hits + failed[0])
     )
-    plain = 0 if all(one.levels == 1 and hits for one in found) else rows
-    scatter = disagreement(found, samples)
-    interval = subset_interval(found, samples)
+    plain = 0 if all(replicate.levels == 1 and hits for replicate in replicates) else rows
+    scatter = disagreement(replicates, samples)
+    interval = subset_interval(replicates, samples)
     return _Outcome(estimates, interval, supported, failed_high, plain, scatter, variables)
 
 
@@ -388,11 +388,11 @@ def _notes(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
             " 'subset' does not need them"
         )
     if margin.failed:
-        what = "".join(f"; {label}: {text}" for label, text in margin.failures.items())
+        causes = "".join(f"; {label}: {text}" for label, text in margin.failures.items())
         notes.append(
             f"{margin.failed} of {int(ds['rows'])} rows failed, or were censored before the"
             " threshold, and count as outside the event: the probability is a lower bound; with"
-            f" them inside, the rows support no more than {float(ds['failed_high']):.2g}{what}"
+            f" them inside, the rows support no more than {float(ds['failed_high']):.2g}{causes}"
         )
     if margin.undefined:
         notes.append(

@@ -36,7 +36,7 @@ class RowAgain:
     Attributes
     ----------
     number : int
-    there : xarray.Dataset
+    stored : xarray.Dataset
         The row in the result, along a dimension ``sample`` of size 1.
     row : Row
         The same as plain numbers.
@@ -53,7 +53,7 @@ class RowAgain:
     """
 
     number: int
-    there: xr.Dataset
+    stored: xr.Dataset
     row: Row
     again: Row | None = None
     differing: tuple[str, ...] = ()
@@ -69,11 +69,11 @@ class RowAgain:
     @property
     def place(self) -> dict[str, int | str]:
         """Its place in the design, by name; of the block its label."""
-        there = self.there
-        found: dict[str, int | str] = {
-            name: int(there[name][0]) for name in PLACES if name in there
+        stored = self.stored
+        indices: dict[str, int | str] = {
+            name: int(stored[name][0]) for name in PLACES if name in stored
         }
-        return found | {"block": dict(flags(there["block"]))[int(there["block"][0])]}
+        return indices | {"block": dict(flags(stored["block"]))[int(stored["block"][0])]}
 
 
 def row(
@@ -122,13 +122,13 @@ def row(
     (True, True)
     """
     ds = result if isinstance(result, xr.Dataset) else open_result(result)
-    found = row_again(ds, number, lowest, near_quantile, model)
+    recomputed = row_again(ds, number, lowest, near_quantile, model)
     attrs = {"long_name": "whether computing the row again gave the same bits"}
-    reason = {"reason": found.reason} if found.reason else {}
-    one = found.there.assign(equal=((), found.equal, attrs | reason))
-    if not trajectory or found.again is None:
-        return one
-    return with_trajectory(one, found.again)
+    reason = {"reason": recomputed.reason} if recomputed.reason else {}
+    annotated = recomputed.stored.assign(equal=((), recomputed.equal, attrs | reason))
+    if not trajectory or recomputed.again is None:
+        return annotated
+    return with_trajectory(annotated, recomputed.again)
 
 
 def row_again(
@@ -150,20 +150,20 @@ def row_again(
         choice = near_quantile_row(ds, *near_quantile)
     chosen = choice.number if choice else int(number or 0)
     place = place_of(ds, chosen)
-    there, stored = ds.isel(sample=[place]).load(), stored_row(ds, place)
-    found = RowAgain(chosen, there, stored, choice=choice)
-    return _computed(ds, found, place, model, source)
+    stored, plain = ds.isel(sample=[place]).load(), stored_row(ds, place)
+    recomputed = RowAgain(chosen, stored, plain, choice=choice)
+    return _computed(ds, recomputed, place, model, source)
 
 
 def _computed(
-    ds: xr.Dataset, found: RowAgain, place: int, model: str | None, source: str
+    ds: xr.Dataset, recomputed: RowAgain, place: int, model: str | None, source: str
 ) -> RowAgain:
-    attrs, status = ds.attrs, int(found.row.status[0])
+    attrs, status = ds.attrs, int(recomputed.row.status[0])
     if model is not None and (other := model_at(model).name) != attrs["model"]:
         raise InputError(f"--model {model}: is '{other}'; the rows are of '{attrs['model']}'")
 
     def without(reason: str) -> RowAgain:
-        return replace(found, reason=f"it cannot be computed again: {reason}")
+        return replace(recomputed, reason=f"it cannot be computed again: {reason}")
 
     if status == Status.TIMED_OUT:
         return without("it outlived its time limit")
@@ -181,15 +181,15 @@ def _computed(
                 f"'{study.model.name}' is not its model, '{attrs['model']}'; name that with --model"
             )
         settings = settings_by_row(ds, study, np.array([place]))[place]
-        again = computed_again(study, settings, found.number, status)
+        again = computed_again(study, settings, recomputed.number, status)
         versions = other_versions(ds, study.model_reference)
     except InputError as error:
         return without("; ".join(error.lines))
-    names = tuple(differing(again, found.there))
+    names = tuple(differing(again, recomputed.stored))
     reason = _reason(change, versions, source) if names else ""
-    if again.status == found.row.status:  # the sentence of this row, not of the first such row
-        found = replace(found, row=found.row._replace(failures=again.failures))
-    return replace(found, again=again, differing=names, reason=reason, versions=versions)
+    if again.status == recomputed.row.status:  # the sentence of this row, not of the first such row
+        recomputed = replace(recomputed, row=recomputed.row._replace(failures=again.failures))
+    return replace(recomputed, again=again, differing=names, reason=reason, versions=versions)
 
 
 def _reason(change: str, versions: Mapping[str, tuple[str, str]], source: str) -> str:

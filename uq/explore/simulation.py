@@ -103,10 +103,10 @@ def _trajectory(row: Row) -> xr.DataArray:
             "quantity": names,
             "units": ("quantity", list(units)),  # "unit" is that of the row in its sample
             "meaning": ("quantity", list(meanings)),
-            "lower_stop": ("quantity", [history.stops.get(one, nowhere)[0] for one in names]),
-            "upper_stop": ("quantity", [history.stops.get(one, nowhere)[1] for one in names]),
-            "turns": ("quantity", [int(one in history.angles) for one in names]),
-            "shown": ("quantity", [shown.index(one) if one in shown else -1 for one in names]),
+            "lower_stop": ("quantity", [history.stops.get(name, nowhere)[0] for name in names]),
+            "upper_stop": ("quantity", [history.stops.get(name, nowhere)[1] for name in names]),
+            "turns": ("quantity", [int(name in history.angles) for name in names]),
+            "shown": ("quantity", [shown.index(name) if name in shown else -1 for name in names]),
         },
         attrs={"role": "trajectory", "long_name": "time history", "period": history.period},
     )

@@ -95,7 +95,7 @@ def subset_simulation(
     """
     walks = [_walk(d, samples, rng) for rng in generators]
     asked = {number: next(walk) for number, walk in enumerate(walks)}
-    found: dict[int, Found] = {}
+    outcomes: dict[int, Found] = {}
     while asked:
         margins = margin(np.concatenate(list(asked.values())))
         parts = np.split(margins, np.cumsum([len(u) for u in asked.values()])[:-1])
@@ -103,9 +103,9 @@ def subset_simulation(
             try:
                 asked[number] = walks[number].send(part)
             except StopIteration as ended:
-                found[number] = ended.value
+                outcomes[number] = ended.value
                 del asked[number]
-    return [found[number] for number in range(len(walks))]
+    return [outcomes[number] for number in range(len(walks))]
 
 
 def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, Floats, Found]:
@@ -131,21 +131,21 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
         chain, margins = [u[chosen]], [g[chosen]]
         for k in range(1, ceil(samples / top)):
             move = np.sqrt(1 - step**2) * chain[-1] + step * rng.standard_normal((top, d))
-            there = yield move
-            accepted = there >= limit
+            proposed = yield move
+            accepted = proposed >= limit
             chain.append(np.where(accepted[:, None], move, chain[-1]))
-            margins.append(np.where(accepted, there, margins[-1]))
+            margins.append(np.where(accepted, proposed, margins[-1]))
             step = min(1.0, step * np.exp((accepted.mean() - _ACCEPTED) / np.sqrt(k)))
         u, g = np.concatenate(chain), np.concatenate(margins)
         levels += 1
 
 
-def disagreement(found: list[Found], samples: int) -> float:
+def disagreement(replicates: list[Found], samples: int) -> float:
     """Return the factor between the largest and smallest estimate where chains do not explain it.
 
     Parameters
     ----------
-    found : list of Found
+    replicates : list of Found
     samples : int
         Rows of each level.
 
@@ -156,21 +156,21 @@ def disagreement(found: list[Found], samples: int) -> float:
         rows, or some replicate did not reach the event. Larger, rows entered the event from far
         outside: a part of it has no trend that leads there.
     """
-    estimates = np.array([one.probability for one in found])
-    if len(found) < 2 or not (estimates > 0).all():
+    estimates = np.array([replicate.probability for replicate in replicates])
+    if len(replicates) < 2 or not (estimates > 0).all():
         return 1.0
-    levels = np.mean([one.levels for one in found])
+    levels = np.mean([replicate.levels for replicate in replicates])
     explained = levels * (1 / LEVEL_SHARE - 1) * (1 + _CORRELATION) / samples
     scatter = np.log(estimates).var(ddof=1)
     return float(estimates.max() / estimates.min()) if scatter > 4 * explained else 1.0
 
 
-def subset_interval(found: list[Found], samples: int) -> Ends:
+def subset_interval(replicates: list[Found], samples: int) -> Ends:
     """Return the interval that replicates of subset simulation support.
 
     Parameters
     ----------
-    found : list of Found
+    replicates : list of Found
     samples : int
         Rows of each level.
 
@@ -183,14 +183,14 @@ def subset_interval(found: list[Found], samples: int) -> Ends:
         share of the first level's rows. The other gives each replicate that never reached the event
         the probability of its last level, of which the event is a part.
     """
-    estimates = np.array([one.probability for one in found])
-    rows = samples * len(found)
-    first = binomial_interval(sum(one.first_hits for one in found) / rows, rows)
-    if all(one.levels == 1 for one in found):
+    estimates = np.array([replicate.probability for replicate in replicates])
+    rows = samples * len(replicates)
+    first = binomial_interval(sum(replicate.first_hits for replicate in replicates) / rows, rows)
+    if all(replicate.levels == 1 for replicate in replicates):
         return first
     scatter = log_scatter_interval(estimates)
     if (estimates > 0).all():
         return scatter
-    at_most = np.array([one.probability or one.last_level for one in found])
+    at_most = np.array([replicate.probability or replicate.last_level for replicate in replicates])
     high = np.fmin(first[1], log_scatter_interval(at_most)[1])
     return float(np.fmax(scatter[0], 0.0)), float(high)

@@ -95,8 +95,8 @@ def update(
 
     Examples
     --------
-    >>> found = [{"unit": "A", "output": "life", "kind": "measured", "value": 8e5, "cv": 0.1}]
-    >>> posterior = uq.update("studies/exponential-wear.toml", found)
+    >>> seen = [{"unit": "A", "output": "life", "kind": "measured", "value": 8e5, "cv": 0.1}]
+    >>> posterior = uq.update("studies/exponential-wear.toml", seen)
     >>> table = uq.summary(uq.as_unit(posterior, "A"))
     >>> bool(6e5 < table.loc["life", "q0.5"] < 1e6)
     True
@@ -150,20 +150,20 @@ def learn(
     if output is not None and Path(output).is_file():
         _check_that_it_is_a_posterior(Path(output))
     quantities = quantities_of(prior_of(ds))
-    inspections = all_of(ds, [as_named(quantities, one) for one in new])
+    inspections = all_of(ds, [as_named(quantities, inspection) for inspection in new])
     cv = float(ds.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
     if not 0 <= cv < MOST_CV:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")
     rows = independent_rows(own_rows(prior_of(ds)))
-    found, kept, new_rows = posterior(rows, inspections, cv), list[Path](), 0
-    if why := censoring(found):
+    updated, kept, new_rows = posterior(rows, inspections, cv), list[Path](), 0
+    if why := censoring(updated):
         raise RunError(why)
-    if why := distrust(found):
+    if why := distrust(updated):
         if budget is None:
-            raise RunError(why + ("" if why_no_new_rows(rows, found) else _HINT))
-        rows, found, kept = enlarged(rows, found, inspections, cv, budget)
+            raise RunError(why + ("" if why_no_new_rows(rows, updated) else _HINT))
+        rows, updated, kept = enlarged(rows, updated, inspections, cv, budget)
         new_rows = budget.rows
-    result = as_result(rows, found, inspections, cv, new_rows)
+    result = as_result(rows, updated, inspections, cv, new_rows)
     if output is not None:
         write_result(result, Path(output))
     for path in kept:

@@ -1,4 +1,4 @@
-"""What the inspections say, as one answer."""
+"""Summary of a posterior: inputs, remaining lives, information gains and warnings."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ from uq.text.numbers import percent
 
 @dataclass(frozen=True)
 class Learnt:
-    """What inspections say.
+    """Summary of a posterior.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Learnt:
 
 
 def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
-    """Return what the inspections in a result of `uq.update` say.
+    """Return the summary of a result of `uq.update`.
 
     Parameters
     ----------
@@ -78,22 +78,22 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
     quality, inspections = unit_quality(ds), inspections_of(ds)
     cv = float(ds.attrs[MODEL_ERROR])
     rows = independent_rows(prior_of(ds))
-    found = posterior(rows, inspections, cv)
-    strange = strangeness(found, int(ds.attrs["seed"]), cv)
+    updated = posterior(rows, inspections, cv)
+    strange = strangeness(updated, int(ds.attrs["seed"]), cv)
     return Learnt(
         inspections,
-        min(quality, key=lambda one: one.effective),
+        min(quality, key=lambda weights: weights.effective),
         list(inputs_learnt(ds)),
         confounded(ds),
         list(remaining(ds, by)),
-        list(taught(found)),
+        list(taught(updated)),
         strange,
         [
             *_warnings(strange),
-            *_alike(list(found.units)),
-            *found.not_integrated,
-            *_interpolated(found),
-            *filter(None, [found.only_inspected]),
+            *_alike(list(updated.units)),
+            *updated.not_integrated,
+            *_interpolated(updated),
+            *filter(None, [updated.only_inspected]),
         ],
     )
 
@@ -115,9 +115,9 @@ def _alike(labels: Sequence[str]) -> Iterator[str]:
             yield f"Warning: '{other}' and '{label}' are taken for two units."
 
 
-def _interpolated(found: Posterior) -> Iterator[str]:
+def _interpolated(updated: Posterior) -> Iterator[str]:
     """Yield how well depths are known between those whose lives the result has."""
-    for look in {look.name: look for look in found.looks.values()}.values():
+    for look in {look.name: look for look in updated.looks.values()}.values():
         errors = look.depths.error() if look.depths is not None else np.empty(0)
         if np.isfinite(errors).any():
             most = percent(float(np.nanquantile(errors, 0.9)))
@@ -127,7 +127,7 @@ def _interpolated(found: Posterior) -> Iterator[str]:
             )
 
 
-def learnt_json(found: Learnt) -> dict[str, Any]:
+def learnt_json(summary: Learnt) -> dict[str, Any]:
     """Return the answer in plain data.
 
     Returns
@@ -145,51 +145,56 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
         its 2.5 and 97.5 % points over what units share.
     """
     units: dict[str, dict[str, Any]] = {}
-    for one in found.lives:
-        units.setdefault(one.unit, {})[one.output] = _life(one)
+    for remaining_life in summary.lives:
+        units.setdefault(remaining_life.unit, {})[remaining_life.output] = _life(remaining_life)
     return {
-        **quality_json(found.worst),
-        "inspections": len(found.inspections),
+        **quality_json(summary.worst),
+        "inspections": len(summary.inspections),
         "inputs": {
-            one.name: {
-                "units": one.units,
-                "prior": _spread(one.prior),
-                "posterior": _spread(one.posterior),
+            learnt_input.name: {
+                "units": learnt_input.units,
+                "prior": _spread(learnt_input.prior),
+                "posterior": _spread(learnt_input.posterior),
             }
-            for one in found.inputs
+            for learnt_input in summary.inputs
         },
         "confounded": [
-            {"inputs": [one.first, one.second], "correlation": one.correlation}
-            for one in found.confounded
+            {"inputs": [pair.first, pair.second], "correlation": pair.correlation}
+            for pair in summary.confounded
         ],
-        "taught": [as_table(one.inspection) | {"bits": one.bits} for one in found.taught],
-        "strangeness": found.strangeness,
-        "notes": found.notes,
+        "taught": [as_table(gain.inspection) | {"bits": gain.bits} for gain in summary.taught],
+        "strangeness": summary.strangeness,
+        "notes": summary.notes,
         "uninspected": units.pop(ANY, {}),
         "units": units,
     }
 
 
-def _spread(one: PosteriorMoments) -> dict[str, Any]:
-    quantiles = {repr(p): value for p, value in one.quantiles.items()}
-    found: dict[str, Any] = {}
-    for name, of in (("mean", one.mean), ("sd", one.sd)):
-        found[name] = estimate_json.number(of.value)
-        found |= {f"{name}_{end}": value for end, value in estimate_json.ends(of).items()}
-        found |= {f"{name}_reason": of.reason} if of.reason else {}
-    return found | {"quantiles": quantiles}
+def _spread(moments: PosteriorMoments) -> dict[str, Any]:
+    quantiles = {repr(p): value for p, value in moments.quantiles.items()}
+    entries: dict[str, Any] = {}
+    for name, estimate in (("mean", moments.mean), ("sd", moments.sd)):
+        entries[name] = estimate_json.number(estimate.value)
+        entries |= {f"{name}_{end}": value for end, value in estimate_json.ends(estimate).items()}
+        entries |= {f"{name}_reason": estimate.reason} if estimate.reason else {}
+    return entries | {"quantiles": quantiles}
 
 
-def _life(one: Remaining) -> dict[str, Any]:
+def _life(remaining_life: Remaining) -> dict[str, Any]:
     def spread(time: float) -> dict[str, Any]:
-        points = one.over_shared.get(time, {})
+        points = remaining_life.over_shared.get(time, {})
         return {"over_shared": {repr(p): x for p, x in points.items()}} if points else {}
 
     return {
-        "units": one.units,
-        "seen": one.seen,
-        "runs": estimate_json.whole(one.runs),
-        "remaining": {repr(p): estimate_json.whole(found) for p, found in one.life.items()},
-        "by": {repr(time): estimate_json.whole(p) | spread(time) for time, p in one.by.items()},
-        "effective_rows": one.effective_rows,
+        "units": remaining_life.units,
+        "seen": remaining_life.seen,
+        "runs": estimate_json.whole(remaining_life.runs),
+        "remaining": {
+            repr(p): estimate_json.whole(quantile) for p, quantile in remaining_life.life.items()
+        },
+        "by": {
+            repr(time): estimate_json.whole(p) | spread(time)
+            for time, p in remaining_life.by.items()
+        },
+        "effective_rows": remaining_life.effective_rows,
     }

@@ -39,10 +39,10 @@ def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None)
 
 def _cut(grid: QuadratureGrid, possible: Mask, allowed: Allowed) -> Floats:
     edges, middle = np.repeat(grid.edges[None], len(possible), axis=0), centres(grid.edges)
-    some, last = possible.any(axis=1), possible.shape[1] - 1
+    feasible, last = possible.any(axis=1), possible.shape[1] - 1
     first, final = possible.argmax(axis=1), last - possible[:, ::-1].argmax(axis=1)
     for node, beyond, edge in ((first, first - 1, first), (final, final + 1, final + 1)):
-        cut = some & (beyond >= 0) & (beyond <= last)
+        cut = feasible & (beyond >= 0) & (beyond <= last)
         if cut.any():
             inside, outside = middle[node], middle[np.clip(beyond, 0, last)]
             for _ in range(_HALVINGS):

@@ -35,15 +35,15 @@ def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
     """
     if worth.shape[1] == 1:
         return worth
-    found, middle = worth.copy(), special.ndtri(centres(grid.edges))
+    mass, middle = worth.copy(), special.ndtri(centres(grid.edges))
     width = np.diff(grid.edges)
     density = worth / width
-    found[:, 1:-1] *= 1 + _curvature(np.diff(special.ndtri(grid.edges)), middle, density)
+    mass[:, 1:-1] *= 1 + _curvature(np.diff(special.ndtri(grid.edges)), middle, density)
     # Of a smooth density, the sum over cells is right without: what some gain, others lose.
-    found *= worth.sum(axis=1, keepdims=True) / np.maximum(found.sum(axis=1, keepdims=True), _TINY)
+    mass *= worth.sum(axis=1, keepdims=True) / np.maximum(mass.sum(axis=1, keepdims=True), _TINY)
     row, cell = np.nonzero(np.diff(edges) != width)
-    found[row, cell] = _of_moved(edges, grid.edges, middle, density, row, cell)
-    return found
+    mass[row, cell] = _of_moved(edges, grid.edges, middle, density, row, cell)
+    return mass
 
 
 def _curvature(width: Floats, middle: Floats, density: Floats) -> Floats:

@@ -38,18 +38,19 @@ def dependent_outputs(rows: xr.Dataset, name: str) -> Iterator[str]:
     inputs, place = inputs_of(rows), nesting_of(rows)
     shared = len(np.unique(inputs.values[name])) <= place.samples < len(place.sample)
     outputs = outputs_of(rows)
-    scaled = {one for one, declared in outputs.items() if name in scalers(inputs, declared)}
-    scaled |= {error_name(one) for one in scaled}
+    scaled = {output for output, declared in outputs.items() if name in scalers(inputs, declared)}
+    scaled |= {error_name(output) for output in scaled}
     for output, declared in outputs.items():
         if declared.is_category or output in scaled:
             continue
         for element in elements_of(rows, [output]):
-            of, values = inputs.values[name], np.where(element.censored, np.nan, element.values)
+            input_values = inputs.values[name]
+            values = np.where(element.censored, np.nan, element.values)
             if shared:
-                of, values = place.means(of), place.means(values)
-            known = np.isfinite(of) & np.isfinite(values)
-            if known.sum() < _FEWEST or np.ptp(values[known]) == 0:
+                input_values, values = place.means(input_values), place.means(values)
+            finite = np.isfinite(input_values) & np.isfinite(values)
+            if finite.sum() < _FEWEST or np.ptp(values[finite]) == 0:
                 continue
-            if stats.spearmanr(of[known], values[known]).pvalue < _CHANCE:
+            if stats.spearmanr(input_values[finite], values[finite]).pvalue < _CHANCE:
                 yield output
                 break

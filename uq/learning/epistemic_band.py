@@ -1,4 +1,4 @@
-"""How the probability of an end spreads over what units share, as the inspections leave it."""
+"""Epistemic band of the probability of an end: its posterior range over what units share."""
 
 import numpy as np
 import xarray as xr
@@ -45,9 +45,9 @@ def over_shared(ds: xr.Dataset, element: Element, seen: float, time: float) -> d
     latest = time * longer / longer.min()
     if (element.censored & (element.values < latest)).any():
         return {}
-    known = element.present
-    lives = element.values[known] / longer[known]  # with a shared input of 1
-    before, by = (_below(lives, weights[known], at / longer) for at in (seen, time))
+    present = element.present
+    lives = element.values[present] / longer[present]  # with a shared input of 1
+    before, by = (_below(lives, weights[present], at / longer) for at in (seen, time))
     with np.errstate(divide="ignore", invalid="ignore"):
         ended = (by - before) / (1 - before)
     runs = before < 1

@@ -1,4 +1,4 @@
-"""What inspections say of worlds, of an input that scales lives in them, and of their units.
+"""Evidence of inspections for worlds, for an input that scales lives in them, and for units.
 
 A world is what all units share: a sample, or all rows where nothing is shared but the integrated
 input. Each inspected unit takes rows of its own in each world, so that the product over units of
@@ -65,7 +65,7 @@ class QuadratureGrid(NamedTuple):
 
 @dataclass(frozen=True)
 class Evidence:
-    """What is learnt of worlds, and of the integrated input in them.
+    """Posterior of worlds, and of the integrated input in them, with the log evidence.
 
     Attributes
     ----------
@@ -94,9 +94,9 @@ def weigh(
     world_of: Sequence[NDArray[np.intp]],
     worlds: int,
     quantiles: Quantiles | None,
-    own: bool,
+    is_own: bool,
 ) -> Evidence:
-    """Return what inspections say.
+    """Return the evidence of the inspections, on a refined grid.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def weigh(
     worlds : int
     quantiles : callable, optional
         Values of the integrated input at given probabilities; None if there is none.
-    own : bool
+    is_own : bool
         Whether each unit has an integrated input of its own.
 
     Returns
@@ -117,21 +117,23 @@ def weigh(
     grids = [_grid(0.0, 1.0, quantiles, _NODES)] * len(likelihoods)
     nodes = _NODES
     for _ in range(_PASSES):
-        units, found = weigh_on(grids, likelihoods, world_of, worlds, own)
-        if quantiles is None or not np.isfinite(found.log_evidence):
+        units, evidence = weigh_on(grids, likelihoods, world_of, worlds, is_own)
+        if quantiles is None or not np.isfinite(evidence.log_evidence):
             break
-        narrower = [_narrower(*one) for one in zip(grids, units, found.rest, strict=True)]
-        if not own:
+        narrower = [
+            _narrower(*arguments) for arguments in zip(grids, units, evidence.rest, strict=True)
+        ]
+        if not is_own:
             narrower = narrower[:1] * len(grids)
-        if found.nodes < _MET and nodes < _MOST_NODES:
+        if evidence.nodes < _MET and nodes < _MOST_NODES:
             # Values that no row has met may be possible: finer before narrower.
             narrower, nodes = [(grid.low, grid.high) for grid in grids], nodes * 2
         elif not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
-            if nodes == _MOST_NODES or found.nodes >= _FINE:
+            if nodes == _MOST_NODES or evidence.nodes >= _FINE:
                 break
             nodes *= 2
         grids = [_grid(low, high, quantiles, nodes) for low, high in narrower]
-    return found
+    return evidence
 
 
 def weigh_on(
@@ -139,23 +141,23 @@ def weigh_on(
     likelihoods: Sequence[Likelihood],
     world_of: Sequence[NDArray[np.intp]],
     worlds: int,
-    own: bool,
+    is_own: bool,
 ) -> tuple[list[Floats], Evidence]:
-    """Return the mean likelihoods of units on given grids, and what they say; see `weigh`."""
+    """Return the mean likelihoods of units on given grids, and their evidence; see `weigh`."""
     units, nodes = [], []
-    for one, world, grid in zip(likelihoods, world_of, grids, strict=True):
-        mean, of_world = _mean_likelihood(one(grid.values), world, worlds, grid.log_share)
+    for likelihood, world, grid in zip(likelihoods, world_of, grids, strict=True):
+        mean, of_world = _mean_likelihood(likelihood(grid.values), world, worlds, grid.log_share)
         units.append(mean)
         nodes.append(of_world)
-    found = (_own if own else _shared)(units, grids, worlds)
-    if not np.isfinite(found.log_evidence):
-        return units, found
-    worth = np.exp(found.log_worlds)
+    evidence = (_per_unit if is_own else _shared)(units, grids, worlds)
+    if not np.isfinite(evidence.log_evidence):
+        return units, evidence
+    worth = np.exp(evidence.log_worlds)
     share = worth.sum(axis=1)
-    if not own:
+    if not is_own:
         nodes.append(share**2 / np.maximum((worth**2).sum(axis=1), 1e-300))
-    fewest = [float(np.average(one[share > 0], weights=share[share > 0])) for one in nodes]
-    return units, replace(found, nodes=min(fewest))
+    fewest = [float(np.average(counts[share > 0], weights=share[share > 0])) for counts in nodes]
+    return units, replace(evidence, nodes=min(fewest))
 
 
 def _grid(low: float, high: float, quantiles: Quantiles | None, nodes: int) -> QuadratureGrid:
@@ -202,13 +204,13 @@ def _shared(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: in
     return _evidence(log_worlds, rest, grids)
 
 
-def _own(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: int) -> Evidence:
+def _per_unit(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: int) -> Evidence:
     of_unit = [
-        special.logsumexp(one + grid.log_share, axis=1, keepdims=True)
-        for one, grid in zip(units, grids, strict=True)
+        special.logsumexp(log_likelihood + grid.log_share, axis=1, keepdims=True)
+        for log_likelihood, grid in zip(units, grids, strict=True)
     ]
     log_worlds, rest = _with_all_but_each(of_unit, np.zeros(1), worlds)
-    rest = [one + grid.log_share for one, grid in zip(rest, grids, strict=True)]
+    rest = [log_rest + grid.log_share for log_rest, grid in zip(rest, grids, strict=True)]
     return _evidence(log_worlds, rest, grids)
 
 
@@ -216,12 +218,15 @@ def _with_all_but_each(
     units: Sequence[Floats], log_share: Floats, worlds: int
 ) -> tuple[Floats, list[Floats]]:
     """Return logarithms of products with the prior, of all units and of all but each."""
-    impossible = [np.isneginf(one) for one in units]
-    finite = [np.where(is_so, 0.0, one) for is_so, one in zip(impossible, units, strict=True)]
+    impossible = [np.isneginf(log_likelihood) for log_likelihood in units]
+    finite = [
+        np.where(is_so, 0.0, log_likelihood)
+        for is_so, log_likelihood in zip(impossible, units, strict=True)
+    ]
     count, total = np.sum(impossible, axis=0), np.sum(finite, axis=0) + log_share - np.log(worlds)
     rest = [
-        np.where(count > is_so, -np.inf, total - one)
-        for is_so, one in zip(impossible, finite, strict=True)
+        np.where(count > is_so, -np.inf, total - log_likelihood)
+        for is_so, log_likelihood in zip(impossible, finite, strict=True)
     ]
     return np.where(count > 0, -np.inf, total), rest
 
@@ -259,23 +264,23 @@ def _mean_likelihood(
     With it how many nodes share the law of the integrated input in a row of each, shape (worlds,).
     """
     order = np.argsort(world, kind="stable")
-    there, first = np.unique(world[order], return_index=True)
+    occupied, first = np.unique(world[order], return_index=True)
     sorted_rows = log_likelihood[order]
     top = np.maximum.reduceat(sorted_rows, first, axis=0)
     level = np.where(np.isfinite(top), top, 0.0)
     count = np.diff(np.append(first, len(world)))
     numbers = np.exp(sorted_rows - np.repeat(level, count, axis=0))
     sums = np.add.reduceat(numbers, first, axis=0)
-    found, nodes = np.full((worlds, log_likelihood.shape[1]), -np.inf), np.ones(worlds)
+    log_mean, nodes = np.full((worlds, log_likelihood.shape[1]), -np.inf), np.ones(worlds)
     with np.errstate(divide="ignore"):
-        found[there] = np.log(sums / count[:, None]) + level
+        log_mean[occupied] = np.log(sums / count[:, None]) + level
     joint = top + log_share
     highest = joint.max(axis=1, keepdims=True)
     worth = np.exp(joint - np.where(np.isfinite(highest), highest, 0.0))
     numbers *= np.repeat(worth, count, axis=0)
     total, squares = numbers.sum(axis=1), np.einsum("ij,ij->i", numbers, numbers)
     of_rows = total**3 / np.maximum(squares, 1e-300)
-    nodes[there] = np.add.reduceat(of_rows, first) / np.maximum(
+    nodes[occupied] = np.add.reduceat(of_rows, first) / np.maximum(
         np.add.reduceat(total, first), 1e-300
     )
-    return found, nodes
+    return log_mean, nodes

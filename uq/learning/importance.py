@@ -16,58 +16,58 @@ REPETITIONS = 8
 
 
 class Importance(NamedTuple):
-    """How much rows count before any inspection.
+    """Importance weights of rows before any inspection.
 
     Attributes
     ----------
     of_rows : ndarray, shape (n,)
-    own : ndarray of bool, shape (n,)
+    from_study : ndarray of bool, shape (n,)
         Which rows were drawn from the laws of the study.
     """
 
     of_rows: Floats
-    own: Mask
+    from_study: Mask
 
     @property
     def most(self) -> float:
         """The most that any row can count, computed or not."""
-        return len(self.own) / int(self.own.sum())
+        return len(self.from_study) / int(self.from_study.sum())
 
 
 def importance_of(rows: xr.Dataset) -> Importance:
-    """Return how much the rows of a result count before any inspection."""
+    """Return the importance weights of the rows of a result before any inspection."""
     if not has_rounds(rows):
         equal = np.ones(rows.sizes["sample"])
         return Importance(equal, equal > 0)
     return Importance(rows[IMPORTANCE].values, rows[ROUND].values == 0)
 
 
-def repetitions_of(own: xr.Dataset) -> NDArray[np.int32]:
+def repetitions_of(rows: xr.Dataset) -> NDArray[np.int32]:
     """Return the repetition of the sampler that begins with each row of a result, shape (n,).
 
     The replicate of a design that has several, else an eighth of the samples.
     """
-    if int(own.attrs["replicates"]) > 1:
-        return np.asarray(own["replicate"].values)
-    return np.asarray(nesting_of(own).sample % REPETITIONS, dtype=np.int32)
+    if int(rows.attrs["replicates"]) > 1:
+        return np.asarray(rows["replicate"].values)
+    return np.asarray(nesting_of(rows).sample % REPETITIONS, dtype=np.int32)
 
 
 def own_rows(rows: xr.Dataset) -> xr.Dataset:
     """Return the rows drawn from the laws of the study alone, as they were."""
     if not has_rounds(rows):
         return rows
-    found = rows.isel(sample=importance_of(rows).own).drop_vars([IMPORTANCE, ROUND])
-    attrs = dict(found.attrs)
+    study_rows = rows.isel(sample=importance_of(rows).from_study).drop_vars([IMPORTANCE, ROUND])
+    attrs = dict(study_rows.attrs)
     samples, replicates = map(int, attrs.pop(OWN_SIZE))
-    found.attrs = attrs | {"samples": samples, "replicates": replicates}
+    study_rows.attrs = attrs | {"samples": samples, "replicates": replicates}
     if replicates > 1:
-        return found
-    of = found["replicate"]
-    return found.assign_coords(replicate=of.copy(data=np.zeros_like(of.values)))
+        return study_rows
+    replicate = study_rows["replicate"]
+    return study_rows.assign_coords(replicate=replicate.copy(data=np.zeros_like(replicate.values)))
 
 
 def with_rounds(
-    own: xr.Dataset,
+    study_rows: xr.Dataset,
     rounds: Sequence[xr.Dataset],
     log_importance: Floats,
     repetition: NDArray[np.int32],
@@ -76,7 +76,7 @@ def with_rounds(
 
     Parameters
     ----------
-    own : xarray.Dataset
+    study_rows : xarray.Dataset
         Rows of the study.
     rounds : sequence of xarray.Dataset
         Results of the same model; where samples have several rows, of a multiple of their number.
@@ -85,10 +85,10 @@ def with_rounds(
     repetition : ndarray of int, shape (n,)
         The independent repetition of the sampler to which each row belongs: its replicate.
     """
-    n = own.sizes["sample"]
-    names = list(own.data_vars)
+    n = study_rows.sizes["sample"]
+    names = list(study_rows.data_vars)
     new = xr.concat(
-        [one[names].drop_vars(("replicate", "group", "block")) for one in rounds],
+        [round_rows[names].drop_vars(("replicate", "group", "block")) for round_rows in rounds],
         "sample",
         data_vars="minimal",
         coords="minimal",
@@ -97,10 +97,13 @@ def with_rounds(
         combine_attrs="override",
     )
     new = new.assign_coords(
-        {name: ("sample", values) for name, values in _places(own, new.sizes["sample"]).items()}
+        {
+            name: ("sample", values)
+            for name, values in _places(study_rows, new.sizes["sample"]).items()
+        }
     )
-    found = xr.concat(
-        [own, new],
+    combined = xr.concat(
+        [study_rows, new],
         "sample",
         data_vars="minimal",
         coords="minimal",
@@ -108,10 +111,10 @@ def with_rounds(
         join="override",
         combine_attrs="override",
     )
-    sizes = [n, *(one.sizes["sample"] for one in rounds)]
+    sizes = [n, *(round_rows.sizes["sample"] for round_rows in rounds)]
     about = {"role": IMPORTANCE, "units": "1"}
     meaning = "how much the row counts before the inspections"
-    found = found.assign(
+    combined = combined.assign(
         {
             IMPORTANCE: ("sample", np.exp(log_importance), about | {"long_name": meaning}),
             ROUND: (
@@ -121,28 +124,28 @@ def with_rounds(
             ),
         }
     )
-    size = int(own.attrs["samples"]), int(own.attrs["replicates"])
+    size = int(study_rows.attrs["samples"]), int(study_rows.attrs["replicates"])
     count = len(np.unique(repetition))
-    return found.assign_coords(
-        sample=found["sample"].copy(data=np.arange(found.sizes["sample"])),
-        replicate=found["replicate"].copy(data=repetition),
+    return combined.assign_coords(
+        sample=combined["sample"].copy(data=np.arange(combined.sizes["sample"])),
+        replicate=combined["replicate"].copy(data=repetition),
     ).assign_attrs({"samples": len(repetition) // count, "replicates": count, OWN_SIZE: size})
 
 
-def _places(own: xr.Dataset, count: int) -> dict[str, NDArray[np.integer]]:
+def _places(study_rows: xr.Dataset, count: int) -> dict[str, NDArray[np.integer]]:
     """Return the places of new rows in the design, after those of the study."""
-    place = nesting_of(own)
+    place = nesting_of(study_rows)
     number = np.arange(count)
     sample, unit = np.divmod(number, place.units)
-    found = {
-        "replicate": np.zeros(count, own["replicate"].dtype),
-        "group": own["group"].values.max() + 1 + sample,
-        "block": np.zeros(count, own["block"].dtype),
+    coordinates = {
+        "replicate": np.zeros(count, study_rows["replicate"].dtype),
+        "group": study_rows["group"].values.max() + 1 + sample,
+        "block": np.zeros(count, study_rows["block"].dtype),
     }
-    if is_nested(own):
-        found |= {
-            "world": own["world"].values.max() + 1 + sample,
-            "unit": unit.astype(own["unit"].dtype),
-            "repeat": np.zeros(count, own["repeat"].dtype),
+    if is_nested(study_rows):
+        coordinates |= {
+            "world": study_rows["world"].values.max() + 1 + sample,
+            "unit": unit.astype(study_rows["unit"].dtype),
+            "repeat": np.zeros(count, study_rows["repeat"].dtype),
         }
-    return found
+    return coordinates

@@ -1,4 +1,4 @@
-"""How much each inspection taught: its information gain beside all others."""
+"""Information gain of each inspection, given all others."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from uq.learning.posterior import Posterior, on_wide_grids
 
 
 class Taught(NamedTuple):
-    """What an inspection taught beyond all others.
+    """Information gain of an inspection, given all others.
 
     Attributes
     ----------
@@ -31,8 +31,8 @@ class Taught(NamedTuple):
     time_unit: str
 
 
-def taught(found: Posterior) -> Iterator[Taught]:
-    """Yield what each inspection taught, in their order.
+def taught(posterior: Posterior) -> Iterator[Taught]:
+    """Yield the information gain of each inspection, in their order.
 
     The information gain about everything unknown, worlds and units, from the knowledge that all
     other inspections leave [1]_.
@@ -42,17 +42,21 @@ def taught(found: Posterior) -> Iterator[Taught]:
     .. [1] D. V. Lindley, "On a measure of the information provided by an experiment", Ann. Math.
        Stat. 27, 986-1005 (1956).
     """
-    of, count = found.likelihoods, int(found.world.max()) + 1
-    grids, all_told = on_wide_grids(found)
+    likelihoods, count = posterior.likelihoods, int(posterior.world.max()) + 1
+    grids, evidence = on_wide_grids(posterior)
     for unit, grid in enumerate(grids):
-        world = found.world[of.blocks[unit]]
+        world = posterior.world[likelihoods.blocks[unit]]
         size = np.bincount(world, minlength=count)[world]
-        rest = all_told.rest[unit][world] + (of.log_before(unit) - np.log(size))[:, None]
-        single = {one: of.of_one(one, unit, grid.values) for one in of.of_unit[unit]}
-        for one in single:
-            others = [log for other, log in single.items() if other != one]
-            bits = _gain(rest + sum(others, np.zeros(rest.shape)), single[one])
-            yield Taught(one, bits, found.looks[one].unit, found.looks[one].time_unit)
+        rest = evidence.rest[unit][world] + (likelihoods.log_before(unit) - np.log(size))[:, None]
+        single = {
+            inspection: likelihoods.of_inspection(inspection, unit, grid.values)
+            for inspection in likelihoods.inspections[unit]
+        }
+        for inspection in single:
+            others = [log for other, log in single.items() if other != inspection]
+            bits = _gain(rest + sum(others, np.zeros(rest.shape)), single[inspection])
+            look = posterior.looks[inspection]
+            yield Taught(inspection, bits, look.unit, look.time_unit)
 
 
 def _gain(before: Floats, log_likelihood: Floats) -> float:

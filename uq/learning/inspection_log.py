@@ -23,18 +23,18 @@ def read(given: Given) -> list[Inspection]:
     if isinstance(given, str | Path) and Path(given).suffix.lower() != ".toml":
         return read_inspections(Path(given))
     if isinstance(given, str | Path):
-        found = read_tables(*_tables(Path(given)))
+        inspections = read_tables(*_tables(Path(given)))
     else:
-        found = read_tables(given)
-    if not found:
+        inspections = read_tables(given)
+    if not inspections:
         raise InputError("there is no inspection")
-    return found
+    return inspections
 
 
 def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
     """Return the tables ``[[inspection]]`` of a TOML file, and where each is written."""
-    if what := node(path):
-        raise InputError(f"{path}: is {what}, not a file")
+    if node_kind := node(path):
+        raise InputError(f"{path}: is {node_kind}, not a file")
     try:
         text = path.read_text(encoding="utf-8-sig")
         data = read_toml(text)
@@ -45,7 +45,7 @@ def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
     tables = data.get("inspection", [])
     if list(data) != ["inspection"] or not isinstance(tables, list):
         raise InputError(f"{path}: must consist of tables [[inspection]]")
-    if not all(isinstance(one, dict) for one in tables):
+    if not all(isinstance(table, dict) for table in tables):
         raise InputError(f"{path}: must consist of tables [[inspection]]")
     begin = [n for n, line in enumerate(text.splitlines(), start=1) if _HEADER.match(line)]
     if len(begin) == len(tables):
@@ -63,15 +63,15 @@ def all_of(ds: xr.Dataset, new: Sequence[Inspection]) -> list[Inspection]:
     """
     used, faults = inspections_of(ds), []
     count = len(used)
-    for one in new:
-        if one in used:
-            place = used.index(one)
+    for inspection in new:
+        if inspection in used:
+            place = used.index(inspection)
             by = "this result" if place < count else used[place].where
             faults.append(
-                f"{one.where} (unit {one.unit}, {one.output}, {one.kind}): already used by {by}; a"
-                " measurement counts once"
+                f"{inspection.where} (unit {inspection.unit}, {inspection.output},"
+                f" {inspection.kind}): already used by {by}; a measurement counts once"
             )
-        used.append(one)
+        used.append(inspection)
     faults += _contradictions(used)
     if faults:
         raise InputError(*faults)
@@ -80,16 +80,16 @@ def all_of(ds: xr.Dataset, new: Sequence[Inspection]) -> list[Inspection]:
 
 def _contradictions(inspections: Sequence[Inspection]) -> Iterator[str]:
     """Yield which lives had ended before they were seen running."""
-    ended = [one for one in inspections if one.kind is InspectionKind.ENDED]
-    for one in inspections:
+    ended = [inspection for inspection in inspections if inspection.kind is InspectionKind.ENDED]
+    for inspection in inspections:
         for end in ended:
-            same = (one.unit, one.output) == (end.unit, end.output)
+            same = (inspection.unit, inspection.output) == (end.unit, end.output)
             if (
                 same
-                and one.kind is InspectionKind.SURVIVED
-                and (one.time or 0.0) >= (end.time or 0.0)
+                and inspection.kind is InspectionKind.SURVIVED
+                and (inspection.time or 0.0) >= (end.time or 0.0)
             ):
                 yield (
-                    f"{one.where} (unit {one.unit}, {one.output}): survived until {one.time:g}, but"
-                    f" had ended by {end.time:g} ({end.where})"
+                    f"{inspection.where} (unit {inspection.unit}, {inspection.output}): survived"
+                    f" until {inspection.time:g}, but had ended by {end.time:g} ({end.where})"
                 )

@@ -1,4 +1,4 @@
-"""What was measured: the lines of an inspections file."""
+"""Inspections, and how they are read from files and tables."""
 
 import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -14,7 +14,7 @@ from uq.text.literals import read_number, shown
 
 
 class InspectionKind(StrEnum):
-    """What an inspection says."""
+    """Kinds of observation: a value, a limit on one side, or an outcome of a life."""
 
     MEASURED = "measured"
     BELOW = "below"
@@ -69,7 +69,7 @@ class Inspection:
     where: str = field(default="", compare=False, repr=False)
 
 
-COLUMNS = tuple(one.name for one in fields(Inspection) if one.compare)
+COLUMNS = tuple(column.name for column in fields(Inspection) if column.compare)
 """Columns of a file of inspections."""
 
 _REQUIRED = ("unit", "output", "kind")
@@ -98,18 +98,18 @@ def read_inspections(path: Path) -> list[Inspection]:
         One line for each mistake.
     """
     faults: list[str] = []
-    found = []
+    inspections = []
     for line, cells in _lines(path):
         where = f"{path}, line {line}"
         inspection, problems = _read(cells, where)
         faults += [f"{where}: {problem}" for problem in problems]
         if inspection is not None:
-            found.append(inspection)
+            inspections.append(inspection)
     if faults:
         raise InputError(*faults)
-    if not found:
+    if not inspections:
         raise InputError(f"{path}: has no inspection below its first line")
-    return found
+    return inspections
 
 
 def read_tables(
@@ -125,7 +125,7 @@ def read_tables(
         Where each is written, for messages; by default its number.
     """
     faults: list[str] = []
-    found = []
+    inspections = []
     numbers = [f"inspection {number}" for number in range(1, len(tables) + 1)]
     for where, table in zip(places or numbers, tables, strict=True):
         given = {name: value for name, value in table.items() if value is not None}
@@ -136,14 +136,14 @@ def read_tables(
         inspection, problems = _read(cells, where)
         faults += [f"{where}: {problem}" for problem in problems]
         if inspection is not None:
-            found.append(inspection)
+            inspections.append(inspection)
     if faults:
         raise InputError(*faults)
-    return found
+    return inspections
 
 
 def _misfit(name: str, value: object) -> Iterator[str]:
-    """Yield what is wrong with an entry of a table, before it is read."""
+    """Yield the faults of an entry of a table, before it is read."""
     if name not in COLUMNS:
         yield _no_column(name)
     elif name in _NUMBERS:
@@ -155,8 +155,8 @@ def _misfit(name: str, value: object) -> Iterator[str]:
 
 def _lines(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     """Yield the number and the cells of each line below the first."""
-    if what := node(path):
-        raise InputError(f"{path}: is {what}, not a file")
+    if node_kind := node(path):
+        raise InputError(f"{path}: is {node_kind}, not a file")
     if not path.is_file():
         names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
         raise InputError(f"{path}: no such file{nearest(path.name, names)}")
@@ -235,7 +235,7 @@ def _number(text: str) -> float:
 
 
 def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[str]:
-    """Yield what is wrong with the numbers of an inspection of a kind."""
+    """Yield the faults of the numbers of an inspection of a kind."""
     given = [name for name in _NUMBERS if name in numbers]
     positive: Callable[[float], bool] = lambda number: number > 0  # noqa: E731
     for name in ("sd", "cv", *_DETECTION):
@@ -272,7 +272,7 @@ def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[s
 
 
 def _curve(curve: Sequence[str], numbers: Mapping[str, float]) -> Iterator[str]:
-    """Yield what is wrong with a curve of detection."""
+    """Yield the faults of a curve of detection."""
     for name in _DETECTION:
         if name not in curve:
             yield f"{name} is missing beside {curve[0]}"

@@ -73,10 +73,10 @@ def scale_of(
     candidates = [name for name in inputs.laws if name in common and levels[name] in (SHARED, OWN)]
     others = {name: list(dependent_outputs(rows, name)) for name in candidates}
     why = [
-        f"{name} is not integrated: {' and '.join(those)}"
-        f" {'depends' if len(those) == 1 else 'depend'} on it otherwise."
-        for name, those in others.items()
-        if those
+        f"{name} is not integrated: {' and '.join(outputs)}"
+        f" {'depends' if len(outputs) == 1 else 'depend'} on it otherwise."
+        for name, outputs in others.items()
+        if outputs
     ]
     free = [name for name in candidates if not others[name]]
     if not free:
@@ -87,8 +87,9 @@ def scale_of(
         return float(abs(first[name]) * np.log(inputs.values[name]).std())
 
     best = max(free, key=lambda name: (levels[name] == SHARED, spread(name)))
-    of = {name: one[best] for name, one in exponents.items()}
-    return IntegratedScale(best, levels[best], of, inputs.values[best], inputs), tuple(why)
+    best_exponents = {name: by_input[best] for name, by_input in exponents.items()}
+    scale = IntegratedScale(best, levels[best], best_exponents, inputs.values[best], inputs)
+    return scale, tuple(why)
 
 
 def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:

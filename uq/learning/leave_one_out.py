@@ -17,18 +17,20 @@ from uq.result.nesting import Nesting
 Places = NDArray[np.integer]
 
 
-def log_worth(found: Evidence, likelihoods: UnitLikelihoods, place: Nesting, own: bool) -> Floats:
-    """Return what inspections of other units leave of each row.
+def log_worth(
+    evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting, is_own: bool
+) -> Floats:
+    """Return leave-one-out log weights: of each row, given the inspections of other units.
 
     Parameters
     ----------
-    found : Evidence
+    evidence : Evidence
         Of the samples, each a world.
     likelihoods : UnitLikelihoods
         Of the inspected units.
     place : Nesting
         Of all rows.
-    own : bool
+    is_own : bool
         Whether each unit has an integrated input of its own, or there is none.
 
     Returns
@@ -39,14 +41,14 @@ def log_worth(found: Evidence, likelihoods: UnitLikelihoods, place: Nesting, own
         which the row stands taken over the other units of the world that do; -inf where there is
         none.
     """
-    values = [grid.values for grid in found.grids]
-    worth = np.full((len(place.sample), 1 if own else len(values[0])), -np.inf)
+    values = [grid.values for grid in evidence.grids]
+    worth = np.full((len(place.sample), 1 if is_own else len(values[0])), -np.inf)
     for unit, rows in enumerate(likelihoods.blocks):
         sample = place.sample[rows]
         of_unit = sample * place.units + place.unit[rows]
-        each = likelihoods.of(unit, values[unit])
-        joint = found.rest[unit][sample] + _mean_of_others(each, of_unit, sample)
-        worth[rows] = special.logsumexp(joint, axis=1, keepdims=True) if own else joint
+        each = likelihoods.log_likelihood(unit, values[unit])
+        joint = evidence.rest[unit][sample] + _mean_of_others(each, of_unit, sample)
+        worth[rows] = special.logsumexp(joint, axis=1, keepdims=True) if is_own else joint
     return worth
 
 
@@ -58,9 +60,9 @@ def _mean_of_others(logs: Floats, of_unit: Places, sample: Places) -> Floats:
     level = np.where(np.isfinite(top), top, 0.0)[sample]
 
     def others(numbers: Floats) -> Floats:
-        sums = [np.zeros((of.max() + 1, numbers.shape[1])) for of in (sample, unit)]
-        for total, of in zip(sums, (sample, unit), strict=True):
-            np.add.at(total, of, numbers)
+        sums = [np.zeros((index.max() + 1, numbers.shape[1])) for index in (sample, unit)]
+        for total, index in zip(sums, (sample, unit), strict=True):
+            np.add.at(total, index, numbers)
         return np.asarray(sums[0][sample] - sums[1][unit])
 
     count = others(np.ones((len(logs), 1)))

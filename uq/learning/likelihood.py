@@ -1,4 +1,4 @@
-"""How probable an inspection is, given the true value of what was looked at."""
+"""Likelihood of an inspection, given the true value of the observable."""
 
 from math import log, sqrt
 
@@ -30,8 +30,8 @@ def log_likelihood(inspection: Inspection, truth: Floats, model_cv: float = 0.0)
         Of the same shape; -inf where the inspection is impossible, or the row has no value.
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        found = _of_kind(inspection, np.asarray(truth, dtype=float), model_cv)
-    return np.where(np.isnan(found), -np.inf, found)
+        logarithm = _of_kind(inspection, np.asarray(truth, dtype=float), model_cv)
+    return np.where(np.isnan(logarithm), -np.inf, logarithm)
 
 
 def _of_kind(inspection: Inspection, truth: Floats, model_cv: float) -> Floats:

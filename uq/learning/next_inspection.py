@@ -1,4 +1,4 @@
-"""What the next inspection is worth: how far it narrows what units share."""
+"""Value of the next inspection: the expected fall of the standard deviation that units share."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ _FEW, _MOST = 0.01, 0.5
 
 @dataclass(frozen=True)
 class Worth:
-    """What inspections of some units at some times are worth.
+    """Value of inspections of a number of units at given times.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ def worth(
     weights = weights_of(rows)
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
     target = _logarithm(np.where(element.censored, np.nan, element.values))
-    quantities, found, notes = quantities_of(rows), {}, list[str]()
+    quantities, narrowing, notes = quantities_of(rows), {}, list[str]()
     for time in times or (None,):
         look = _look(quantities, output, time)
         notes += _rough(look, time, worth_of_rows)
@@ -140,9 +140,9 @@ def worth(
         seen = _logarithm(truth)
         between = _Between(target, seen, worth_of_rows, place)
         for count in units:
-            found[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
+            narrowing[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
     spread = _Between(target, target, worth_of_rows, place).of_life
-    return Worth(element.name, output, max(spread, 0.0) ** 0.5, found, look.time_unit, notes)
+    return Worth(element.name, output, max(spread, 0.0) ** 0.5, narrowing, look.time_unit, notes)
 
 
 def unit_of_time(ds: xr.Dataset, output: str) -> str:
@@ -152,9 +152,9 @@ def unit_of_time(ds: xr.Dataset, output: str) -> str:
 
 
 def _look(quantities: Quantities, output: str, time: float | None) -> Look:
-    """Return what is to be inspected."""
+    """Return the observable to inspect."""
     when = Inspection("", output, InspectionKind.MEASURED, time, _ANY)
-    if output in quantities.known and time is not None:
+    if output in quantities.elements and time is not None:
         raise InputError(f"uq next-inspection: {output} is not a depth: leave out when")
     return look_at(quantities, when)
 
@@ -179,17 +179,18 @@ def _rough(look: Look, time: float | None, weights: Floats) -> Iterator[str]:
 
 
 class _Between:
-    """What two logarithms share within samples: variances and the covariance between samples."""
+    """Variance components of two logarithms: covariances between and within samples."""
 
     def __init__(self, life: Floats, seen: Floats, weights: Floats, place: Nesting):
         kept = np.isfinite(life) & np.isfinite(seen)
-        both = [np.where(kept, one, np.nan) for one in (life, seen)]
-        means = [place.means(one) for one in both]
+        both = [np.where(kept, values, np.nan) for values in (life, seen)]
+        means = [place.means(values) for values in both]
         whole = np.isfinite(means[0])
         size = np.bincount(place.sample[kept], minlength=place.samples)[whole]
         worth = place.means(weights)[whole]
         inside = [
-            one[kept] - mean[place.sample[kept]] for one, mean in zip(both, means, strict=True)
+            values[kept] - mean[place.sample[kept]]
+            for values, mean in zip(both, means, strict=True)
         ]
         spare = max(int(kept.sum()) - int(whole.sum()), 1)
         within = np.array([[a @ b for b in inside] for a in inside]) / spare
@@ -212,14 +213,14 @@ class _Between:
 
 def _logarithm(values: Floats) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.log(values)
-    return np.where(np.isfinite(found), found, np.nan)
+        logarithm = np.log(values)
+    return np.where(np.isfinite(logarithm), logarithm, np.nan)
 
 
 def _the_life(rows: xr.Dataset, life: str | None) -> Element:
     shown = elements_of(rows, shown_outputs(rows, analysis_of(rows)))
-    lives = lifetimes(rows, life) if life else [one for one in shown if one.is_lifetime]
+    lives = lifetimes(rows, life) if life else [element for element in shown if element.is_lifetime]
     if len(lives) != 1:
-        names = choices([one.name for one in lives])
+        names = choices([element.name for element in lives])
         raise InputError(f"uq next-inspection: name one life with --life ({names})")
     return lives[0]

@@ -1,4 +1,4 @@
-"""What inspections looked at, in the rows of a result."""
+"""Observables: quantities of a result that can be inspected, with values in all its rows."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -54,7 +54,7 @@ class Look:
         return self.declared.unit
 
     def truth(self, time: float | None, rows: NDArray[np.intp], longer: Floats) -> Floats:
-        """Return what an inspection would have found without error.
+        """Return the true value of the observable at an inspection.
 
         Parameters
         ----------
@@ -77,23 +77,23 @@ class Look:
             values * longer if self.declared.is_lifetime else np.broadcast_to(values, longer.shape)
         )
 
-    def log_likelihood(self, one: Inspection, truth: Floats, model_cv: float) -> Floats:
+    def log_likelihood(self, inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
         """Return the logarithm of the likelihood of an inspection, given `truth`."""
-        if one.kind in OUTCOMES:
-            return log_outcome(one.kind, truth, np.full(truth.shape, one.time))
+        if inspection.kind in OUTCOMES:
+            return log_outcome(inspection.kind, truth, np.full(truth.shape, inspection.time))
         if self.declared.is_angle:
-            truth = self._angle(one, truth)
-        return log_likelihood(one, truth, model_cv)
+            truth = self._angle(inspection, truth)
+        return log_likelihood(inspection, truth, model_cv)
 
-    def _angle(self, one: Inspection, truth: Floats) -> Floats:
+    def _angle(self, inspection: Inspection, truth: Floats) -> Floats:
         """Return an angle on the turn of the value measured; of a limit, its magnitude."""
-        if one.kind is not InspectionKind.MEASURED or one.value is None:
+        if inspection.kind is not InspectionKind.MEASURED or inspection.value is None:
             return np.abs(truth)
         turn = 2 * np.pi if self.unit == "rad" else 360.0
-        return one.value + (truth - one.value + turn / 2) % turn - turn / 2
+        return inspection.value + (truth - inspection.value + turn / 2) % turn - turn / 2
 
     def bounded(
-        self, one: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
+        self, inspection: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
     ) -> Mask:
         """Return where only bounds of the truth are known that leave the likelihood open, (n, g).
 
@@ -101,13 +101,13 @@ class Look:
         anywhere beyond those that are reached.
         """
         if self.depths is not None:
-            assert one.time is not None
-            least = self.truth(one.time, rows, longer)
+            assert inspection.time is not None
+            least = self.truth(inspection.time, rows, longer)
             both = (least, np.broadcast_to(self._most(rows)[:, None], least.shape))
-            first, last = (np.exp(self.log_likelihood(one, end, model_cv)) for end in both)
+            first, last = (np.exp(self.log_likelihood(inspection, end, model_cv)) for end in both)
             differ = np.abs(first - last) > _SAME * np.maximum(first, last)
-            return differ & self.open_depth(one.time, rows, longer)
-        most = (one.time or 0.0) if one.kind in OUTCOMES else reach(one)
+            return differ & self.open_depth(inspection.time, rows, longer)
+        most = (inspection.time or 0.0) if inspection.kind in OUTCOMES else reach(inspection)
         return self.censored[rows, None] & (self.values[rows, None] * longer < most)
 
     def open_depth(self, time: float, rows: NDArray[np.intp], longer: Floats) -> Mask:
@@ -118,7 +118,7 @@ class Look:
         return (time / longer > last) & self.depths.settled[rows, None]
 
     def _most(self, rows: NDArray[np.intp]) -> Floats:
-        """Return what the depths of rows stay below, as far as their lives tell, shape (n,)."""
+        """Return an upper bound of the depth of each row, from its lives, shape (n,)."""
         assert self.depths is not None
         beyond = np.append(self.depths.depths, _FAR * self.depths.depths[-1])
         reached = np.isfinite(self.depths.lives[rows]).sum(axis=1)
@@ -127,42 +127,44 @@ class Look:
 
 @dataclass(frozen=True)
 class Quantities:
-    """What of a result can be inspected.
+    """The observables of a result.
 
     Attributes
     ----------
-    known : dict of str to Element
+    elements : dict of str to Element
     depths : dict of str to Look
     """
 
-    known: Mapping[str, Element]
+    elements: Mapping[str, Element]
     depths: Mapping[str, Look]
 
     @property
     def time_units(self) -> list[str]:
         """Of lives, each once."""
-        return list({one.units: None for one in self.known.values() if one.is_lifetime})
+        return list(
+            {element.units: None for element in self.elements.values() if element.is_lifetime}
+        )
 
 
 def quantities_of(ds: xr.Dataset) -> Quantities:
-    """Return what can be inspected of a result, or of some rows of one."""
-    known = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
-    return Quantities(known, dict(_depths(ds)))
+    """Return the observables of a result, or of a selection of its rows."""
+    elements = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
+    return Quantities(elements, dict(_depths(ds)))
 
 
-def as_named(quantities: Quantities, one: Inspection) -> Inspection:
-    """Return an inspection with the name that the result has for what it looked at."""
-    name = same_name(one.output, [*quantities.known, *quantities.depths])
-    return one if name == one.output else replace(one, output=name)
+def as_named(quantities: Quantities, inspection: Inspection) -> Inspection:
+    """Return an inspection with its output named as in the result."""
+    name = same_name(inspection.output, [*quantities.elements, *quantities.depths])
+    return inspection if name == inspection.output else replace(inspection, output=name)
 
 
-def look_at(quantities: Quantities, one: Inspection) -> Look:
-    """Return what an inspection looked at.
+def look_at(quantities: Quantities, inspection: Inspection) -> Look:
+    """Return the observable of an inspection.
 
     Parameters
     ----------
     quantities : Quantities
-    one : Inspection
+    inspection : Inspection
 
     Returns
     -------
@@ -173,27 +175,29 @@ def look_at(quantities: Quantities, one: Inspection) -> Look:
     InputError
         When the result has no such quantity, or it cannot be inspected in this way.
     """
-    known, depths = quantities.known, quantities.depths
-    if one.output in known:
-        element, units = known[one.output], quantities.time_units
-        _check_output(element, one, units)
+    elements, depths = quantities.elements, quantities.depths
+    if inspection.output in elements:
+        element, units = elements[inspection.output], quantities.time_units
+        _check_output(element, inspection, units)
         unit = element.units if element.is_lifetime else units[0] if len(units) == 1 else ""
-        return Look(one.output, element.declared, element.values, None, element.censored, unit)
-    if one.output in depths:
-        if one.kind in OUTCOMES:
+        return Look(
+            inspection.output, element.declared, element.values, None, element.censored, unit
+        )
+    if inspection.output in depths:
+        if inspection.kind in OUTCOMES:
             raise InputError(
-                f"output = {one.output}: a depth does not end; name a life (allowed:"
-                f" {choices(n for n, e in known.items() if e.is_lifetime)})"
+                f"output = {inspection.output}: a depth does not end; name a life (allowed:"
+                f" {choices(n for n, e in elements.items() if e.is_lifetime)})"
             )
-        if one.time is None:
-            unit = depths[one.output].time_unit
-            raise InputError(f"time is missing: when {one.output} was inspected [{unit}]")
-        found = depths[one.output]
-        _check_reach(found, one)
-        return found
-    names = [*known, *depths]
+        if inspection.time is None:
+            unit = depths[inspection.output].time_unit
+            raise InputError(f"time is missing: when {inspection.output} was inspected [{unit}]")
+        look = depths[inspection.output]
+        _check_reach(look, inspection)
+        return look
+    names = [*elements, *depths]
     raise InputError(
-        f"output = {one.output}: no such output{nearest(one.output, names)} (allowed:"
+        f"output = {inspection.output}: no such output{nearest(inspection.output, names)} (allowed:"
         f" {choices(names)})"
     )
 
@@ -202,21 +206,23 @@ def _numbers(ds: xr.Dataset) -> list[str]:
     return [name for name, output in outputs_of(ds).items() if not output.is_category]
 
 
-def _check_output(element: Element, one: Inspection, time_units: Sequence[str]) -> None:
-    if one.kind in OUTCOMES and not element.is_lifetime:
+def _check_output(element: Element, inspection: Inspection, time_units: Sequence[str]) -> None:
+    if inspection.kind in OUTCOMES and not element.is_lifetime:
         raise InputError(
-            f"kind = {one.kind}: {one.output} is not a life; write measured, below or above"
+            f"kind = {inspection.kind}: {inspection.output} is not a life; write measured, below or"
+            " above"
         )
-    if one.time is None or one.kind in OUTCOMES:
+    if inspection.time is None or inspection.kind in OUTCOMES:
         return
     if element.is_lifetime:
         raise InputError(
-            f"time = {one.time:g}: leave it out where a life is {one.kind}: the life is the value"
+            f"time = {inspection.time:g}: leave it out where a life is {inspection.kind}: the life"
+            " is the value"
         )
     if len(time_units) > 1:
         raise InputError(
-            f"time = {one.time:g}: leave it out: {one.output} is not a life, and lives are in"
-            f" several units ({choices(time_units)})"
+            f"time = {inspection.time:g}: leave it out: {inspection.output} is not a life, and"
+            f" lives are in several units ({choices(time_units)})"
         )
 
 
@@ -242,8 +248,8 @@ def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
                 continue
             seen.add(name)
             lives = elements[number * size : (number + 1) * size]
-            cut = np.stack([one.censored for one in lives], axis=1)
-            times = np.stack([one.values for one in lives], axis=1)
+            cut = np.stack([element.censored for element in lives], axis=1)
+            times = np.stack([element.values for element in lives], axis=1)
             order = np.argsort(axis.values)
             worn = WornDepths(
                 axis.values[order].astype(float), np.where(cut, np.inf, times)[:, order]
@@ -253,25 +259,25 @@ def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
             yield name, Look(name, shown, np.empty(0), worn, censored, declared.unit)
 
 
-def reach(one: Inspection) -> float:
+def reach(inspection: Inspection) -> float:
     """Return the largest value that an inspection can tell from larger ones."""
-    if one.detection_90 is not None:
-        return one.detection_90
-    assert one.value is not None
-    if one.kind is not InspectionKind.MEASURED:
-        return one.value
-    if one.cv is not None:
-        return one.value * float(np.exp(_REACH * one.cv))
-    return one.value + _REACH * (one.sd or 0.0)
+    if inspection.detection_90 is not None:
+        return inspection.detection_90
+    assert inspection.value is not None
+    if inspection.kind is not InspectionKind.MEASURED:
+        return inspection.value
+    if inspection.cv is not None:
+        return inspection.value * float(np.exp(_REACH * inspection.cv))
+    return inspection.value + _REACH * (inspection.sd or 0.0)
 
 
-def _check_reach(look: Look, one: Inspection) -> None:
+def _check_reach(look: Look, inspection: Inspection) -> None:
     """Refuse a depth beyond the last one that the result knows of."""
     assert look.depths is not None
-    most, last = reach(one), float(look.depths.depths[-1])
+    most, last = reach(inspection), float(look.depths.depths[-1])
     if most > last:
         raise InputError(
-            f"value = {one.value or most:g}: with its error it reaches {most:.3g} {look.unit},"
-            f" beyond the last depth of the result, {last:g} {look.unit}; add a deeper one to the"
-            " study's depths"
+            f"value = {inspection.value or most:g}: with its error it reaches {most:.3g}"
+            f" {look.unit}, beyond the last depth of the result, {last:g} {look.unit}; add a deeper"
+            " one to the study's depths"
         )

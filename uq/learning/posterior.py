@@ -35,7 +35,7 @@ NO_OTHERS = (
 
 @dataclass(frozen=True)
 class Posterior:
-    """What inspections leave of a result.
+    """The posterior: weighted rows of a result, given inspections.
 
     Attributes
     ----------
@@ -76,19 +76,21 @@ class Posterior:
     @property
     def weights(self) -> list[Smoothed]:
         """Of all units."""
-        return [self.any_unit.weights, *(one.weights for one in self.units.values())]
+        return [self.any_unit.weights, *(weighted.weights for weighted in self.units.values())]
 
     @property
     def pulls(self) -> Floats:
         """By how much each row moves the law, shape (n, terms)."""
-        total = sum(one.pulls for one in self.units.values() if one.pulls is not None)
+        total = sum(
+            weighted.pulls for weighted in self.units.values() if weighted.pulls is not None
+        )
         return np.asarray(total - np.mean(total, axis=0))
 
 
 def posterior(
     rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float = 0.0
 ) -> Posterior:
-    """Return what inspections leave of a result [1]_.
+    """Return the posterior of a result, given inspections [1]_.
 
     Parameters
     ----------
@@ -114,46 +116,48 @@ def posterior(
     """
     looks = _looks(rows, inspections)
     place = nesting_of(rows)
-    labels = list(dict.fromkeys(one.unit for one in inspections))
+    labels = list(dict.fromkeys(inspection.unit for inspection in inspections))
     if len(labels) > place.units:
         raise InputError(
             f"{len(labels)} units are inspected, but a sample of this result has {place.units}:"
             f" set [design] units = {len(labels)}"
         )
-    scale, others = scale_of(rows, [looks[one] for one in inspections])
+    scale, others = scale_of(rows, [looks[inspection] for inspection in inspections])
     world, worlds = _worlds(rows, place, scale)
     blocks = _blocks(place, len(labels), worlds)
     importance = importance_of(rows)
     likelihoods = UnitLikelihoods(inspections, looks, labels, blocks, scale, model_cv, importance)
-    found = weigh(
-        [partial(likelihoods.of, unit) for unit in range(len(labels))],
+    evidence = weigh(
+        [partial(likelihoods.log_likelihood, unit) for unit in range(len(labels))],
         [world[block] for block in blocks],
         worlds,
         scale.quantiles if scale else None,
         bool(scale and scale.is_own),
     )
-    if not np.isfinite(found.log_evidence):
+    if not np.isfinite(evidence.log_evidence):
         raise InputError(
-            *contradictions(likelihoods, labels, found.grids, world, bool(scale and scale.is_own))
+            *contradictions(
+                likelihoods, labels, evidence.grids, world, bool(scale and scale.is_own)
+            )
         )
-    law = shared_law(found) if scale and not scale.is_own and worlds == 1 else None
+    law = shared_law(evidence) if scale and not scale.is_own and worlds == 1 else None
     part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
     units = {
-        label: inspected(found, unit, likelihoods, world, scale, part, law)
+        label: inspected(evidence, unit, likelihoods, world, scale, part, law)
         for unit, label in enumerate(labels)
     }
-    logs, why = found.log_worlds[world], ""
+    logs, why = evidence.log_worlds[world], ""
     with np.errstate(divide="ignore"):
         logs = logs - np.log(np.bincount(world, importance.of_rows))[world, None]
         logs = logs + np.log(importance.of_rows)[:, None]
     if worlds > 1 and _units_differ(rows, scale):
-        apart = log_worth(found, likelihoods, place, scale is None or scale.is_own)
+        apart = log_worth(evidence, likelihoods, place, scale is None or scale.is_own)
         why = "" if np.isfinite(apart).any() else NO_OTHERS.format(len(labels) + 1)
         logs = logs if why else apart
     runs = partial(_allowed, likelihoods, world, worlds, scale) if scale else None
-    everyone = uninspected(logs, found, scale, place, replicates_of(rows), runs, law)
+    everyone = uninspected(logs, evidence, scale, place, replicates_of(rows), runs, law)
     of_rows = likelihoods, looks, world, importance
-    return Posterior(everyone, units, scale, found, *of_rows, law, others, why)
+    return Posterior(everyone, units, scale, evidence, *of_rows, law, others, why)
 
 
 def _units_differ(rows: xr.Dataset, scale: IntegratedScale | None) -> bool:
@@ -161,28 +165,30 @@ def _units_differ(rows: xr.Dataset, scale: IntegratedScale | None) -> bool:
     return bool({*levels_that_vary(rows, () if scale is None else (scale.name,))} - {SHARED})
 
 
-def on_wide_grids(found: Posterior) -> tuple[list[QuadratureGrid], Evidence]:
+def on_wide_grids(updated: Posterior) -> tuple[list[QuadratureGrid], Evidence]:
     """Return grids from end to end of the prior, of each inspected unit, and the evidence there."""
-    scale, of = found.scale, found.likelihoods
-    grids = [wide(grid, scale.quantiles if scale else None) for grid in found.evidence.grids]
-    worlds = [found.world[block] for block in of.blocks]
-    each = [partial(of.of, unit) for unit in range(len(grids))]
-    count, own = int(found.world.max()) + 1, bool(scale and scale.is_own)
-    return grids, weigh_on(grids, each, worlds, count, own)[1]
+    scale, likelihoods = updated.scale, updated.likelihoods
+    grids = [wide(grid, scale.quantiles if scale else None) for grid in updated.evidence.grids]
+    worlds = [updated.world[block] for block in likelihoods.blocks]
+    each = [partial(likelihoods.log_likelihood, unit) for unit in range(len(grids))]
+    count, is_own = int(updated.world.max()) + 1, bool(scale and scale.is_own)
+    return grids, weigh_on(grids, each, worlds, count, is_own)[1]
 
 
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
     faults = []
-    found = {}
+    looks = {}
     quantities = quantities_of(rows)
-    for one in inspections:
+    for inspection in inspections:
         try:
-            found[one] = look_at(quantities, one)
+            looks[inspection] = look_at(quantities, inspection)
         except InputError as error:
-            faults += [f"{one.where}: unit {one.unit}: {line}" for line in error.lines]
+            faults += [
+                f"{inspection.where}: unit {inspection.unit}: {line}" for line in error.lines
+            ]
     if faults:
         raise InputError(*faults)
-    return found
+    return looks
 
 
 def _worlds(rows: xr.Dataset, place: Nesting, scale: IntegratedScale | None) -> tuple[Rows, int]:
@@ -219,6 +225,6 @@ def _allowed(
     """Return where inspections allow values of an input that the units of a world share, (n,)."""
     values, possible = scale.quantiles(places)[:, None], np.ones(worlds, dtype=bool)
     for unit, rows in enumerate(likelihoods.blocks):
-        agree = likelihoods.of(unit, values[rows])[:, 0] > -np.inf
+        agree = likelihoods.log_likelihood(unit, values[rows])[:, 0] > -np.inf
         possible &= np.bincount(world[rows], agree, worlds) > 0
     return np.asarray(possible[world])

@@ -92,12 +92,12 @@ def inputs_learnt(ds: xr.Dataset) -> Iterator[InputLearnt]:
     asked = tuple(sorted({*QUANTILES, *analysis_of(ds).quantiles}))
     counted = importance_of(before).of_rows
     prior = {name: _before(before[name].values, counted, asked) for name in levels}
-    for name in (one for one, level in levels.items() if level == SHARED):
+    for name in (input_name for input_name, level in levels.items() if level == SHARED):
         after = _after(ds, name, asked)
         yield InputLearnt(name, str(ds[name].attrs["units"]), prior[name], after)
     for label in map(str, ds["inspected"].values):
         unit = as_unit(ds, label)
-        for name in (one for one, level in levels.items() if level != SHARED):
+        for name in (input_name for input_name, level in levels.items() if level != SHARED):
             after = _after(unit, name, asked)
             units = str(ds[name].attrs["units"])
             yield InputLearnt(f"{name}[unit={label}]", units, prior[name], after)
@@ -110,11 +110,11 @@ def confounded(ds: xr.Dataset) -> list[Confounded]:
     """
     levels, before = levels_of(ds), prior_of(ds)
     shared = [name for name, level in levels.items() if level == SHARED]
-    found = _pairs(ds, before, shared, set(shared), "")
+    pairs = _pairs(ds, before, shared, set(shared), "")
     for label in map(str, ds["inspected"].values):
         unit = as_unit(ds, label)
-        found += _pairs(unit, before, list(levels), set(levels) - set(shared), label)
-    return sorted(found, key=lambda one: -abs(one.correlation))
+        pairs += _pairs(unit, before, list(levels), set(levels) - set(shared), label)
+    return sorted(pairs, key=lambda pair: -abs(pair.correlation))
 
 
 def _pairs(
@@ -127,10 +127,10 @@ def _pairs(
     first = _correlations([before[name].values for name in names], importance_of(before).of_rows)
     called = {name: f"{name}[unit={label}]" if label and name in wanted else name for name in names}
     return [
-        Confounded(called[one], called[other], float(after[i, j]), float(first[i, j]))
-        for i, one in enumerate(names)
+        Confounded(called[name], called[other], float(after[i, j]), float(first[i, j]))
+        for i, name in enumerate(names)
         for j, other in enumerate(names[:i])
-        if {one, other} & wanted and abs(after[i, j]) >= CONFOUNDED > abs(first[i, j])
+        if {name, other} & wanted and abs(after[i, j]) >= CONFOUNDED > abs(first[i, j])
     ]
 
 
@@ -144,9 +144,9 @@ def _correlations(columns: list[Floats], weights: Floats) -> Floats:
 
 
 def _ranks(order: NDArray[np.intp], share: Floats) -> Floats:
-    found = np.empty(len(share))
-    found[order] = share
-    return found
+    ranks = np.empty(len(share))
+    ranks[order] = share
+    return ranks
 
 
 def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Floats]:

@@ -58,18 +58,18 @@ _COMPRESSED = {"zlib": True, "complevel": 1}
 
 def as_result(
     rows: xr.Dataset,
-    found: Posterior,
+    posterior: Posterior,
     inspections: Sequence[Inspection],
     model_cv: float,
     new_rows: int = 0,
 ) -> xr.Dataset:
-    """Return a result with what inspections leave of its rows.
+    """Return a result with its rows weighted by a posterior.
 
     Parameters
     ----------
     rows : xarray.Dataset
         The independent rows of a result, or samples of several rows.
-    found : Posterior
+    posterior : Posterior
         What the inspections leave of them.
     inspections : sequence of Inspection
     model_cv : float
@@ -92,71 +92,75 @@ def as_result(
     if taken := [name for name in _WEIGHTS if name in rows.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
     ds = rows
-    if found.scale is not None:
-        assert found.any_unit.scale is not None
-        replaced = _rescaled(rows, found.scale.name, found.any_unit.scale)
+    if posterior.scale is not None:
+        assert posterior.any_unit.scale is not None
+        replaced = _rescaled(rows, posterior.scale.name, posterior.any_unit.scale)
         kept = {f"{PRIOR}{name}": _as_prior(rows[name]) for name in replaced}
         ds = rows.assign(replaced | kept)
     n = rows.sizes["sample"]
     meaning = "how much the row counts, given the inspections"
     attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
     both = ("inspected", "sample")
-    most = [one.weights.most for one in _units(found)]
-    of_units = np.stack([_spread_out(one, one.weights.weights, n, 0.0) for one in _units(found)])
+    most = [weighted.weights.most for weighted in _units(posterior)]
+    of_units = np.stack(
+        [_spread_out(weighted, weighted.weights.weights, n, 0.0) for weighted in _units(posterior)]
+    )
     variables = {
-        WEIGHT: ("sample", found.any_unit.weights.weights, attrs),
+        WEIGHT: ("sample", posterior.any_unit.weights.weights, attrs),
         UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
         UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
     }
-    if found.scale is not None:
-        scales = [_spread_out(one, one.scale, n, np.nan) for one in _units(found)]
-        of_scale = {"role": WEIGHT, "units": rows[found.scale.name].attrs["units"]}
-        of_scale["long_name"] = f"{found.scale.name} of the inspected unit"
+    if posterior.scale is not None:
+        scales = [
+            _spread_out(weighted, weighted.scale, n, np.nan) for weighted in _units(posterior)
+        ]
+        of_scale = {"role": WEIGHT, "units": rows[posterior.scale.name].attrs["units"]}
+        of_scale["long_name"] = f"{posterior.scale.name} of the inspected unit"
         variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
-        laws = [_spread_out(one, one.scores, n, SCORES) for one in _units(found)]
-        meaning = f"normal score before, of {found.scale.name} of the inspected unit"
+        laws = [_spread_out(weighted, weighted.scores, n, SCORES) for weighted in _units(posterior)]
+        meaning = f"normal score before, of {posterior.scale.name} of the inspected unit"
         of_law = attrs | {"long_name": meaning}
         variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
-        variables |= _of_law(found, attrs)
+        variables |= _of_law(posterior, attrs)
         meaning = "normal score given the inspections and the rest of the row"
         ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
-    ds = ds.assign(variables).assign_coords(inspected=("inspected", list(found.units)))
-    units, count = len(found.units), len(inspections)
+    ds = ds.assign(variables).assign_coords(inspected=("inspected", list(posterior.units)))
+    units, count = len(posterior.units), len(inspections)
     given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
-    if found.only_inspected:
-        ds = ds.assign_attrs({ONLY_INSPECTED: found.only_inspected})
-    found_attrs = {
+    if posterior.only_inspected:
+        ds = ds.assign_attrs({ONLY_INSPECTED: posterior.only_inspected})
+    new_attrs = {
         "title": f"{_prior_title(rows)}, {given}",
-        INTEGRATED: found.scale.name if found.scale else "",
-        INSPECTIONS: json.dumps([as_table(one) for one in inspections]),
-        LEDGER: json.dumps([digest(one) for one in inspections]),
+        INTEGRATED: posterior.scale.name if posterior.scale else "",
+        INSPECTIONS: json.dumps([as_table(inspection) for inspection in inspections]),
+        LEDGER: json.dumps([digest(inspection) for inspection in inspections]),
         MODEL_ERROR: float(model_cv),
         NEW_ROWS: new_rows,
-        WORLDS: len(found.evidence.log_worlds),
+        WORLDS: len(posterior.evidence.log_worlds),
         "prior_title": _prior_title(rows),
     }
     for variable in ds.variables.values():
         variable.encoding["_FillValue"] = None
     for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS} & {*ds.variables}:
         ds[name].encoding |= _COMPRESSED
-    return ds.assign_attrs(found_attrs)
+    return ds.assign_attrs(new_attrs)
 
 
-def _of_law(found: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
-    """Return what the rows say together of an input that all units share."""
-    if (law := found.law) is None:
+def _of_law(posterior: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
+    """Return the variables of the law of an input that all units share."""
+    if (law := posterior.law) is None:
         return {}
-    assert found.scale is not None
-    of_pulls = attrs | {"long_name": f"pull on terms of the law of {found.scale.name}"}
-    pulls = found.pulls
+    assert posterior.scale is not None
+    of_pulls = attrs | {"long_name": f"pull on terms of the law of {posterior.scale.name}"}
+    pulls = posterior.pulls
     of_pulls[ROWS] = len(pulls)
     of_terms = attrs | {"long_name": "terms in the row"}
-    of_scores = attrs | {"long_name": f"normal score before, of {found.scale.name}"}
-    units = np.stack([one.without_own(pulls) for one in _units(found)])
+    of_scores = attrs | {"long_name": f"normal score before, of {posterior.scale.name}"}
+    units = np.stack([weighted.without_own(pulls) for weighted in _units(posterior)])
     return {
-        LAW_PULLS: (("sample", "term"), found.any_unit.without_own(pulls), of_pulls),
+        LAW_PULLS: (("sample", "term"), posterior.any_unit.without_own(pulls), of_pulls),
         UNIT_PULLS: (("inspected", "sample", "term"), units, of_pulls),
-        LAW_FOLLOWS: (("sample", "term"), found.any_unit.terms, of_terms),
+        LAW_FOLLOWS: (("sample", "term"), posterior.any_unit.terms, of_terms),
         LAW_SCORES: (SCORE, law.scores, of_scores),
     }
 
@@ -168,13 +172,13 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
     kept = [str(name) for name in ds.data_vars if ds[name].attrs.get("role") == "prior"]
     back = {}
     for name in kept:
-        own = name.removeprefix(PRIOR)
-        back[own] = ds[own].copy(data=ds[name].values)
-    gone = [*kept, *(one for one in (*_WEIGHTS, "inspected", SCORE) if one in ds)]
-    found = ds.assign(back).drop_vars(gone)
+        original = name.removeprefix(PRIOR)
+        back[original] = ds[original].copy(data=ds[name].values)
+    gone = [*kept, *(variable for variable in (*_WEIGHTS, "inspected", SCORE) if variable in ds)]
+    prior = ds.assign(back).drop_vars(gone)
     attrs = {name: value for name, value in ds.attrs.items() if name not in _OF_POSTERIOR}
-    found.attrs = attrs | {"title": _prior_title(ds)}
-    return found
+    prior.attrs = attrs | {"title": _prior_title(ds)}
+    return prior
 
 
 _OF_POSTERIOR = (
@@ -205,12 +209,12 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
     """
     if not has_weights(ds):
         raise InputError("a unit can be named only of a result of 'uq update'")
-    known = [str(one) for one in ds["inspected"].values]
-    if label not in known:
+    labels = [str(inspected) for inspected in ds["inspected"].values]
+    if label not in labels:
         raise InputError(
-            f"unit '{label}' was not inspected{nearest(label, known)} (allowed: {choices(known)})"
+            f"unit '{label}' was not inspected{nearest(label, labels)} (allowed: {choices(labels)})"
         )
-    place = known.index(label)
+    place = labels.index(label)
     rows, name = prior_of(ds), ds.attrs[INTEGRATED]
     if name:
         scale, drawn = ds[UNIT_SCALE].values[place], rows[name].values
@@ -231,7 +235,7 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
 
 
 def _law_of_unit(ds: xr.Dataset, rows: xr.Dataset, place: int) -> dict[str, Any]:
-    """Return what the rows of a unit have learnt with all others."""
+    """Return the variables of that law for the rows of a unit."""
     name, law, pulls, inputs = ds.attrs[INTEGRATED], ds[LAW_SCORES], ds[UNIT_PULLS], inputs_of(rows)
     below = cdf_within(inputs.laws[name], rows[name].values, inputs.bounds[name])
     follows = terms_at(law.values, ndtri(below))
@@ -248,31 +252,31 @@ def inspections_of(ds: xr.Dataset) -> list[Inspection]:
         return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
 
 
-def as_table(one: Inspection) -> dict[str, object]:
-    """Return what is known of an inspection: column -> value."""
-    values = {name: getattr(one, name) for name in COLUMNS}
+def as_table(inspection: Inspection) -> dict[str, object]:
+    """Return an inspection as a table: column -> value, without empty columns."""
+    values = {name: getattr(inspection, name) for name in COLUMNS}
     return {name: value for name, value in values.items() if value is not None}
 
 
-def digest(one: Inspection) -> str:
-    """Return what identifies a measurement in a ledger."""
-    return sha256(json.dumps(as_table(one), sort_keys=True).encode()).hexdigest()[:16]
+def digest(inspection: Inspection) -> str:
+    """Return the digest that identifies an inspection in the log."""
+    return sha256(json.dumps(as_table(inspection), sort_keys=True).encode()).hexdigest()[:16]
 
 
 def _prior_title(ds: xr.Dataset) -> str:
     return str(ds.attrs.get("prior_title", ds.attrs["title"]))
 
 
-def _units(found: Posterior) -> list[Weighted]:
-    return list(found.units.values())
+def _units(posterior: Posterior) -> list[Weighted]:
+    return list(posterior.units.values())
 
 
-def _spread_out(one: Weighted, values: Floats | None, n: int, other: float | Floats) -> Floats:
+def _spread_out(weighted: Weighted, values: Floats | None, n: int, other: float | Floats) -> Floats:
     """Return values of the rows of a unit among all rows."""
-    found = np.full((n, *np.shape(other)), other)
+    filled = np.full((n, *np.shape(other)), other)
     if values is not None:
-        found[one.rows] = values
-    return found
+        filled[weighted.rows] = values
+    return filled
 
 
 def _as_prior(variable: xr.DataArray) -> xr.DataArray:
@@ -282,21 +286,21 @@ def _as_prior(variable: xr.DataArray) -> xr.DataArray:
 
 def _rescaled(rows: xr.Dataset, name: str, values: Floats) -> dict[str, xr.DataArray]:
     """Return an input with other values, those equal to it, and the lives that they scale."""
-    inputs, known = inputs_of(rows), outputs_of(rows)
-    members = (name, *(one for one, leader in inputs.tied.items() if leader == name))
-    found = {one: rows[one].copy(data=values) for one in members}
+    inputs, outputs = inputs_of(rows), outputs_of(rows)
+    members = (name, *(member for member, leader in inputs.tied.items() if leader == name))
+    rescaled = {member: rows[member].copy(data=values) for member in members}
     ratio = values / rows[name].values
-    for output, declared in known.items():
+    for output, declared in outputs.items():
         exponent = free_scales(inputs, declared).get(name)
-        for one in (output, error_name(output)) if exponent else ():
-            if one in known:
-                of = rows[one]
-                factor = (ratio**exponent).reshape(-1, *[1] * (of.ndim - 1))
-                found[one] = of.copy(data=of.values * factor)
-    return found
+        for scaled in (output, error_name(output)) if exponent else ():
+            if scaled in outputs:
+                variable = rows[scaled]
+                factor = (ratio**exponent).reshape(-1, *[1] * (variable.ndim - 1))
+                rescaled[scaled] = variable.copy(data=variable.values * factor)
+    return rescaled
 
 
 def unit_quality(ds: xr.Dataset) -> list[Smoothed]:
     """Return the weights of the rows of a posterior, as any unit and as each inspected one."""
     units = [as_unit(ds, str(label)) for label in ds["inspected"].values]
-    return [found for one in (ds, *units) if (found := weights_of(one)) is not None]
+    return [weights for rows in (ds, *units) if (weights := weights_of(rows)) is not None]

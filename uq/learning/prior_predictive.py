@@ -1,4 +1,4 @@
-"""How strange the inspections are before anything is learnt from them."""
+"""Prior-predictive p-value of the inspections."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ STRANGE = 0.01
 """Probability below which a warning is due."""
 
 
-def strangeness(found: Posterior, seed: int, model_cv: float) -> float:
+def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
     """Return the probability, before the inspections, of inspections at least as improbable.
 
     Campaigns with the same inspections are drawn from the rows and the laws of errors. How strange
@@ -24,7 +24,7 @@ def strangeness(found: Posterior, seed: int, model_cv: float) -> float:
 
     Parameters
     ----------
-    found : Posterior
+    posterior : Posterior
     seed : int
     model_cv : float
 
@@ -34,17 +34,17 @@ def strangeness(found: Posterior, seed: int, model_cv: float) -> float:
        R. Stat. Soc. A 143, 383-430 (1980).
     """
     rng = np.random.default_rng((seed, 22))
-    own = np.flatnonzero(found.importance.own)
-    world = found.world[own[rng.integers(len(own), size=CAMPAIGNS)]]
+    study_rows = np.flatnonzero(posterior.importance.from_study)
+    world = posterior.world[study_rows[rng.integers(len(study_rows), size=CAMPAIGNS)]]
     common = rng.random(CAMPAIGNS)
-    score = np.zeros(CAMPAIGNS + 1)  # the last is what was really found
-    for unit, inspections in enumerate(found.likelihoods.of_unit):
-        block = found.likelihoods.blocks[unit]
-        rows = _rows(block[found.importance.own[block]], found.world, world, rng)
+    score = np.zeros(CAMPAIGNS + 1)  # the last is that of the real inspections
+    for unit, inspections in enumerate(posterior.likelihoods.inspections):
+        block = posterior.likelihoods.blocks[unit]
+        rows = _rows(block[posterior.importance.from_study[block]], posterior.world, world, rng)
         each = rng.random(CAMPAIGNS)
-        for one in inspections:
-            truth = _truth(found, one, rows, common, each)
-            score += _log_probability(found, one, truth, rng, model_cv)
+        for inspection in inspections:
+            truth = _truth(posterior, inspection, rows, common, each)
+            score += _log_probability(posterior, inspection, truth, rng, model_cv)
     return float((score[:-1] <= score[-1] + 1e-9).mean())
 
 
@@ -61,30 +61,40 @@ def _rows(
 
 
 def _truth(
-    found: Posterior, one: Inspection, rows: NDArray[np.intp], common: Floats, own: Floats
+    posterior: Posterior,
+    inspection: Inspection,
+    rows: NDArray[np.intp],
+    common: Floats,
+    individual: Floats,
 ) -> Floats:
-    """Return what the inspection would find without error in each campaign."""
-    look, longer = found.looks[one], np.ones((len(rows), 1))
-    scale = found.scale
+    """Return the true value of the observable in each campaign."""
+    look, longer = posterior.looks[inspection], np.ones((len(rows), 1))
+    scale = posterior.scale
     if scale is not None and look.name in scale.exponents:
-        values = scale.quantiles(own if scale.is_own else common)
+        values = scale.quantiles(individual if scale.is_own else common)
         longer = (values / scale.drawn[rows])[:, None] ** scale.exponents[look.name]
-    return look.truth(one.time, rows, longer)[:, 0]
+    return look.truth(inspection.time, rows, longer)[:, 0]
 
 
 def _log_probability(
-    found: Posterior, one: Inspection, truth: Floats, rng: np.random.Generator, model_cv: float
+    posterior: Posterior,
+    inspection: Inspection,
+    truth: Floats,
+    rng: np.random.Generator,
+    model_cv: float,
 ) -> Floats:
-    """Return how probable the inspection is in each campaign, and last as it really was."""
+    """Return the log probability of the inspection in each campaign; the real one is last."""
     n = len(truth)
-    if one.kind is not InspectionKind.MEASURED:
-        log_chance = found.looks[one].log_likelihood(one, truth[:, None], model_cv)[:, 0]
+    if inspection.kind is not InspectionKind.MEASURED:
+        log_chance = posterior.looks[inspection].log_likelihood(
+            inspection, truth[:, None], model_cv
+        )[:, 0]
         chance = np.exp(log_chance)
         so = rng.random(n) < chance
         share = (chance.sum() + 0.5) / (n + 1)
         return np.append(np.where(so, np.log(share), np.log1p(-share)), np.log(share))
-    assert one.value is not None
-    values = np.append(drawn_measurement(one, truth, rng, model_cv), one.value)
-    known = np.sort(values[~np.isnan(values)])
-    below = np.searchsorted(known, values, side="right") / (len(known) + 1)
+    assert inspection.value is not None
+    values = np.append(drawn_measurement(inspection, truth, rng, model_cv), inspection.value)
+    ordered = np.sort(values[~np.isnan(values)])
+    below = np.searchsorted(ordered, values, side="right") / (len(ordered) + 1)
     return np.where(np.isnan(values), 0.0, np.log(2 * np.minimum(below, 1 - below)))

@@ -56,8 +56,10 @@ class Proposal(NamedTuple):
             - np.log(np.diag(self.root)).sum()
         )
         square = np.zeros((len(at), len(self.centres)))
-        for one, centre in zip(self._whitened(at), self._whitened(self.centres), strict=True):
-            square += np.subtract.outer(one, centre) ** 2
+        for coordinate, centre in zip(
+            self._whitened(at), self._whitened(self.centres), strict=True
+        ):
+            square += np.subtract.outer(coordinate, centre) ** 2
         density = np.mean((1 + square / FREEDOM) ** (-(FREEDOM + k) / 2), axis=1)
         with np.errstate(divide="ignore"):
             return np.asarray(np.log(density) + constant + (at**2 / 2).sum(axis=1) + k * _LOG_ROOT)
@@ -89,8 +91,8 @@ def tempered(log_before: Floats, log_likelihood: Floats) -> Floats:
     """
 
     def weights(power: float) -> Floats:
-        found = log_before + power * log_likelihood
-        return np.exp(found - found.max())
+        log_weights = log_before + power * log_likelihood
+        return np.exp(log_weights - log_weights.max())
 
     least = min(_LEAST, effective_rows(weights(_COLDEST)) / 2)
     if effective_rows(weights(1.0)) >= least:

@@ -53,8 +53,8 @@ def read_times(option: str, texts: Sequence[str], ds: xr.Dataset) -> list[float]
         return []
     units = list({output.unit: None for _, output in shown_lives(ds)})
     if len(units) != 1:
-        found = f"lives are in several units ({choices(units)})" if units else "no life is shown"
-        raise InputError(f"{option} {texts[0]}: {found}; name one life in [analysis] outputs")
+        problem = f"lives are in several units ({choices(units)})" if units else "no life is shown"
+        raise InputError(f"{option} {texts[0]}: {problem}; name one life in [analysis] outputs")
     times = [read_threshold(option, text, "a life", units[0]) for text in texts]
     check_times(times, option)
     return times
@@ -76,7 +76,7 @@ _LEAST = 1e-3
 
 @dataclass(frozen=True)
 class Remaining:
-    """How long a unit still runs, given that it does.
+    """Remaining life of a unit, given that it still runs.
 
     Attributes
     ----------
@@ -128,22 +128,24 @@ def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
     """
     check_times(by, "by")
     inspections, quantities = inspections_of(ds), quantities_of(prior_of(ds))
-    units = {one: look_at(quantities, one).time_unit for one in inspections}
+    units = {inspection: look_at(quantities, inspection).time_unit for inspection in inspections}
     if ONLY_INSPECTED not in ds.attrs:
         yield from _of_unit(ds, ANY, _last_seen(units), by)
     for label in map(str, ds["inspected"].values):
-        own = {one: unit for one, unit in units.items() if one.unit == label}
-        if not any(one.kind is InspectionKind.ENDED for one in own):
-            yield from _of_unit(as_unit(ds, label), label, _last_seen(own), by)
+        inspected = {
+            inspection: unit for inspection, unit in units.items() if inspection.unit == label
+        }
+        if not any(inspection.kind is InspectionKind.ENDED for inspection in inspected):
+            yield from _of_unit(as_unit(ds, label), label, _last_seen(inspected), by)
 
 
 def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
     """Return the time of the latest of some inspections in each unit of time."""
-    found: dict[str, float] = {}
-    for one, unit in units.items():
-        if one.time is not None:
-            found[unit] = max(one.time, found.get(unit, 0.0))
-    return found
+    latest: dict[str, float] = {}
+    for inspection, unit in units.items():
+        if inspection.time is not None:
+            latest[unit] = max(inspection.time, latest.get(unit, 0.0))
+    return latest
 
 
 def _of_unit(
@@ -156,10 +158,10 @@ def _of_unit(
     for element in population(rows, [name for name, _ in shown_lives(rows)]):
         seen = last_seen.get(element.units, 0.0)
         times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]
-        found = _of_life(element, part, label, seen, times)
-        later = [time for time in found.by if time > seen and label == ANY]
+        life = _of_life(element, part, label, seen, times)
+        later = [time for time in life.by if time > seen and label == ANY]
         ranges = {time: over_shared(rows, element, seen, time) for time in later}
-        yield replace(found, over_shared={t: one for t, one in ranges.items() if one})
+        yield replace(life, over_shared={t: interval for t, interval in ranges.items() if interval})
 
 
 def _of_life(
@@ -182,16 +184,16 @@ def _of_life(
         weights=weights,
         most=element.most * still.mean() / share,
     )
-    of = Population(running, part)
+    survivors = Population(running, part)
     return replace(
         nothing,
-        life={p: _after(seen, of.quantile(p)) for p in PROBABILITIES},
-        by={time: of.below(time) if time > seen else Estimate(0.0) for time in times},
+        life={p: _after(seen, survivors.quantile(p)) for p in PROBABILITIES},
+        by={time: survivors.below(time) if time > seen else Estimate(0.0) for time in times},
         effective_rows=effective_rows(per_sample(weights[still], replicates_of_some(part, still))),
     )
 
 
 def _after(seen: float, life: Estimate) -> Estimate:
-    """Return what remains of a life."""
+    """Return the estimate of a remaining life, from that of the life."""
     ends = {name: max(getattr(life, name) - seen, 0.0) for name in ("value", "low", "high")}
     return replace(life, **ends)

@@ -75,8 +75,8 @@ class Repetition:
     def _add(self, proposal: Proposal, new: Floats) -> None:
         log_each = np.log(self._each)
         mixture = np.full(len(new), np.log(self._own))
-        for one in self._proposals:
-            mixture = np.logaddexp(mixture, log_each + one.log_ratio(new))
+        for previous in self._proposals:
+            mixture = np.logaddexp(mixture, log_each + previous.log_ratio(new))
         self._scores = np.concatenate([self._scores, new])
         self._proposals.append(proposal)
         before = np.concatenate([self._log_mixture, mixture])
@@ -103,11 +103,14 @@ class Repetition:
         columns, rng
             As for `drawn`.
         """
-        scores = np.concatenate([one._scores for one in repetitions])
-        log_importance = np.concatenate([one.log_importance for one in repetitions])
+        scores = np.concatenate([repetition._scores for repetition in repetitions])
+        log_importance = np.concatenate([repetition.log_importance for repetition in repetitions])
         of_units = [np.concatenate(each) for each in zip(*log_likelihoods, strict=True)]
         last = _around(scores, log_importance, of_units, columns, rng).wider(_WIDER)
-        return [Repetition(one._scores[: one._own], one._each, last) for one in repetitions]
+        return [
+            Repetition(repetition._scores[: repetition._own], repetition._each, last)
+            for repetition in repetitions
+        ]
 
 
 def _around(
@@ -119,8 +122,10 @@ def _around(
 ) -> Proposal:
     """Return a proposal around rows, weighted with as much likelihood as they bear."""
     weights = np.zeros(len(scores))
-    for one in log_likelihoods:
-        possible = one if np.isfinite(one).any() else np.zeros(len(one))
+    for log_likelihood in log_likelihoods:
+        possible = (
+            log_likelihood if np.isfinite(log_likelihood).any() else np.zeros(len(log_likelihood))
+        )
         of_unit = tempered(log_importance, possible)
         weights += of_unit / of_unit.sum()
     return fitted(scores, weights, columns, rng)

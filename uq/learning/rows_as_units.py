@@ -56,14 +56,14 @@ class Weighted:
         A row does not count for its own, nor do values drawn as evenly as the law has them.
         """
         assert self.terms is not None
-        found = pulls.copy()
-        found[self.rows] -= self.weights.weights[:, None] * self.terms
-        return found
+        adjusted = pulls.copy()
+        adjusted[self.rows] -= self.weights.weights[:, None] * self.terms
+        return adjusted
 
 
 def uninspected(
     log_rows: Floats,
-    found: Evidence,
+    evidence: Evidence,
     scale: IntegratedScale | None,
     place: Nesting,
     part: Replicates,
@@ -78,7 +78,7 @@ def uninspected(
     if scale is None or scale.is_own:
         weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
         return Weighted(rows, weights, None if scale is None else scale.drawn)
-    grid = found.grids[0]
+    grid = evidence.grids[0]
     edges = edges_of_rows(grid, log_rows > -np.inf, allowed)
     worth = masses(grid, edges, np.exp(log_rows - log_rows.max()))
     with np.errstate(divide="ignore"):
@@ -94,12 +94,12 @@ def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoot
     _, first = np.unique(place.sample, return_index=True)
     if not np.array_equal(log_rows, log_rows[first][place.sample]):
         return smoothed(log_rows, part)
-    found = smoothed(log_rows[first])
-    return found._replace(weights=found.weights[place.sample])
+    of_samples = smoothed(log_rows[first])
+    return of_samples._replace(weights=of_samples.weights[place.sample])
 
 
 def inspected(
-    found: Evidence,
+    evidence: Evidence,
     unit: int,
     likelihoods: UnitLikelihoods,
     world: Rows,
@@ -112,18 +112,18 @@ def inspected(
     Where units have no world in common but all rows, the likelihood bounds their weights: no value
     of the integrated input that the grid leaves out makes all else more probable than it does.
     """
-    rows, grid = likelihoods.blocks[unit], found.grids[unit]
-    size = np.bincount(world[rows], minlength=len(found.rest[unit]))
-    of_unit = likelihoods.of(unit, grid.values)
-    joint = found.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
+    rows, grid = likelihoods.blocks[unit], evidence.grids[unit]
+    size = np.bincount(world[rows], minlength=len(evidence.rest[unit]))
+    of_unit = likelihoods.log_likelihood(unit, grid.values)
+    joint = evidence.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
     allowed = None if scale is None else partial(_allowed, likelihoods, unit, scale)
     edges = edges_of_rows(grid, of_unit > -np.inf, allowed)
     top = joint.max()
     worth = masses(grid, edges, np.exp(joint - top))
     of_rows = worth.sum(axis=1)
     most = np.inf
-    if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
-        all_else = special.logsumexp(found.rest[unit]) - np.log((grid.high - grid.low) * size[0])
+    if len(evidence.rest[unit]) == 1:  # with several worlds, others make some rows count
+        all_else = special.logsumexp(evidence.rest[unit]) - np.log((grid.high - grid.low) * size[0])
         log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
         most = float(np.exp(min(log_most, _HUGE)))
     kept = np.isin(np.arange(len(world)), rows)
@@ -134,15 +134,15 @@ def inspected(
     of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
     places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
     scores = np.asarray(special.ndtri(places[:, 1:]))
-    one = Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)
+    weighted = Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)
     if law is None:
-        return one
+        return weighted
     terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
-    return replace(one, terms=terms, pulls=pulls_of(unit, of_unit, found, law))
+    return replace(weighted, terms=terms, pulls=pulls_of(unit, of_unit, evidence, law))
 
 
 def _allowed(
     likelihoods: UnitLikelihoods, unit: int, scale: IntegratedScale, places: Floats
 ) -> Mask:
     """Return where the inspections of a unit allow a value of the input in each row, shape (m,)."""
-    return likelihoods.of(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
+    return likelihoods.log_likelihood(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf

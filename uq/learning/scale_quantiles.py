@@ -50,9 +50,9 @@ def in_order(count: int) -> Floats:
 
 def in_order_of_weight(weights: Floats) -> Floats:
     """Return numbers between 0 and 1, spread evenly over the rows that count, shape (n,)."""
-    found = np.empty(len(weights))
-    found[np.argsort(-weights, kind="stable")] = in_order(len(weights))
-    return found
+    numbers = np.empty(len(weights))
+    numbers[np.argsort(-weights, kind="stable")] = in_order(len(weights))
+    return numbers
 
 
 def _tilted(within: Floats, edges: Floats, worth: Floats, row: Places, node: Places) -> Floats:

@@ -22,36 +22,36 @@ _OPEN = 0.01
 """Share of rows in which a censored life may leave open what an inspection saw."""
 
 
-def censoring(found: Posterior) -> str:
+def censoring(posterior: Posterior) -> str:
     """Return that censored lives leave open what inspections saw, or ""."""
-    return next(_censored(found), "")
+    return next(_censored(posterior), "")
 
 
-def distrust(found: Posterior) -> str:
+def distrust(posterior: Posterior) -> str:
     """Return why the weights of a posterior cannot be trusted, or ""."""
-    return next(_reasons(found), "")
+    return next(_reasons(posterior), "")
 
 
-def _censored(found: Posterior) -> Iterator[str]:
-    for unit, (label, one) in enumerate(found.units.items()):
-        scale = None if found.scale is None else found.scale.drawn[one.rows]
-        before = found.likelihoods.bounded(unit, scale)
-        after = found.likelihoods.bounded(unit, one.scale)
-        counted = np.exp(found.likelihoods.log_before(unit))
+def _censored(posterior: Posterior) -> Iterator[str]:
+    for unit, (label, weighted) in enumerate(posterior.units.items()):
+        scale = None if posterior.scale is None else posterior.scale.drawn[weighted.rows]
+        before = posterior.likelihoods.bounded(unit, scale)
+        after = posterior.likelihoods.bounded(unit, weighted.scale)
+        counted = np.exp(posterior.likelihoods.log_before(unit))
         share = max(
-            np.average(before, weights=counted), np.average(after, weights=one.weights.weights)
+            np.average(before, weights=counted), np.average(after, weights=weighted.weights.weights)
         )
         if share > _OPEN:
             yield (
                 f"unit {label}: {percent(share)} of the rows were censored before what its"
-                f" inspections found{_or_stopped(found, label)}"
+                f" inspections found{_or_stopped(posterior, label)}"
             )
 
 
-def _or_stopped(found: Posterior, label: str) -> str:
-    """Return what remedies rows that leave open what inspections of a unit saw."""
-    looks = [look for one, look in found.looks.items() if one.unit == label]
-    stopped = [one.depths.settled & ~one.censored for one in looks if one.depths is not None]
+def _or_stopped(posterior: Posterior, label: str) -> str:
+    """Return the remedy where rows are censored before the inspections of a unit."""
+    looks = [look for inspection, look in posterior.looks.items() if inspection.unit == label]
+    stopped = [look.depths.settled & ~look.censored for look in looks if look.depths is not None]
     if not any(rows.any() for rows in stopped):
         return "; run the study with a longer horizon"
     return (
@@ -60,28 +60,28 @@ def _or_stopped(found: Posterior, label: str) -> str:
     )
 
 
-def _reasons(found: Posterior) -> Iterator[str]:
-    """Yield what is wrong, that of the fewest effective rows first."""
-    each = {"what all units share": found.any_unit}
-    each |= {f"unit {label}": one for label, one in found.units.items()}
-    for whose, one in sorted(each.items(), key=lambda pair: pair[1].weights.effective):
-        if why := _why(one):
+def _reasons(posterior: Posterior) -> Iterator[str]:
+    """Yield the reason for each unit, from the fewest effective rows."""
+    each = {"what all units share": posterior.any_unit}
+    each |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
+    for whose, weighted in sorted(each.items(), key=lambda pair: pair[1].weights.effective):
+        if why := _why(weighted):
             yield f"{whose}: {why}"
 
 
-def _why(one: Weighted) -> str:
-    found = one.weights
-    several = "rows" if found.rows == len(one.rows) else "samples"
-    if why := refusal(found.k, found.rows, HOPELESS):
-        more = rows_to_carry_little(found.most) - found.rows
-        if found.k < DOUBTFUL or more > _MODERATE * found.rows:
+def _why(weighted: Weighted) -> str:
+    weights = weighted.weights
+    several = "rows" if weights.rows == len(weighted.rows) else "samples"
+    if why := refusal(weights.k, weights.rows, HOPELESS):
+        more = rows_to_carry_little(weights.most) - weights.rows
+        if weights.k < DOUBTFUL or more > _MODERATE * weights.rows:
             return why
         return f"single rows may carry over 1 % of the weight: add {_rounded_up(more)} {several}"
-    if found.effective >= FEW:
+    if weights.effective >= FEW:
         return ""
-    more = ceil(found.rows * (FEW / found.effective - 1))
+    more = ceil(weights.rows * (FEW / weights.effective - 1))
     return (
-        f"worth {found.effective:.1f} {several} of equal weight, below {FEW}:"
+        f"worth {weights.effective:.1f} {several} of equal weight, below {FEW}:"
         f" add {_rounded_up(more)} {several}"
     )
 

@@ -1,4 +1,4 @@
-"""The likelihood of all inspections of a unit, were it each of some rows."""
+"""Likelihood of all inspections of a unit, evaluated for each row that stands for it."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,7 +14,7 @@ from uq.learning.observables import Look
 
 
 class UnitLikelihoods:
-    """Likelihoods of units, were they each of their rows with values of the integrated input.
+    """Likelihoods of units, evaluated for their rows and for values of the integrated input.
 
     What inspections of different units would find in the same rows is computed once.
 
@@ -42,35 +42,41 @@ class UnitLikelihoods:
         model_cv: float,
         importance: Importance,
     ):
-        self.of_unit = [[one for one in inspections if one.unit == label] for label in labels]
+        self.inspections = [
+            [inspection for inspection in inspections if inspection.unit == label]
+            for label in labels
+        ]
         self._looks, self.blocks, self._scale, self._cv = looks, blocks, scale, model_cv
         self._log_before = np.log(importance.of_rows)
         self._log_most = np.log(importance.most)
         self._values = np.empty(0)
         self._truths: dict[tuple[str, float | None, int], Floats] = {}
 
-    def of(self, unit: int, values: Floats) -> Floats:
+    def log_likelihood(self, unit: int, values: Floats) -> Floats:
         """Return the logarithm of the likelihood and of what each row counts, shape (rows, g).
 
         Values of the integrated input are the same in all rows, shape (g,), or differ.
         """
         total = np.repeat(self.log_before(unit)[:, None], values.shape[-1], axis=1)
-        for one in self.of_unit[unit]:
-            total += self.of_one(one, unit, values)
+        for inspection in self.inspections[unit]:
+            total += self.of_inspection(inspection, unit, values)
         return total
 
     def log_before(self, unit: int) -> Floats:
         """Return the logarithm of what each row counts before the inspections, shape (rows,)."""
         return self._log_before[self.blocks[unit]]
 
-    def of_one(self, one: Inspection, unit: int, values: Floats) -> Floats:
-        """Return that of a single inspection, shape (rows, g)."""
-        truth = self._truth(self._looks[one], one.time, self.blocks[unit], values)
-        return self._looks[one].log_likelihood(one, truth, self._cv)
+    def of_inspection(self, inspection: Inspection, unit: int, values: Floats) -> Floats:
+        """Return the logarithm of the likelihood of a single inspection, shape (rows, g)."""
+        truth = self._truth(self._looks[inspection], inspection.time, self.blocks[unit], values)
+        return self._looks[inspection].log_likelihood(inspection, truth, self._cv)
 
     def log_most(self, unit: int) -> float:
-        """Return a bound of what `of` returns for any row."""
-        return float(self._log_most + sum(log_most(one, self._cv) for one in self.of_unit[unit]))
+        """Return an upper bound of `log_likelihood` over all rows and values."""
+        return float(
+            self._log_most
+            + sum(log_most(inspection, self._cv) for inspection in self.inspections[unit])
+        )
 
     def bounded(self, unit: int, scale: Floats | None) -> NDArray[np.bool_]:
         """Return in which rows a censored life leaves open what was seen, shape (rows,).
@@ -82,15 +88,15 @@ class UnitLikelihoods:
             The integrated input of each row.
         """
         rows = self.blocks[unit]
-        found = np.zeros(len(rows), dtype=bool)
-        for one in self.of_unit[unit]:
-            look, longer = self._looks[one], np.ones((len(rows), 1))
+        is_open = np.zeros(len(rows), dtype=bool)
+        for inspection in self.inspections[unit]:
+            look, longer = self._looks[inspection], np.ones((len(rows), 1))
             if self._scale is not None and scale is not None and look.name in self._scale.exponents:
                 longer = (scale / self._scale.drawn[rows])[:, None] ** self._scale.exponents[
                     look.name
                 ]
-            found |= look.bounded(one, rows, longer, self._cv)[:, 0]
-        return found
+            is_open |= look.bounded(inspection, rows, longer, self._cv)[:, 0]
+        return is_open
 
     def _truth(
         self, look: Look, time: float | None, rows: NDArray[np.intp], values: Floats

@@ -12,7 +12,7 @@ _BETWEEN = 16
 
 @dataclass(frozen=True)
 class WornDepths:
-    """How deep each row has worn as time passes.
+    """Worn depth of each row as a function of time.
 
     The time to a depth is interpolated monotonically in the depth, from none at the beginning, and
     continued straight beyond the last depth. Between the last depth that a row reaches and the
@@ -44,15 +44,15 @@ class WornDepths:
             NaN where a row has no life.
         """
         grid, curves = self._curves()
-        found = np.full(time.shape, np.nan)
+        depth = np.full(time.shape, np.nan)
         for row in np.flatnonzero(~np.isnan(self.lives).any(axis=1)):
-            known = np.isfinite(curves[row])
-            found[row] = np.interp(time[row], curves[row, known], grid[known])
-            if known.all():
+            finite = np.isfinite(curves[row])
+            depth[row] = np.interp(time[row], curves[row, finite], grid[finite])
+            if finite.all():
                 slope = (grid[-1] - grid[-2]) / (curves[row, -1] - curves[row, -2])
                 later = np.maximum(time[row] - curves[row, -1], 0.0)
-                found[row] += later * slope
-        return found
+                depth[row] += later * slope
+        return depth
 
     @property
     def settled(self) -> Mask:
@@ -69,13 +69,13 @@ class WornDepths:
         Of the depth between the first and the last at which it is worst; NaN with fewer than
         three depths, or where not all are reached.
         """
-        found = np.full(len(self.lives), np.nan)
+        worst = np.full(len(self.lives), np.nan)
         whole = np.isfinite(self.lives).all(axis=1)
         for place in range(len(self.depths) - 1):
             guess = self.without(place).at(self.lives[:, place : place + 1])[:, 0]
             off = np.abs(guess / self.depths[place] - 1)
-            found[whole] = np.fmax(found, off)[whole]
-        return found
+            worst[whole] = np.fmax(worst, off)[whole]
+        return worst
 
     def _curves(self) -> tuple[Floats, Floats]:
         """Return depths and the time of each row to each of them."""

@@ -129,15 +129,15 @@ def find_orbit(
         TOLERANCE * size,
         longest=min(farthest, 0.5) * size,
     )
-    found: Passage = root.linear.about
+    motion: Passage = root.linear.about
     outcome: Outcome = root.outcome
     if outcome == "converged":
         for divisor in (q for q in range(1, period) if period % q == 0):
             part = passage(beam, root.state, gaps, periods=divisor)
             if np.linalg.norm(part.state - root.state) < _SAME * size:
-                found, period = part, divisor
+                motion, period = part, divisor
                 break
-    orbit = orbit_of(found, root.state, gaps, period)
+    orbit = orbit_of(motion, root.state, gaps, period)
     distance = np.linalg.norm(root.state - state) / (np.linalg.norm(root.state) or 1.0)
     if outcome == "converged" and distance > farthest:
         outcome = "far"
@@ -181,17 +181,17 @@ def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orb
     )
 
 
-def defect(found: Passage, state: Array, by_parameter: Array | None = None) -> Linear:
+def defect(motion: Passage, state: Array, by_parameter: Array | None = None) -> Linear:
     """Return the change of a state over a passage, and its derivatives."""
     size = len(state)
-    by_state = found.tangents[:, :size] - np.eye(size)
+    by_state = motion.tangents[:, :size] - np.eye(size)
     along = np.zeros(size) if by_parameter is None else by_parameter
-    return Linear(found.state - state, by_state, along, found)
+    return Linear(motion.state - state, by_state, along, motion)
 
 
-def orbit_of(found: Passage, state: Array, gaps: Array, period: int) -> Orbit:
+def orbit_of(motion: Passage, state: Array, gaps: Array, period: int) -> Orbit:
     """Describe the orbit of a passage over one period."""
-    flow = found.tangents[:, : len(state)]
+    flow = motion.tangents[:, : len(state)]
     finite = np.isfinite(flow).all()
     multipliers = np.linalg.eigvals(flow) if finite else np.full(len(state), np.nan)
     order = np.argsort(-np.abs(multipliers))
@@ -200,12 +200,12 @@ def orbit_of(found: Passage, state: Array, gaps: Array, period: int) -> Orbit:
         period,
         gaps,
         multipliers[order].astype(complex),
-        found.work / period,
-        found.peak,
-        found.impacts,
-        found.contacts,
-        found.clearance,
-        float(np.abs(found.state - state).max()),
+        motion.work / period,
+        motion.peak,
+        motion.impacts,
+        motion.contacts,
+        motion.clearance,
+        float(np.abs(motion.state - state).max()),
         0,
         0.0,
         "converged",

@@ -101,11 +101,11 @@ class Path:
     def function(self, state: Array, parameter: float) -> Linear:
         """Return the change of a state over the period, with its derivatives."""
         at = self._setting(self.value(parameter))
-        found = passage(at.beam, state, at.gaps, periods=self._period)
+        motion = passage(at.beam, state, at.gaps, periods=self._period)
         n = len(state)
-        by_value = found.tangents[:, n : n + 2] @ at.gaps_by_value
-        by_value += found.tangents[:, n + 2] * at.log_forcing_by_value
-        return defect(found, state, by_value * self._slope)
+        by_value = motion.tangents[:, n : n + 2] @ at.gaps_by_value
+        by_value += motion.tangents[:, n + 2] * at.log_forcing_by_value
+        return defect(motion, state, by_value * self._slope)
 
     def orbit(self, point: Point) -> Orbit:
         """Return the orbit at a point of the branch."""
@@ -143,14 +143,14 @@ class Path:
         outside = before.unstable_directions
         if after.unstable_directions != outside:
             tests.append(lambda p: self.orbit(p).unstable_directions != outside)
-        found: dict[str, tuple[float, Event]] = {}
+        by_kind: dict[str, tuple[float, Event]] = {}
         for has_changed in tests:
             near, far = locate(self.function, a, b, has_changed, self._nearness, self._tolerance)
             orbits = self.orbit(near), self.orbit(far)
             kind = kind_of(*orbits, _turns(near, far))
             way = float(a.tangent[:-1] @ (near.state - a.state))
-            found.setdefault(kind, (way, Event(kind, self.value(near.parameter), *orbits)))
-        return [event for _, event in sorted(found.values(), key=lambda pair: pair[0])]
+            by_kind.setdefault(kind, (way, Event(kind, self.value(near.parameter), *orbits)))
+        return [event for _, event in sorted(by_kind.values(), key=lambda pair: pair[0])]
 
 
 def trace(path: Path, orbit: Orbit, stable_only: bool, largest: float) -> Branch:

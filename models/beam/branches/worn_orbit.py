@@ -69,7 +69,7 @@ class _Place(NamedTuple):
         Gaps and time.
     state : ndarray, shape (2 m,)
         Of the orbit, at phase 0 of the force.
-    found : Passage
+    motion : Passage
         Over its period.
     rate : float
         ds/dT.
@@ -79,7 +79,7 @@ class _Place(NamedTuple):
 
     at: Array
     state: Array
-    found: Passage
+    motion: Passage
     rate: float
     slope: Array
 
@@ -108,21 +108,21 @@ class _Way:
 
     def orbit(self, place: _Place) -> Orbit:
         """Return the orbit at a place."""
-        return orbit_of(place.found, place.state, place.at[:2], self._period)
+        return orbit_of(place.motion, place.state, place.at[:2], self._period)
 
     def step(self, here: _Place, h: float) -> tuple[_Place, Array] | None:
         """Return the place after a step and the error of `at` there, None without an orbit."""
         n = len(here.state)
-        linear = here.found.tangents
+        linear = here.motion.tangents
         drift = np.linalg.solve(np.eye(n) - linear[:, :n], linear[:, n : n + 2])
         slopes = here.slope[None]
         place = here
         for weights in _STAGES:
             at = here.at + h * (weights @ slopes)
-            found = self.place(at, here.state + drift @ (at - here.at)[:2])
-            if found is None:
+            reached = self.place(at, here.state + drift @ (at - here.at)[:2])
+            if reached is None:
                 return None
-            place = found
+            place = reached
             slopes = np.vstack([slopes, place.slope])
         return place, h * (_ERROR @ slopes)
 
@@ -184,19 +184,19 @@ def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: fl
                 break
             wall = step
             continue
-        there, difference = stepped
-        too_far = there.at[:2].max() - stop
+        following, difference = stepped
+        too_far = following.at[:2].max() - stop
         if too_far > _ARRIVED:
-            step *= 1 - too_far / (there.at - here.at)[:2].max()
+            step *= 1 - too_far / (following.at - here.at)[:2].max()
             continue
-        error = np.abs(difference / [1.0, 1.0, there.at[2]]).max() / accuracy
+        error = np.abs(difference / [1.0, 1.0, following.at[2]]).max() / accuracy
         factor = min(_SAFETY * max(error, 1e-3) ** (-1 / 3), _GROWTH)
         if error <= 1:
-            if _contacts(here) != _contacts(there):
-                events.append(way.grazing(here, there))
-            places.append(there)
+            if _contacts(here) != _contacts(following):
+                events.append(way.grazing(here, following))
+            places.append(following)
             orbits.append(beyond)
-            here = there
+            here = following
             wall = wall - step if wall > step else np.inf
         step *= factor
     at = np.array([place.at for place in places])
@@ -205,7 +205,7 @@ def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: fl
 
 def _contacts(place: _Place) -> list[int]:
     """Return the number of contacts at each site."""
-    return place.found.contacts.tolist()
+    return place.motion.contacts.tolist()
 
 
 def _end(here: _Place, stop: float, last_rate: float) -> str:

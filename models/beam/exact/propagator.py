@@ -92,8 +92,8 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
     """
     out = np.zeros((*state.shape, state.shape[1]))
     for i, pair in enumerate(system.phases):
-        found = passage(Beam.of(pair), state[i, :CLOCK], gaps[i], periods=periods)
-        out[i, :CLOCK, :CLOCK] = found.tangents[:, :CLOCK]
+        motion = passage(Beam.of(pair), state[i, :CLOCK], gaps[i], periods=periods)
+        out[i, :CLOCK, :CLOCK] = motion.tangents[:, :CLOCK]
     return out
 
 

@@ -60,11 +60,11 @@ def settled_rows(
         order = rows if sweep == "up" else rows[::-1]
         before, now = order[0], state[order[:1]]
         for row in order:
-            one = np.array([row])
+            index = np.array([row])
             if np.isfinite(now).all():
                 speeds = velocities(now)
                 speeds *= b.forcing[before] / b.forcing[row]
             else:  # the neighbour could not be followed
-                now = state[one]
-            yield one, *look(system.take(one), now, gaps[one])
+                now = state[index]
+            yield index, *look(system.take(index), now, gaps[index])
             before = row

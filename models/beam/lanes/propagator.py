@@ -23,7 +23,7 @@ def advance(
     n, _, m = system.modes.shape
     beams = system.beams
     record = Record.empty(n, periods, system.steps if trace else 0)
-    told = (
+    arguments = (
         system.modes,
         system.sigma,
         system.response,
@@ -36,9 +36,9 @@ def advance(
         tuple(record),
     )
     if beams.is_random.any():
-        advance_loaded_blocks(*told, random_motion(beams, system.taps))
+        advance_loaded_blocks(*arguments, random_motion(beams, system.taps))
     else:
-        advance_blocks(*told)
+        advance_blocks(*arguments)
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.
     lost = ~(np.abs(state[:, 2 * m + X1]) <= _LOST * (1 + system.free_reach))
     if lost.any():

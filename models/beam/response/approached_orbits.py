@@ -27,7 +27,7 @@ class Approached(NamedTuple):
 
     Attributes
     ----------
-    found : ndarray of bool, shape (n,)
+    exists : ndarray of bool, shape (n,)
         Where there is a stable orbit near the state; elsewhere the other fields are undefined.
     state : ndarray, shape (n, k)
         On the orbit.
@@ -41,7 +41,7 @@ class Approached(NamedTuple):
         Largest modulus of the Floquet multipliers over that period.
     """
 
-    found: NDArray[np.bool_]
+    exists: NDArray[np.bool_]
     state: Array
     work: Array
     peak: Array
@@ -98,7 +98,7 @@ def approached(
     n = len(state)
     strobed = _Map(propagator, system, gaps, periods)
     fixed = state.copy()
-    found = _fixed_points(strobed, fixed, size)
+    rows = _fixed_points(strobed, fixed, size)
     out = Approached(
         np.zeros(n, bool),
         fixed,
@@ -107,17 +107,17 @@ def approached(
         np.full(n, periods),
         np.full(n, np.inf),
     )
-    if not len(found):
+    if not len(rows):
         return out
-    orbits = strobed.take(found)
-    out.multiplier[found] = largest_multiplier(orbits.derivative(fixed[found]))
-    out.found[:] = out.multiplier < 1
-    _, record = orbits.advance(fixed[found])
-    out.work[found], out.peak[found] = record.work.mean(axis=1), record.peak
+    orbits = strobed.take(rows)
+    out.multiplier[rows] = largest_multiplier(orbits.derivative(fixed[rows]))
+    out.exists[:] = out.multiplier < 1
+    _, record = orbits.advance(fixed[rows])
+    out.work[rows], out.peak[rows] = record.work.mean(axis=1), record.peak
     for divisor in range(periods - 1, 0, -1):
         if periods % divisor == 0:
             apart = np.abs(record.strobe[:, divisor - 1] - record.strobe[:, -1]).max(axis=1)
-            out.period[found[apart <= _SAME * size[found]]] = divisor
+            out.period[rows[apart <= _SAME * size[rows]]] = divisor
     out.multiplier[:] **= out.period / periods
     return out
 
@@ -125,7 +125,7 @@ def approached(
 def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
     """Move states to nearby fixed points of the map; return the rows where there is one."""
     by_residual, regular = inverse(np.eye(state.shape[1]) - strobed.derivative(state))
-    found = np.zeros(len(state), bool)
+    converged = np.zeros(len(state), bool)
     left, going, longest = np.arange(len(state)), regular, _FARTHEST * size
     for _ in range(_STEPS):
         if not going.all():
@@ -141,6 +141,6 @@ def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
         shrinking = length <= longest[left]
         longest[left] = _FASTER * length
         last = shrinking & (length <= _LAST * size[left])
-        found[left[last]] = True
+        converged[left[last]] = True
         going = shrinking & ~last
-    return np.flatnonzero(found)
+    return np.flatnonzero(converged)

@@ -79,12 +79,12 @@ def time_mean(
         settled = max(done, SHORTEST // _PIECE // 4)
         for first in range(0, len(left), _ROWS):
             rows = left[first : first + _ROWS]
-            now, here, some = state[rows], gaps[rows], system.take(rows)
+            now, here, part = state[rows], gaps[rows], system.take(rows)
             for begin, end in ((done, settled), (settled, total)):
                 if begin == end:
                     continue
                 periods = (end - begin) * _PIECE
-                record = propagator.advance(some, now, here, np.zeros_like(here), periods)
+                record = propagator.advance(part, now, here, np.zeros_like(here), periods)
                 works = record.work.reshape(len(rows), end - begin, _PIECE, 2)
                 pieces[rows, begin:end] = works.mean(axis=2)
                 if begin >= settled:

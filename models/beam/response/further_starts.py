@@ -48,8 +48,8 @@ def add_other_responses(
     starts : int
         Further starts of each beam. None are made under a random force, which leaves one response.
     """
-    known = np.isfinite(first.work).all(axis=1)
-    rows = np.flatnonzero(known & ~system.beams.is_random)
+    valid = np.isfinite(first.work).all(axis=1)
+    rows = np.flatnonzero(valid & ~system.beams.is_random)
     if not starts or not len(rows):
         return
     can_rest = rows[system.free_reach[rows] < gaps[rows].min(axis=1)]

@@ -43,14 +43,14 @@ def add_neighbour_error(
     again = np.repeat(rows, len(_AWAY))
     state = begin[again]
     state[:, FIRST_MODE] += np.tile(_AWAY, len(rows))
-    found = Response.settling(len(again))
+    neighbours = Response.settling(len(again))
     segments = np.repeat(_segments(system.beams.memory[rows]), len(_AWAY))
-    for some in np.unique(segments):
-        alike = np.flatnonzero(segments == some)
-        look(propagator, system.take(again), state, gaps[again], alike, found, some, some)
+    for count in np.unique(segments):
+        alike = np.flatnonzero(segments == count)
+        look(propagator, system.take(again), state, gaps[again], alike, neighbours, count, count)
     shape = (len(rows), len(_AWAY), 2)
-    apart = np.abs(found.work.reshape(shape) - out.work[rows, None])
-    within = np.hypot(found.error.reshape(shape), out.error[rows, None])
+    apart = np.abs(neighbours.work.reshape(shape) - out.work[rows, None])
+    within = np.hypot(neighbours.error.reshape(shape), out.error[rows, None])
     beyond = np.where(apart > within, apart, 0.0).max(axis=(1, 2))[:, None]
     out.error[rows] = np.maximum(out.error[rows], beyond)
 

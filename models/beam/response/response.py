@@ -55,10 +55,10 @@ class Response(NamedTuple):
         """Return the responses of some beams."""
         return Response._make(field[rows] for field in self)
 
-    def put(self, rows: NDArray[np.intp], known: "Response") -> None:
+    def put(self, rows: NDArray[np.intp], other: "Response") -> None:
         """Set the responses of some beams."""
         fields: tuple[Any, ...] = self
-        for mine, theirs in zip(fields, known, strict=True):
+        for mine, theirs in zip(fields, other, strict=True):
             mine[rows] = theirs
 
     def forget(self, rows: NDArray[np.intp]) -> None:

@@ -121,12 +121,17 @@ def look(
         if (segment + 1) % (1 + segment // 4) == 0:  # later rows wait, to be treated together
             guess = np.where(silent, 0, _guess(before, distance[left], tried[left]))
         for k in np.unique(guess[guess > 0]):
-            some = left[guess == k]
-            tried[some, k - 1] = distance[some, k - 1]
+            candidates = left[guess == k]
+            tried[candidates, k - 1] = distance[candidates, k - 1]
             orbit = approached(
-                propagator, system.take(some), state[some], gaps[some], size[guess == k], int(k)
+                propagator,
+                system.take(candidates),
+                state[candidates],
+                gaps[candidates],
+                size[guess == k],
+                int(k),
             )
-            note_orbit(out, some, orbit, state)
+            note_orbit(out, candidates, orbit, state)
         left = left[out.period[left] == 0]
         segment += 1
         if segment == total:
@@ -163,7 +168,7 @@ def _settle_random(
 
 @kernel
 def _observe(work, strobe):
-    """Return what a segment of n responses shows.
+    """Return statistics of a segment of n responses.
 
     Returns
     -------
@@ -216,7 +221,7 @@ def _note_silence(out: Response, rows: NDArray[np.intp]) -> None:
 
 def note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> None:
     """Record the orbits that some beams approach, and put the beams onto them."""
-    good = orbit.found
+    good = orbit.exists
     rows, work = rows[good], orbit.work[good]
     state[rows] = orbit.state[good]
     out.work[rows], out.error[rows] = work, 0.0

@@ -31,15 +31,17 @@ def add_step_error(
     """
     rows = np.flatnonzero((out.period > 0) & (out.regime != NO_IMPACT))
     for part, fine, now in propagator.finer(system.take(rows), state[rows]):
-        some = rows[part]
-        coarse = out.take(some)
-        found = Response.settling(len(some))
-        size = (gaps[some] + coarse.peak).max(axis=1)
+        chosen = rows[part]
+        coarse = out.take(chosen)
+        refined = Response.settling(len(chosen))
+        size = (gaps[chosen] + coarse.peak).max(axis=1)
         for k in np.unique(coarse.period):
             at = np.flatnonzero(coarse.period == k)
-            orbit = approached(propagator, fine.take(at), now[at], gaps[some[at]], size[at], int(k))
-            note_orbit(found, at, orbit, now)
-        left = np.flatnonzero(found.period == 0)
-        look(propagator, fine, now, gaps[some], left, found, _SEGMENTS, _SEGMENTS)
-        found.error[:] = np.maximum(found.error, np.abs(found.work - coarse.work))
-        out.put(some, found)
+            orbit = approached(
+                propagator, fine.take(at), now[at], gaps[chosen[at]], size[at], int(k)
+            )
+            note_orbit(refined, at, orbit, now)
+        left = np.flatnonzero(refined.period == 0)
+        look(propagator, fine, now, gaps[chosen], left, refined, _SEGMENTS, _SEGMENTS)
+        refined.error[:] = np.maximum(refined.error, np.abs(refined.work - coarse.work))
+        out.put(chosen, refined)

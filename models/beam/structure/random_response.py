@@ -250,11 +250,11 @@ def filtered(load: np.void, forcing: float, oscillators: Array, periods: Array) 
     ndarray, shape (k,)
         Over the initial gap: force [N m-1] or displacement [1].
     """
-    one = np.array([load], load.dtype)
-    work = Workspace.of(one)
+    loads = np.array([load], load.dtype)
+    work = Workspace.of(loads)
     gain, samples = (
         np.empty((2, work.parts.shape[1] // (2 * FINER))),
-        np.empty((2, int(samples_per_stretch(one)[0]))),
+        np.empty((2, int(samples_per_stretch(loads)[0]))),
     )
     set_gain(load, forcing, oscillators, gain)
     per_period = FINER * load["rate"]

@@ -54,7 +54,7 @@ def _until_silent(i, life, site, growth):
 
 def note_later_depths(life, out):
     """Record how far n beams have worn at the instants after the end of their lives."""
-    known = np.where(out.ended[:, None], life.grown - life.excess, np.nan)
+    worn = np.where(out.ended[:, None], life.grown - life.excess, np.nan)
     last = np.maximum(life.grown, life.growths[:, -1:])
-    known = np.where(out.reached[:, :, -1], last, known)
-    out.depth[:] = np.where(np.isnan(out.depth), known[:, :, None], out.depth)
+    worn = np.where(out.reached[:, :, -1], last, worn)
+    out.depth[:] = np.where(np.isnan(out.depth), worn[:, :, None], out.depth)

@@ -74,10 +74,10 @@ def find_random_lives(
         running[left] += _MEMORY * (rate[node, left] - running[left])
     out = Lives.nothing(n, growths.shape[1], instants.shape[1])
     for i in range(n):
-        some = slice(0, last[i] + 1)
+        span = slice(0, last[i] + 1)
         narrow = (gaps[i] + grown[last[i], i]).min()
         silent = not rate[last[i], i].any() and system.free_reach[i] < narrow
-        nodes_of = (grown[some, i], rate[some, i], doubt[some, i])
+        nodes_of = (grown[span, i], rate[span, i], doubt[span, i])
         _note(i, out, gaps[i], *nodes_of, growths[i], instants[i], silent)
         # Under a random load there is one regime until contact ends.
         out.changes[i] = float(silent and bool(rate[0, i].any()))

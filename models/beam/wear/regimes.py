@@ -121,14 +121,14 @@ def confirmed_regimes(regime, confirmed=CONFIRMED):
     """
     out = np.full_like(regime, UNKNOWN)
     for i in range(len(regime)):
-        known = 0
-        while known < regime.shape[1] and regime[i, known] != UNKNOWN:
-            known += 1
+        looks = 0
+        while looks < regime.shape[1] and regime[i, looks] != UNKNOWN:
+            looks += 1
         now, streak = UNKNOWN, 0
-        for look in range(known):
+        for look in range(looks):
             seen = regime[i, look]
             streak = streak + 1 if look > 0 and seen == regime[i, look - 1] else 1
-            is_end = seen == NO_IMPACT and look == known - 1
+            is_end = seen == NO_IMPACT and look == looks - 1
             if seen != now and (streak >= confirmed or is_end):
                 now = seen
                 out[i, look - streak + 1 : look] = now

@@ -26,7 +26,7 @@ _LENGTH = 1 / (LOOKS - 1)  # between two looks, of a step
 @lean
 def find(lane, m, y, w):
     """Choose the guard that ends the step of a lane, and note between which places."""
-    found, seen, guess = -1, 1.0, 0.0
+    guard, seen, guess = -1, 1.0, 0.0
     marks = int(m[at.LOOK * LANES + lane])
     early, late = marks % 8, marks // 8
     several = (early | late) & ((early | late) - 1)
@@ -43,13 +43,13 @@ def find(lane, m, y, w):
             _pose(g, side, lane, m, y)
             left, right = _narrow(lane, left, right, m, w)
             here = right
-        if here >= 0 and (found < 0 or here < guess):
-            found, seen, guess = g, side, here
+        if here >= 0 and (guard < 0 or here < guess):
+            guard, seen, guess = g, side, here
             m[at.LEFT * LANES + lane], m[at.RIGHT * LANES + lane] = left, right
-    m[at.MET * LANES + lane] = found
-    if found >= 0:
+    m[at.MET * LANES + lane] = guard
+    if guard >= 0:
         m[at.REACH * LANES + lane] = guess
-        _pose(found, seen, lane, m, y)
+        _pose(guard, seen, lane, m, y)
 
 
 @lean

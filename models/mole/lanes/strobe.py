@@ -28,17 +28,17 @@ def _repetition(lane, q, m, y, ring):
     here[3] = abs(y[at.CURRENT * LANES + lane])
     here[4] = abs(y[at.P * LANES + lane])
     m[at.ENTRIES * LANES + lane] = last + 1
-    found = 0
+    period = 0
     for back in range(1, min(last + 1, length) // 2 + 1):
-        close = found == 0 and _distance(q, ring[(last - back) % length], here) < REPEAT
+        close = period == 0 and _distance(q, ring[(last - back) % length], here) < REPEAT
         if close and _whole_period(q, ring, last, back):
-            found = back
-    for back in range(1, found):
+            period = back
+    for back in range(1, period):
         # Approached from alternating sides, an orbit appears to have twice its period.
-        if found % back == 0 and _distance(q, ring[(last - back) % length], here) < _ALIKE:
-            found = back
+        if period % back == 0 and _distance(q, ring[(last - back) % length], here) < _ALIKE:
+            period = back
             break
-    return found
+    return period
 
 
 @lean
@@ -83,8 +83,8 @@ def strobe(lane, task, m, y, ring, columns):
         _bring_back(lane, m, y, columns)
     periods, common = half // 2, task.common[row]
     if common > 0 and periods % common == 0:
-        found = _repetition(lane, mole_of(task.table, row), m, y, ring[lane])
-        if found > 0:
-            task.record[row, PERIOD] = found
+        period = _repetition(lane, mole_of(task.table, row), m, y, ring[lane])
+        if period > 0:
+            task.record[row, PERIOD] = period
             return REPEATING
     return REACHED_END if periods >= task.limit[row] else GOING

@@ -108,19 +108,19 @@ def _follow_batches(
     machines: Machines, rows: Counts, each: Counts, tangents: Array, out: Response
 ) -> Counts:
     """Follow moles through new batches; return the indices of those that completed them."""
-    some = Response.nothing(len(rows))
-    some.touching[:] = machines.record[rows, TOUCHING] == 1
+    renewed = Response.nothing(len(rows))
+    renewed.touching[:] = machines.record[rows, TOUCHING] == 1
     limit, places = machines.periods(rows), np.arange(len(rows))
     for batch in range(BATCHES):
         limit = limit + each
         flow = tangents[places]
         reached = machines.run(rows[places], limit[places], flow)
         places, flow = places[reached], flow[reached]
-        some.note(places, batch, machines.record[rows[places]])
-        some.growth[places, batch] = machines.record[rows[places], GROWTH]
+        renewed.note(places, batch, machines.record[rows[places]])
+        renewed.growth[places, batch] = machines.record[rows[places], GROWTH]
         tangents[places] = flow
-    some.time[places] = BATCHES * each[places] / machines.system.control_frequency[rows[places]]
+    renewed.time[places] = BATCHES * each[places] / machines.system.control_frequency[rows[places]]
     # A row that does not complete them keeps the averages of a shorter run.
-    for mine, new in zip(out, some, strict=True):
+    for mine, new in zip(out, renewed, strict=True):
         mine[rows[places]] = new[places]
     return places

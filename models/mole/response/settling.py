@@ -79,7 +79,7 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
     return np.concatenate(done)
 
 
-def settle_late(machines: Machines, rows: Counts, known: Response, latest: float) -> Counts:
+def settle_late(machines: Machines, rows: Counts, response: Response, latest: float) -> Counts:
     """Look again at moles whose motion did not repeat before its averages were taken.
 
     Parameters
@@ -88,7 +88,7 @@ def settle_late(machines: Machines, rows: Counts, known: Response, latest: float
         Their record is updated.
     rows : ndarray of int
         Moles whose motion does not repeat.
-    known : Response
+    response : Response
         Their responses so far; reset to unknown where the motion now repeats.
     latest : float
         How long a motion that converges to one that repeats is continued at most [s].
@@ -98,13 +98,13 @@ def settle_late(machines: Machines, rows: Counts, known: Response, latest: float
     ndarray of int
         Rows whose motion now repeats.
     """
-    mean, error = mean_and_error(known.growth[rows])
+    mean, error = mean_and_error(response.growth[rows])
     system = machines.system
-    some = (system.common[rows] > 0) & (mean <= SURE * error) & np.isfinite(known.time[rows])
-    rows, converges = rows[some], (mean < -SURE * error)[some]
+    selected = (system.common[rows] > 0) & (mean <= SURE * error) & np.isfinite(response.time[rows])
+    rows, converges = rows[selected], (mean < -SURE * error)[selected]
     more = np.ceil(latest * system.control_frequency[rows]).astype(np.int64)
     more = np.maximum(np.where(converges, more, 0), TO_REPEAT * system.common[rows])
     rows = rows[machines.run(rows, machines.periods(rows) + more, repeat=True)]
     rows = rows[machines.record[rows, OUTCOME] == REPEATING]
-    known.forget(rows)
+    response.forget(rows)
     return rows

@@ -46,5 +46,5 @@ def verdicts(
     low, high = (mean - SURE * error) / each, (mean + SURE * error) / each
     follows = alone & (high < 0)
     neutral = (low > -NEAR_ZERO) & (high >= 0) & (high < NEAR_ZERO)
-    known = np.where(follows | neutral, QUASI_PERIODIC, UNDECIDED)
-    return np.where(low > 0, CHAOTIC, known).astype(np.int8)
+    not_chaotic = np.where(follows | neutral, QUASI_PERIODIC, UNDECIDED)
+    return np.where(low > 0, CHAOTIC, not_chaotic).astype(np.int8)

@@ -111,7 +111,7 @@ def accelerations(m, riding, state):
     state : ndarray, shape (16,)
     """
     r, pose = m.rigid, posed(m, state[2], state[5], state[6])
-    one, two = vibrators(m, pose, state[3], state[4])
+    v_1, v_2 = vibrators(m, pose, state[3], state[4])
     va, w_1, w_2 = state[DEGREES + 2], state[DEGREES + 3], state[DEGREES + 4]
     slide_speed, set_speed = state[DEGREES + 5], va + state[DEGREES + 6]
     inward = m.exact * va * va
@@ -119,19 +119,19 @@ def accelerations(m, riding, state):
     bias_x = -inward * pose.set_x - aside * pose.slide_y
     bias_y = -inward * pose.set_y + aside * pose.slide_x
     turning = m.exact * set_speed * set_speed
-    bias_x_1, bias_y_1 = bias_x - turning * one.arm_x, bias_y - turning * one.arm_y
-    bias_x_2, bias_y_2 = bias_x - turning * two.arm_x, bias_y - turning * two.arm_y
+    bias_x_1, bias_y_1 = bias_x - turning * v_1.arm_x, bias_y - turning * v_1.arm_y
+    bias_x_2, bias_y_2 = bias_x - turning * v_2.arm_x, bias_y - turning * v_2.arm_y
     lag_1, lag_2 = r.synchronous_speed_1 - w_1, r.synchronous_speed_2 - w_2
     drive_1 = _drive(r.torque_1, lag_1, r.slip_1, r.bearing_loss_1, w_1, w_1 - set_speed)
     drive_2 = _drive(r.torque_2, lag_2, r.slip_2, r.bearing_loss_2, w_2, w_2 + set_speed)
-    drive_1 -= r.gravity * r.unbalance_1 * one.n_x
-    drive_2 += r.gravity * r.unbalance_2 * two.n_x
-    x_1, y_1 = _pull(one, r.unbalance_1, r.mobility_1, drive_1, w_1, bias_x_1, bias_y_1)
-    x_2, y_2 = _pull(two, r.unbalance_2, r.mobility_2, drive_2, w_2, bias_x_2, bias_y_2)
+    drive_1 -= r.gravity * r.unbalance_1 * v_1.n_x
+    drive_2 += r.gravity * r.unbalance_2 * v_2.n_x
+    x_1, y_1 = _pull(v_1, r.unbalance_1, r.mobility_1, drive_1, w_1, bias_x_1, bias_y_1)
+    x_2, y_2 = _pull(v_2, r.unbalance_2, r.mobility_2, drive_2, w_2, bias_x_2, bias_y_2)
 
     force_x = x_1 + x_2 - m.mount_mass * bias_x
     force_y = y_1 + y_2 - m.mount_mass * bias_y
-    moment = one.arm_x * y_1 - one.arm_y * x_1 + two.arm_x * y_2 - two.arm_y * x_2
+    moment = v_1.arm_x * y_1 - v_1.arm_y * x_1 + v_2.arm_x * y_2 - v_2.arm_y * x_2
     slide = pose.slide_x * force_x + pose.slide_y * force_y
     slide -= m.slide_stiffness * state[5] + m.slide_damping * slide_speed
     rock = m.rocks * moment
@@ -142,7 +142,7 @@ def accelerations(m, riding, state):
     reach, sunk = m.feed_position * pose.cos, m.feed_position * pose.sin
     push = m.feed_mass * (inward * sunk if riding else m.feed_gravity)
     x, y, a, u, c = solve(
-        factorised(m, pose, one, two, riding),
+        factorised(m, pose, v_1, v_2, riding),
         force_x + support_x,
         force_y + support_y + push,
         moment + support_moment + push * reach,
@@ -153,10 +153,10 @@ def accelerations(m, riding, state):
     set_x = x - a * pose.set_y + u * pose.slide_x
     set_y = y + a * pose.set_x + u * pose.slide_y
     psi_1 = r.mobility_1 * drive_1 + _felt(
-        one, r.unbalance_1, r.mobility_1, set_x + bias_x_1, set_y + bias_y_1, a + c
+        v_1, r.unbalance_1, r.mobility_1, set_x + bias_x_1, set_y + bias_y_1, a + c
     )
     psi_2 = r.mobility_2 * drive_2 + _felt(
-        two, r.unbalance_2, r.mobility_2, set_x + bias_x_2, set_y + bias_y_2, a + c
+        v_2, r.unbalance_2, r.mobility_2, set_x + bias_x_2, set_y + bias_y_2, a + c
     )
     height = 0.0 if riding else inward * sunk - m.feed_gravity - y - reach * a
     return Accelerations(x, y, a, psi_1, psi_2, u, c, height)
@@ -190,10 +190,10 @@ def land(m, state):
         Changed in place.
     """
     r, pose = m.rigid, posed(m, state[2], state[5], state[6])
-    one, two = vibrators(m, pose, state[3], state[4])
+    v_1, v_2 = vibrators(m, pose, state[3], state[4])
     impulse = m.feed_mass * state[DEGREES + 7]
     x, y, a, u, c = solve(
-        factorised(m, pose, one, two, True),
+        factorised(m, pose, v_1, v_2, True),
         0.0,
         impulse,
         impulse * m.feed_position * pose.cos,
@@ -202,8 +202,8 @@ def land(m, state):
     )
     set_x = x - a * pose.set_y + u * pose.slide_x
     set_y = y + a * pose.set_x + u * pose.slide_y
-    psi_1 = _felt(one, r.unbalance_1, r.mobility_1, set_x, set_y, a + c)
-    psi_2 = _felt(two, r.unbalance_2, r.mobility_2, set_x, set_y, a + c)
+    psi_1 = _felt(v_1, r.unbalance_1, r.mobility_1, set_x, set_y, a + c)
+    psi_2 = _felt(v_2, r.unbalance_2, r.mobility_2, set_x, set_y, a + c)
     jump = (x, y, a, psi_1, psi_2, u, c)
     for i in range(len(jump)):
         state[DEGREES + i] += jump[i]

@@ -26,24 +26,24 @@ class Inertia(NamedTuple):
 
 
 @inlined
-def factorised(m, pose, one, two, riding):
+def factorised(m, pose, v_1, v_2, riding):
     """Return the `Inertia` of a machine.
 
     Parameters
     ----------
     m : System
     pose : Pose
-    one, two : Vibrator
+    v_1, v_2 : Vibrator
     riding : bool
         Whether the feed lies on the deck.
     """
     o_x, o_y, to_x, to_y = pose.set_x, pose.set_y, pose.slide_x, pose.slide_y
     # Inertia of both masses on the shafts about O, then about C.
-    cx_1, cy_1 = one.xy * one.arm_x - one.xx * one.arm_y, one.yy * one.arm_x - one.xy * one.arm_y
-    cx_2, cy_2 = two.xy * two.arm_x - two.xx * two.arm_y, two.yy * two.arm_x - two.xy * two.arm_y
+    cx_1, cy_1 = v_1.xy * v_1.arm_x - v_1.xx * v_1.arm_y, v_1.yy * v_1.arm_x - v_1.xy * v_1.arm_y
+    cx_2, cy_2 = v_2.xy * v_2.arm_x - v_2.xx * v_2.arm_y, v_2.yy * v_2.arm_x - v_2.xy * v_2.arm_y
     cx, cy = cx_1 + cx_2, cy_1 + cy_2
-    cc = m.mount_inertia + one.arm_x * cy_1 - one.arm_y * cx_1 + two.arm_x * cy_2 - two.arm_y * cx_2
-    xx, xy, yy = m.mount_mass + one.xx + two.xx, one.xy + two.xy, m.mount_mass + one.yy + two.yy
+    cc = m.mount_inertia + v_1.arm_x * cy_1 - v_1.arm_y * cx_1 + v_2.arm_x * cy_2 - v_2.arm_y * cx_2
+    xx, xy, yy = m.mount_mass + v_1.xx + v_2.xx, v_1.xy + v_2.xy, m.mount_mass + v_1.yy + v_2.yy
     ax, ay = cx + xy * o_x - xx * o_y, cy + yy * o_x - xy * o_y
     ca = cc + o_x * cy - o_y * cx
     aa = ca + o_x * ay - o_y * ax + m.body_inertia

@@ -69,8 +69,8 @@ class System(NamedTuple):
     def row(self, i: int) -> "System":
         """Return one of n machines, its fields floats."""
         rigid, *others = self
-        one = Rigid._make(float(field[i]) for field in rigid)
-        return System(one, *(float(field[i]) for field in others))
+        rigid_row = Rigid._make(float(field[i]) for field in rigid)
+        return System(rigid_row, *(float(field[i]) for field in others))
 
 
 def _shafts(p: Rows, motors: MotorSet) -> list[tuple[Any, Any]]:

@@ -76,7 +76,7 @@ def _advance(step, at, time, last, turn):
 
     `last` holds the length of the last step, 0 once close, and NaN once given up.
     """
-    some = 0
+    active = 0
     for lane in range(LANES):
         if last[lane] > 0.0:
             take(step, 1.0, at, time, lane)
@@ -85,8 +85,8 @@ def _advance(step, at, time, last, turn):
                 last[lane] = size if size >= CLOSE_ENOUGH else 0.0
             else:
                 last[lane] = np.nan
-            some += 1 if last[lane] > 0.0 else 0
-    return some
+            active += 1 if last[lane] > 0.0 else 0
+    return active
 
 
 @spliced

@@ -96,7 +96,7 @@ def _settle(k, squares, traces, level, radius):
 
     If a third eigenvalue contributed, the estimate of the next power would not be the square.
     """
-    some = 0
+    unsettled = 0
     for lane in range(LANES):
         square, next_square = squares[k - 2, lane], squares[k - 1, lane]
         early = _larger(traces[k - 2, lane], square * traces[k - 1, lane])
@@ -105,8 +105,8 @@ def _settle(k, squares, traces, level, radius):
         new = agree & (level[lane] > k)
         radius[lane] = late if new else radius[lane]
         level[lane] = k - 1.0 if new else level[lane]
-        some += 0 if level[lane] < k else 1
-    return some
+        unsettled += 0 if level[lane] < k else 1
+    return unsettled
 
 
 @spliced

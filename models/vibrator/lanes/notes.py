@@ -106,7 +106,7 @@ def _entry(off_0, drift_0, off, drift, band):
 @kernel
 def note_entries(w, target, step, band, notes):
     """Record when angles enter their bands; almost always one check of all lanes is enough."""
-    some = 0
+    entering = 0
     for lane in range(LANES):
         off, drift = _way(w, target, lane)
         off_0, drift_0 = notes[_OFF * LANES + lane], notes[_DRIFT * LANES + lane]
@@ -116,8 +116,8 @@ def note_entries(w, target, step, band, notes):
         room = 4 / 27 * (abs(drift_0) + abs(drift))
         higher = size_0 if size_0 > size else size
         returns = (drift_0 * drift < 0.0) & (higher <= band) & (higher + room > band)
-        some += 1 if returns | ((size_0 > band) & (size <= band)) else 0
-    if some > 0:
+        entering += 1 if returns | ((size_0 > band) & (size <= band)) else 0
+    if entering > 0:
         for lane in range(LANES):
             part = _entry(
                 notes[_OFF * LANES + lane],

@@ -55,7 +55,7 @@ class Orbits(NamedTuple):
 
     Attributes
     ----------
-    found : ndarray of bool, shape (n,)
+    converged : ndarray of bool, shape (n,)
         The other fields are meaningless where False.
     state : ndarray, shape (n, 10)
         At psi_1 = 0.
@@ -69,7 +69,7 @@ class Orbits(NamedTuple):
         Estimated error of the angle by the length of the steps [rad].
     """
 
-    found: NDArray[np.bool_]
+    converged: NDArray[np.bool_]
     state: Array
     period: Array
     multiplier: Array
@@ -133,7 +133,7 @@ def _judge(end, step, time, close, done, going, total):
 
     Returns how many are found.
     """
-    some = 0
+    ready = 0
     total[:] = 0.0
     for i in range(STATE * ENTRIES):
         for lane in range(LANES):
@@ -146,8 +146,8 @@ def _judge(end, step, time, close, done, going, total):
         # The next error of Newton's method is of the order of this step squared.
         near = angle_and_period(step, time, lane) < (CLOSE_ENOUGH if close[lane] else _CLOSE)
         done[lane], going[lane] = regular and near, regular and not near
-        some += 1 if done[lane] else 0
-    return some
+        ready += 1 if done[lane] else 0
+    return ready
 
 
 @kernel
@@ -176,7 +176,7 @@ def _search(constants, state, time, rows, steps, mirror, turn, out, shortest, ro
     room : tuple
         What `_rooms` returns.
     """
-    found, multiplier, angle, ripple, error = out
+    converged, multiplier, angle, ripple, error = out
     (c, at, t, end, inverse, miss, step, shift), motion, numbers, flags, small, more = room
     (w, h, _, back), (close, done, going) = motion, flags
     last, low, high, mean, deviation, radius, off = numbers
@@ -185,10 +185,10 @@ def _search(constants, state, time, rows, steps, mirror, turn, out, shortest, ro
     for attempt in range(ITERATIONS):
         left = 0
         for first in range(0, count, LANES):
-            some = rows[first : min(first + LANES, count)]
-            gather(constants, some, c)
-            gather(state, some, at)
-            gather(time, some, t)
+            block = rows[first : min(first + LANES, count)]
+            gather(constants, block, c)
+            gather(state, block, at)
+            gather(time, block, t)
             close[:] = False
             for fine in range(0 if attempt == 0 else 1, 2):
                 number = steps if fine else coarse
@@ -197,8 +197,8 @@ def _search(constants, state, time, rows, steps, mirror, turn, out, shortest, ro
                 if not fine:
                     room_of_chords = w, h, back, miss, step, last
                     approach(c, at, t, end, inverse, steps, mirror, turn, close, room_of_chords)
-                    _restore(state, some, close, at)
-                    _restore(time, some, close, t)
+                    _restore(state, block, close, at)
+                    _restore(time, block, close, t)
             _subtract(at, end, ENTRIES, miss)
             multiply(inverse, miss, step)
             ready = _judge(end, step, t, close, done, going, off)
@@ -213,13 +213,13 @@ def _search(constants, state, time, rows, steps, mirror, turn, out, shortest, ro
             if ready > 0:
                 largest_multiplier(end, done, radius, more)
                 disphasing(c, at, t, steps, mean, deviation, (w, h, low, high))
-            for lane in range(len(some)):
-                n = some[lane]
+            for lane in range(len(block)):
+                n = block[lane]
                 time[n, 0] = t[lane]
                 for i in range(STATE):
                     state[n, i] = at[i * LANES + lane]
                 if done[lane] and t[lane] > 0.0:
-                    found[n], multiplier[n], angle[n] = True, radius[lane], mean[lane]
+                    converged[n], multiplier[n], angle[n] = True, radius[lane], mean[lane]
                     ripple[n], error[n] = deviation[lane], off[lane]
                 elif going[lane] and t[lane] > shortest[n]:
                     rows[left] = n
@@ -252,9 +252,9 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     _find(constants, out, np.flatnonzero(constants[:, _GRAVITY] == 0), steps, HALF)
     speed = 2 * np.pi / out.period
     spin = np.hypot(out.state[:, 7], out.state[:, 2] * speed)
-    rest = np.flatnonzero(~(out.found & (spin < _QUIET * speed)))
+    rest = np.flatnonzero(~(out.converged & (spin < _QUIET * speed)))
     if len(rest):
-        out.found[rest], out.state[rest], out.period[rest] = False, state[rest], period[rest]
+        out.converged[rest], out.state[rest], out.period[rest] = False, state[rest], period[rest]
         _find(constants, out, rest, steps, WHOLE)
     return out
 
@@ -270,7 +270,7 @@ def _find(constants: Array, out: Orbits, rows: NDArray[np.intp], steps: int, par
         -(-steps // part.parts),
         part.mirror,
         part.turn,
-        (out.found, out.multiplier, out.angle, out.ripple, out.error),
+        (out.converged, out.multiplier, out.angle, out.ripple, out.error),
         _SHORTEST * time[:, 0],
         _rooms(),
     )

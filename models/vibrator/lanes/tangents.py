@@ -121,10 +121,10 @@ def _begin(c, h, w):
         if i != ANCHOR:
             o = _TANGENTS + column * _WHOLE
             for lane in range(LANES):
-                one = 1.0 if i < DEGREES else h[lane]
-                w[o + i * LANES + lane] = one
+                diagonal = 1.0 if i < DEGREES else h[lane]
+                w[o + i * LANES + lane] = diagonal
                 if i == 2 or i == DEGREES + 2:
-                    w[o + (i - 2) * LANES + lane] = one * machine(c, lane).support_offset
+                    w[o + (i - 2) * LANES + lane] = diagonal * machine(c, lane).support_offset
             column += 1
 
 

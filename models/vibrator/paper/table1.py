@@ -29,13 +29,13 @@ def main() -> None:
     """Print the table."""
     p = machines()
     guess = averaged.disphasing(p)
-    found, _ = fast.outcomes(p, Settings())
+    outcome, _ = fast.outcomes(p, Settings())
     print("row    xi  k_x [N/m]  h [m]   dphi theory  simulated [rad]  [deg]   alpha [rad]")
     for i in range(8):
         print(
             f"{i + 1:3d}  {p.damping_ratio[i]:4.2f}  {p.stiffness_x[i]:9.3g}"
-            f"  {p.support_offset[i]:5.1f}  {guess.angle[i]:12.5f}  {found.disphasing[i]:15.5f}"
-            f"  {np.degrees(found.disphasing[i]):5.2f}  {found.angular_amplitude[i]:12.3g}"
+            f"  {p.support_offset[i]:5.1f}  {guess.angle[i]:12.5f}  {outcome.disphasing[i]:15.5f}"
+            f"  {np.degrees(outcome.disphasing[i]):5.2f}  {outcome.angular_amplitude[i]:12.3g}"
         )
 
 

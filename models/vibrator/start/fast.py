@@ -28,7 +28,7 @@ from models.vibrator.start.regimes import (
     Outcome,
     locked_regime,
 )
-from models.vibrator.start.synchronous import Known, describe, propose
+from models.vibrator.start.synchronous import SynchronousOrbits, describe, propose
 from uq.contract import Status
 
 LOOK = 96  # steps between two looks at a run
@@ -82,14 +82,14 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     status : ndarray of int8, shape (n,)
     """
     machines = prepared(p)
-    known = propose(machines, settings.steps_per_turn)
+    synchronous = propose(machines, settings.steps_per_turn)
     plan = _Plan.made(machines, settings)
-    n = len(known.found)
+    n = len(synchronous.exists)
     out, status = Outcome.nothing(n, len(settings.instants)), np.full(n, Status.OK, np.int8)
     rows = np.arange(n)
     for run in range(_RUNS):
         final = run == _RUNS - 1
-        rows = _run(machines, plan, known, rows, out, settings, final)
+        rows = _run(machines, plan, synchronous, rows, out, settings, final)
     lost = ~np.isfinite(out.speed)
     out.regime[lost] = -1
     status[lost] = Status.NON_FINITE
@@ -105,7 +105,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
 def _run(
     machines: Machines,
     plan: _Plan,
-    known: Known,
+    synchronous: SynchronousOrbits,
     rows: NDArray[np.intp],
     out: Outcome,
     settings: Settings,
@@ -116,8 +116,8 @@ def _run(
     After a final run there are none.
     """
     again = [np.empty(0, np.intp)]
-    some, n = machines.take(rows), len(rows)
-    live = Live(rows, some, start(some), *np.zeros((3, n)))
+    part, n = machines.take(rows), len(rows)
+    live = Live(rows, part, start(part), *np.zeros((3, n)))
     ending = plan.looks[rows] == 0
     note = partial(note_fast, plan.step, settings, out)
     look = 0
@@ -126,13 +126,13 @@ def _run(
             last = live.take(ending)
             time = look * LOOK * plan.step[last.rows]
             note(last, time, time + LAST * (1 + 1e-9))
-            found = run_last_second(last, time, known, out, settings, final)
-            again.append(last.rows[found])
+            elsewhere = run_last_second(last, time, synchronous, out, settings, final)
+            again.append(last.rows[elsewhere])
             live = live.take(~ending)
             if not len(live.rows):
                 break
         before = live.state[:, 3:5].copy()
-        step, target = plan.step[live.rows], known.disphasing[live.rows]
+        step, target = plan.step[live.rows], synchronous.disphasing[live.rows]
         note(live, look * LOOK * step, (look + 1) * LOOK * step)
         accurate = settings.steps_per_turn > 0
         notes = advance(live.machines, live.state, step, target, LOOK, BAND, accurate)
@@ -148,10 +148,10 @@ def _run(
         speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
         low, high = notes[:, ANGLE_LOW], notes[:, ANGLE_HIGH]
         finite = np.isfinite(live.state).all(axis=1)
-        arrived = finite & _is_near(known, live.rows, low, high, speed)
+        arrived = finite & _is_near(synchronous, live.rows, low, high, speed)
         calm = look * LOOK * step - live.neared >= slowest_period(live.machines.rigid)
         done = arrived & (calm | (plan.looks[live.rows] <= look))
-        _note_locked(known, live.take(done), out)
+        _note_locked(synchronous, live.take(done), out)
         note(live.take(done), (look * LOOK * step)[done], (BUDGET * LOOK * step)[done])
         going = finite & ~done
         if not final and look & (look - 1) == 0:
@@ -159,29 +159,33 @@ def _run(
             waiting = going & ~arrived & fast & (high - low < _STEADY)
             if waiting.any():
                 steady = live.take(waiting)
-                found = learn(steady.machines, steady.state, steady.rows, known, settings)
-                again.append(steady.rows[found])
-                going[np.flatnonzero(waiting)[found]] = False
+                is_new = learn(steady.machines, steady.state, steady.rows, synchronous, settings)
+                again.append(steady.rows[is_new])
+                going[np.flatnonzero(waiting)[is_new]] = False
         ending = (plan.looks[live.rows] <= look)[going]
         live = live.take(going)
     return np.concatenate(again)
 
 
-def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> Any:
+def _is_near(
+    synchronous: SynchronousOrbits, rows: Any, low: Array, high: Array, speed: Array
+) -> Any:
     """Return which machines have stayed so near to a stable orbit that they will not leave it."""
-    target = known.disphasing[rows]
+    target = synchronous.disphasing[rows]
     with np.errstate(invalid="ignore"):
         turns = 2 * np.pi * np.round(((low + high) / 2 - target) / (2 * np.pi))
         off = np.maximum(np.abs(low - turns - target), np.abs(high - turns - target))
-        ratio = speed * known.orbits.period[rows, None] / (2 * np.pi)
-        near = off < NEAR + known.orbits.ripple[rows]
-        return known.found[rows] & near & (np.abs(ratio - 1) < 0.01).all(axis=1)
+        ratio = speed * synchronous.orbits.period[rows, None] / (2 * np.pi)
+        near = off < NEAR + synchronous.orbits.ripple[rows]
+        return synchronous.exists[rows] & near & (np.abs(ratio - 1) < 0.01).all(axis=1)
 
 
-def _note_locked(known: Known, live: Live, out: Outcome) -> None:
+def _note_locked(synchronous: SynchronousOrbits, live: Live, out: Outcome) -> None:
     rows = live.rows
-    describe(live.machines, known.take(rows), out, rows)
+    describe(live.machines, synchronous.take(rows), out, rows)
     # An angle that leaves the band in one revolution leaves it in every one.
-    out.synchronisation_time[rows] = np.where(known.orbits.ripple[rows] < BAND, live.came, np.inf)
+    out.synchronisation_time[rows] = np.where(
+        synchronous.orbits.ripple[rows] < BAND, live.came, np.inf
+    )
     out.max_excursion[rows] = np.sqrt(live.far)
-    out.regime[rows] = locked_regime(known.disphasing[rows])
+    out.regime[rows] = locked_regime(synchronous.disphasing[rows])

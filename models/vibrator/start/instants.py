@@ -36,9 +36,9 @@ def note_fast(
     for k, instant in enumerate(settings.instants):
         i = np.flatnonzero((now <= instant) & (instant < end))
         if len(i):
-            some = live.machines.take(i)
+            part = live.machines.take(i)
             longest, accurate = step[live.rows[i]], settings.steps_per_turn > 0
-            state[i] = _advanced(some, state[i], instant - now[i], longest, accurate)
+            state[i] = _advanced(part, state[i], instant - now[i], longest, accurate)
             now[i] = instant
             out.on_the_way[live.rows[i], k] = _seen(state[i])
 
@@ -48,9 +48,9 @@ def _advanced(machines: Machines, state: Array, time: Array, step: Array, accura
     steps = _STEPS * np.maximum(1, np.ceil(time / (_STEPS * step))).astype(np.int64)
     for count in np.unique(steps).tolist():
         i = np.flatnonzero(steps == count)
-        some, nowhere = state[i], np.full(len(i), np.nan)
-        advance(machines.take(i), some, time[i] / count, nowhere, count, 0.0, accurate)
-        state[i] = some
+        part, nowhere = state[i], np.full(len(i), np.nan)
+        advance(machines.take(i), part, time[i] / count, nowhere, count, 0.0, accurate)
+        state[i] = part
     return state
 
 

@@ -31,7 +31,7 @@ from models.vibrator.start.regimes import (
     unlocked_regime,
     wrapped,
 )
-from models.vibrator.start.synchronous import Known, describe, search
+from models.vibrator.start.synchronous import SynchronousOrbits, describe, search
 
 LAST = 1.0  # [s]
 STEPS = 12  # per turn at synchronous speed, unless the machine is stiff
@@ -71,20 +71,29 @@ class Live(NamedTuple):
 
 
 def learn(
-    part: Machines, state: Array, rows: NDArray[np.intp], known: Known, settings: Settings
+    part: Machines,
+    state: Array,
+    rows: NDArray[np.intp],
+    synchronous: SynchronousOrbits,
+    settings: Settings,
 ) -> NDArray[np.bool_]:
     """Search for orbits near the machines' states; return where a new one was found."""
     speed, angle = state[:, 8:10].mean(axis=1), state[:, 3] - state[:, 4]
     other = search(part, speed, angle, np.ones(len(rows), bool), settings.steps_per_turn)
     with np.errstate(invalid="ignore"):
-        same = np.abs(wrapped(other.disphasing - known.disphasing[rows])) < NEAR
-    new = other.found & ~same
-    known.learn(rows[new], other.take(new))
+        same = np.abs(wrapped(other.disphasing - synchronous.disphasing[rows])) < NEAR
+    new = other.exists & ~same
+    synchronous.learn(rows[new], other.take(new))
     return new
 
 
 def run_last_second(
-    live: Live, time: Array, known: Known, out: Outcome, settings: Settings, final: bool
+    live: Live,
+    time: Array,
+    synchronous: SynchronousOrbits,
+    out: Outcome,
+    settings: Settings,
+    final: bool,
 ) -> NDArray[np.bool_]:
     """Run the last second; return which machines are locked elsewhere than expected.
 
@@ -94,7 +103,7 @@ def run_last_second(
         Its states are updated in place.
     time : ndarray, shape (n,)
         Time so far [s].
-    known : Known
+    synchronous : SynchronousOrbits
         Updated where they are locked.
     out : Outcome
         Updated in place.
@@ -116,42 +125,46 @@ def run_last_second(
     again = np.zeros(len(rows), bool)
     for count in np.unique(steps).tolist():
         i = np.flatnonzero(steps == count)
-        some, here, these = part.take(i), state[i], rows[i]
+        group, here, these = part.take(i), state[i], rows[i]
         before = here[:, 3:5].copy()
         first = here[:, 3] - here[:, 4]
         h = np.full(len(i), LAST / count)
-        target, accurate = known.disphasing[these], settings.steps_per_turn > 0
-        notes = advance(some, here, h, target, count, BAND, accurate)
+        target, accurate = synchronous.disphasing[these], settings.steps_per_turn > 0
+        notes = advance(group, here, h, target, count, BAND, accurate)
         speed = (here[:, 3:5] - before) / LAST
         notes[:, :SUMS] /= count
-        _note_means(these, notes, speed, some, out)
+        _note_means(these, notes, speed, group, out)
         out.max_excursion[these] = np.sqrt(np.maximum(live.far[i], notes[:, EXCURSION]))
         last = notes[:, LAST_ENTRY]
         inside = np.where(last >= 0, time[i] + last * LAST / count, live.came[i])
         low, high = notes[:, ANGLE_LOW], notes[:, ANGLE_HIGH]
-        fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
+        fast = (speed >= CAPTURED_BELOW * group.synchronous_speed).all(axis=1)
         locked = np.flatnonzero(fast & (high - low < _LOCKED))
-        new = learn(some.take(locked), here[locked], these[locked], known, settings)
+        new = learn(group.take(locked), here[locked], these[locked], synchronous, settings)
         if not final:
             again[i[locked]] = new
             locked, new = locked[~new], new[~new]
         where, mean = these[locked], wrapped(notes[locked, ANGLE])
-        target = known.disphasing[where]
+        target = synchronous.disphasing[where]
         with np.errstate(invalid="ignore"):
             off = [
                 np.abs(wrapped(angle[locked] - target))
                 for angle in (first, here[:, 3] - here[:, 4])
             ]
             near = np.abs(wrapped(mean - target)) < NEAR
-            coming = known.found[where] & ~near & (off[1] < off[0])
+            coming = synchronous.exists[where] & ~near & (off[1] < off[0])
         # On its way to no stable orbit: a slow slip, or a synchronous motion that is unstable.
-        there = known.found[where] & (near | coming)
-        out.regime[where[there]] = locked_regime(known.disphasing[where[there]])
+        attracted = synchronous.exists[where] & (near | coming)
+        out.regime[where[attracted]] = locked_regime(synchronous.disphasing[where[attracted]])
         late = time[i[locked]] + LAST
         unknown = coming | new
-        out.synchronisation_time[where[there]] = np.where(unknown, late, inside[locked])[there]
-        out.censored[where[there & unknown]] = True
-        describe(some.take(locked[there]), known.take(where[there]), out, where[there])
+        out.synchronisation_time[where[attracted]] = np.where(unknown, late, inside[locked])[
+            attracted
+        ]
+        out.censored[where[attracted & unknown]] = True
+        describe(
+            group.take(locked[attracted]), synchronous.take(where[attracted]), out, where[attracted]
+        )
     return again
 
 

@@ -55,12 +55,12 @@ class Outcome(NamedTuple):
     @staticmethod
     def nothing(n: int, instants: int = 0) -> "Outcome":
         """Return the outcome of n machines before they are run: unknown."""
-        known = {
+        defaults = {
             "censored": np.zeros(n, bool),
             "regime": np.full(n, -1, np.int8),
             "on_the_way": np.full((n, instants, 3), np.nan),
         }
-        return Outcome(**{name: known.get(name, np.full(n, np.nan)) for name in Outcome._fields})
+        return Outcome(**{name: defaults.get(name, np.full(n, np.nan)) for name in Outcome._fields})
 
 
 def wrapped(angle: Any) -> Any:

@@ -25,12 +25,12 @@ _ROUNDING = 1e-8  # of a multiplier
 _FINE = 16  # points per step among which extremes are sought
 
 
-class Known(NamedTuple):
+class SynchronousOrbits(NamedTuple):
     """The known stable synchronous motion of n machines.
 
     Attributes
     ----------
-    found : ndarray of bool, shape (n,)
+    exists : ndarray of bool, shape (n,)
         Whether one is known.
     orbits : Orbits
     steps : ndarray of int, shape (n,)
@@ -39,25 +39,25 @@ class Known(NamedTuple):
         Mean disphasing angle in (-pi, pi] [rad], NaN if none is known.
     """
 
-    found: NDArray[np.bool_]
+    exists: NDArray[np.bool_]
     orbits: Orbits
     steps: NDArray[np.int64]
     disphasing: Array
 
-    def learn(self, rows: Any, other: "Known") -> None:
-        """Copy what is known of the machines in `rows`."""
-        self.found[rows], self.steps[rows] = other.found, other.steps
+    def learn(self, rows: Any, other: "SynchronousOrbits") -> None:
+        """Copy the orbits of other machines to `rows`."""
+        self.exists[rows], self.steps[rows] = other.exists, other.steps
         self.disphasing[rows] = other.disphasing
         for mine, new in zip(self.orbits, other.orbits, strict=True):
             mine[rows] = new
 
-    def take(self, rows: Any) -> "Known":
-        """Return what is known of the machines in `rows`."""
+    def take(self, rows: Any) -> "SynchronousOrbits":
+        """Return the orbits of the machines in `rows`."""
         orbits = Orbits._make(field[rows] for field in self.orbits)
-        return Known(self.found[rows], orbits, self.steps[rows], self.disphasing[rows])
+        return SynchronousOrbits(self.exists[rows], orbits, self.steps[rows], self.disphasing[rows])
 
 
-def propose(machines: Machines, steps: int) -> Known:
+def propose(machines: Machines, steps: int) -> SynchronousOrbits:
     """Find the stable synchronous orbits predicted by the averaged theory.
 
     Parameters
@@ -68,13 +68,15 @@ def propose(machines: Machines, steps: int) -> Known:
 
     Returns
     -------
-    Known
+    SynchronousOrbits
     """
     theirs = averaged.disphasing(machines.p)
     return search(machines, theirs.speed, theirs.angle, theirs.exists & theirs.stable, steps)
 
 
-def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: int) -> Known:
+def search(
+    machines: Machines, speed: Array, angle: Array, wanted: Any, steps: int
+) -> SynchronousOrbits:
     """Find stable synchronous orbits of n machines at working speed, from a guess.
 
     Parameters
@@ -89,59 +91,61 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
 
     Returns
     -------
-    Known
+    SynchronousOrbits
     """
     n = len(speed)
     speed, angle = np.where(wanted, speed, 1.0), np.where(wanted, angle, 0.0)
     state, period = _harmonic(machines.p, speed, angle), 2 * np.pi / speed
     none = Orbits(np.zeros(n, bool), state, period, *np.full((4, n), np.nan))
-    known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), np.full(n, np.nan))
+    synchronous = SynchronousOrbits(
+        np.zeros(n, bool), none, np.zeros(n, np.int64), np.full(n, np.nan)
+    )
     needed = np.maximum(period * machines.fastest / STABLE, max(steps, STEPS))
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
     rows = np.flatnonzero(wanted & (rung > 0))
     while len(rows):
         for count in np.unique(rung[rows]).tolist():
-            some = rows[rung[rows] == count]
-            new = _search(machines, some, state, period, count)
-            better = new.orbits.found | ~known.found[some]
-            known.learn(some[better], new.take(better))
-        inaccurate = known.found[rows] & (known.orbits.error[rows] > ACCURATE)
+            group = rows[rung[rows] == count]
+            new = _search(machines, group, state, period, count)
+            better = new.orbits.converged | ~synchronous.exists[group]
+            synchronous.learn(group[better], new.take(better))
+        inaccurate = synchronous.exists[rows] & (synchronous.orbits.error[rows] > ACCURATE)
         rows = rows[inaccurate & (steps == 0) & (2 * rung[rows] <= LADDER[-1])]
-        state[rows], period[rows] = known.orbits.state[rows], known.orbits.period[rows]
+        state[rows], period[rows] = synchronous.orbits.state[rows], synchronous.orbits.period[rows]
         rung[rows] *= 2
-    _confirm(machines, known, np.flatnonzero(wanted))
-    return known
+    _confirm(machines, synchronous, np.flatnonzero(wanted))
+    return synchronous
 
 
-def _confirm(machines: Machines, known: Known, rows: NDArray[np.intp]) -> None:
+def _confirm(machines: Machines, synchronous: SynchronousOrbits, rows: NDArray[np.intp]) -> None:
     """Decide by twice as many steps whether orbits with a multiplier close to 1 are stable.
 
     The difference of the two multipliers bounds the error of the later one.
     """
-    orbits = known.orbits
+    orbits = synchronous.orbits
     with np.errstate(invalid="ignore"):
-        rows = rows[orbits.found[rows] & (np.abs(orbits.multiplier[rows] - 1) < _CLOSE_TO_1)]
-    for count in np.unique(known.steps[rows]).tolist():
-        close = rows[known.steps[rows] == count]
+        rows = rows[orbits.converged[rows] & (np.abs(orbits.multiplier[rows] - 1) < _CLOSE_TO_1)]
+    for count in np.unique(synchronous.steps[rows]).tolist():
+        close = rows[synchronous.steps[rows] == count]
         fine = _search(machines, close, orbits.state, orbits.period, 2 * count)
         error = np.abs(fine.orbits.multiplier - orbits.multiplier[close])
-        sure = fine.found & (fine.orbits.multiplier + np.maximum(error, _ROUNDING) < 1)
-        new = sure & ~known.found[close]
-        known.learn(close[new], fine.take(new))
-        known.found[close[~sure]], known.disphasing[close[~sure]] = False, np.nan
+        sure = fine.exists & (fine.orbits.multiplier + np.maximum(error, _ROUNDING) < 1)
+        new = sure & ~synchronous.exists[close]
+        synchronous.learn(close[new], fine.take(new))
+        synchronous.exists[close[~sure]], synchronous.disphasing[close[~sure]] = False, np.nan
 
 
 def _search(
     machines: Machines, rows: NDArray[np.intp], state: Array, period: Array, steps: int
-) -> Known:
+) -> SynchronousOrbits:
     """Find the stable synchronous orbits of some machines by this many steps."""
     orbits = find_orbits(machines.constants[rows], state[rows], period[rows], steps)
     slowest = CAPTURED_BELOW * machines.synchronous_speed[rows].max(axis=1)
     fast = 2 * np.pi / orbits.period >= slowest
-    found = orbits.found & (orbits.multiplier < 1) & fast
-    disphasing = np.where(found, wrapped(orbits.angle), np.nan)
-    return Known(found, orbits, np.full(len(rows), steps), disphasing)
+    exists = orbits.converged & (orbits.multiplier < 1) & fast
+    disphasing = np.where(exists, wrapped(orbits.angle), np.nan)
+    return SynchronousOrbits(exists, orbits, np.full(len(rows), steps), disphasing)
 
 
 def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
@@ -155,39 +159,41 @@ def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
     return state
 
 
-def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.intp]) -> None:
+def describe(
+    machines: Machines, synchronous: SynchronousOrbits, out: Outcome, rows: NDArray[np.intp]
+) -> None:
     """Record the outputs of machines on their orbits, where these are known.
 
     Parameters
     ----------
     machines : Machines
-    known : Known
+    synchronous : SynchronousOrbits
     out : Outcome
         Updated in place.
     rows : ndarray of int, shape (n,)
         Indices of the n machines in it.
     """
-    for count in np.unique(known.steps[known.found]).tolist():
-        i = np.flatnonzero(known.found & (known.steps == count))
-        some, part, orbits = rows[i], machines.take(i), known.take(i).orbits
+    for count in np.unique(synchronous.steps[synchronous.exists]).tolist():
+        i = np.flatnonzero(synchronous.exists & (synchronous.steps == count))
+        group, part, orbits = rows[i], machines.take(i), synchronous.take(i).orbits
         trace = follow(part.constants, orbits.state, orbits.period, count)
         alpha, speed = trace[:, :, 2], trace[:, :, 8:10]
         turn = 2 * np.pi * np.arange(1, count + 1) / count
         phase = elementary.cos(turn) - 1j * elementary.sin(turn)
-        out.disphasing[some] = known.disphasing[i]
-        out.multiplier[some] = orbits.multiplier
+        out.disphasing[group] = synchronous.disphasing[i]
+        out.multiplier[group] = orbits.multiplier
         harmonic = 2 * (alpha * phase).mean(axis=1)
-        out.angular_amplitude[some] = np.hypot(harmonic.real, harmonic.imag)
+        out.angular_amplitude[group] = np.hypot(harmonic.real, harmonic.imag)
         left, right = deck_ends(part.rigid, trace)
-        out.stroke_left[some], out.stroke_right[some] = _half_range(left), _half_range(right)
-        out.speed[some] = 2 * np.pi / orbits.period
+        out.stroke_left[group], out.stroke_right[group] = _half_range(left), _half_range(right)
+        out.speed[group] = 2 * np.pi / orbits.period
         m = part.rigid
         for power, torque, slip, top, w in (
             (out.power_1, m.torque_1, m.slip_1, m.synchronous_speed_1, speed[:, :, 0]),
             (out.power_2, m.torque_2, m.slip_2, m.synchronous_speed_2, speed[:, :, 1]),
         ):
             lag = top[:, None] - w
-            power[some] = (w * kloss(torque[:, None], slip[:, None], lag)).mean(axis=1)
+            power[group] = (w * kloss(torque[:, None], slip[:, None], lag)).mean(axis=1)
 
 
 def deck_ends(m: Rigid, trace: Array) -> tuple[Array, Array]:

@@ -71,10 +71,10 @@ class Track:
     def last(self, intervals: int = 0) -> NDArray[np.float64]:
         """Return the states at both ends of the last intervals; 0 for those of the last second."""
         wanted = (intervals or self._second) + 1
-        first, found = len(self._parts), 0
-        while first and found < wanted:
+        first, available = len(self._parts), 0
+        while first and available < wanted:
             first -= 1
-            found += len(self._parts[first])
+            available += len(self._parts[first])
         return np.concatenate(self._parts[first:])[-wanted:]
 
     def last_time_off(self, mean: float) -> float:

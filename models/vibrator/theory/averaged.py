@@ -130,7 +130,7 @@ def _solve(a, motor_1, motor_2):
         at = balance(a, motor_1, motor_2, w)
         if at.reached and is_stable(a, motor_1, motor_2, w, at):
             return w, True
-    found, high = math.nan, top
+    fallback, high = math.nan, top
     positive = balance(a, motor_1, motor_2, top).sum > 0.0  # if a breakdown speed is the higher
     for k in range(1, _SPEEDS + 1):
         low = top * _SLOWEST ** (k / _SPEEDS)
@@ -141,10 +141,10 @@ def _solve(a, motor_1, motor_2):
             if at.reached:
                 if is_stable(a, motor_1, motor_2, w, at):
                     return w, True
-                if math.isnan(found):
-                    found = w
+                if math.isnan(fallback):
+                    fallback = w
         high = low
-    return found, False
+    return fallback, False
 
 
 @kernel
@@ -168,14 +168,14 @@ def _move(bodies, speed, angle, out):
         a = bodies[i]
         w = speed[i]
         g = respond(a, w)
-        one = w * w * a.unbalance_1
-        two = w * w * a.unbalance_2 * cmath.exp(-1j * angle[i])
-        xi, eta = one * g.xi_1 + two * g.xi_2, one * g.eta_1 + two * g.eta_2
+        force_1 = w * w * a.unbalance_1
+        force_2 = w * w * a.unbalance_2 * cmath.exp(-1j * angle[i])
+        xi, eta = force_1 * g.xi_1 + force_2 * g.xi_2, force_1 * g.eta_1 + force_2 * g.eta_2
         out[0, i] = a.c * xi - a.s * eta
         out[1, i] = a.s * xi + a.c * eta
-        out[2, i] = one * g.alpha_1 + two * g.alpha_2
-        out[3, i] = one * g.slide_1 + two * g.slide_2
-        out[4, i] = one * g.turn_1 + two * g.turn_2
+        out[2, i] = force_1 * g.alpha_1 + force_2 * g.alpha_2
+        out[3, i] = force_1 * g.slide_1 + force_2 * g.slide_2
+        out[4, i] = force_1 * g.turn_1 + force_2 * g.turn_2
 
 
 def broadcast(p: Rows, *more: ArrayLike) -> tuple[Params, list[NDArray[np.float64]]]:

@@ -151,11 +151,11 @@ def respond(a, w):
     q_22 = X2 * xi_2 + Y2 * eta_2 + A2 * alpha_2
     slide_1 = slide_2 = turn_1 = turn_2 = 0j
     if flexible:
-        own = turn * (a.half * a.half)
-        q_11 += slide + own
-        q_12 += slide * forth * forth - own
-        q_21 += slide * back * back - own
-        q_22 += slide + own
+        rotation = turn * (a.half * a.half)
+        q_11 += slide + rotation
+        q_12 += slide * forth * forth - rotation
+        q_21 += slide * back * back - rotation
+        q_22 += slide + rotation
         slide_1 = slide * back + pull * (ux * xi_1 + uy * eta_1 + ua * alpha_1)
         slide_2 = slide * forth + pull * (ux * xi_2 + uy * eta_2 + ua * alpha_2)
         turn_1 = -turn * a.half + twist * alpha_1

@@ -83,7 +83,7 @@ def test_orbit_and_multiplier_are_those_of_the_variational_equations(table):
     guesses = [proposal(prepare(p, "small", 0)) for p in TABLE]
     period = 2 * np.pi / averaged.disphasing(machines).speed
     orbits = find_orbits(pack(systems(machines).rigid), np.array(guesses), period, 96)
-    assert orbits.found.all()
+    assert orbits.converged.all()
     np.testing.assert_allclose(out.multiplier, orbits.multiplier, rtol=0, atol=1e-6)
     np.testing.assert_allclose(2 * np.pi / out.speed, orbits.period, rtol=1e-9)
     for p, state in zip(TABLE, orbits.state, strict=True):

@@ -66,7 +66,7 @@ def passage(m, start, period):
 @pytest.mark.parametrize("p", [MACHINES, HEAVY])
 def test_orbits_close_on_themselves(p):
     orbits = find(p, 192)
-    assert orbits.found.all()
+    assert orbits.converged.all()
     assert np.all(orbits.state[:, 3] == 0)
     for i in range(10):
         assert gap(systems(p).row(i), orbits.state[i], orbits.period[i]) < 1e-9
@@ -76,9 +76,9 @@ def test_orbits_close_on_themselves(p):
 def test_the_multiplier_is_that_of_the_passages(p, off):
     """Of stable orbits, and of the unstable ones with the vibrators the other way round."""
     orbits = find(p, 96, off)
-    assert orbits.found.sum() > 3
-    assert np.all((orbits.multiplier[orbits.found] > 1) == bool(off))
-    for i in np.flatnonzero(orbits.found)[:5]:
+    assert orbits.converged.sum() > 3
+    assert np.all((orbits.multiplier[orbits.converged] > 1) == bool(off))
+    for i in np.flatnonzero(orbits.converged)[:5]:
         m = systems(p).row(i)
         values = np.linalg.eigvals(passage(m, orbits.state[i], orbits.period[i]))
         np.testing.assert_allclose(orbits.multiplier[i], abs(values).max(), rtol=1e-5)
@@ -131,7 +131,7 @@ def test_the_orbits_are_those_of_a_plain_newtons_method(off):
     """From guesses near enough for derivatives that are kept, and from others."""
     quick = find(MACHINES, 24, off)
     state, period = by_newton(MACHINES, 24, off)
-    assert quick.found.all()
+    assert quick.converged.all()
     np.testing.assert_allclose(quick.state, state, rtol=0, atol=1e-9)
     np.testing.assert_allclose(quick.period, period, rtol=1e-11)
 
@@ -189,7 +189,7 @@ def assert_found_or_said(p, state, period):
     """Try guesses; what is found must be an orbit."""
     m = systems(p)
     orbits = orbit.find_orbits(pack(m.rigid), state, period, 48)
-    for i in np.flatnonzero(orbits.found):
+    for i in np.flatnonzero(orbits.converged):
         assert gap(m.row(i), orbits.state[i], orbits.period[i]) < 1e-6
     return orbits
 
@@ -201,8 +201,8 @@ def test_from_a_guess_far_away_an_orbit_is_found_or_none():
     state[:, 3], state[:, 4] = 0.0, rng.uniform(-np.pi, np.pi, 60)
     state[:, 8:] = rng.uniform(-20, 400, size=(60, 2))
     orbits = assert_found_or_said(p, state, 10 ** rng.uniform(-3, 0, 60))
-    assert 0 < orbits.found.sum() < 60
-    assert np.all(orbits.period[orbits.found] > 0)
+    assert 0 < orbits.converged.sum() < 60
+    assert np.all(orbits.period[orbits.converged] > 0)
 
 
 def test_guesses_that_are_no_numbers_harm_nobody():
@@ -213,7 +213,7 @@ def test_guesses_that_are_no_numbers_harm_nobody():
     period[8] = 1e300
     orbits = orbit.find_orbits(constants, state, period, 24)
     spoilt = np.isin(np.arange(10), (2, 4, 6, 8))
-    np.testing.assert_array_equal(orbits.found, ~spoilt)
+    np.testing.assert_array_equal(orbits.converged, ~spoilt)
     for got, alone in zip(orbits, expected, strict=True):
         np.testing.assert_array_equal(got[~spoilt], alone[~spoilt])
 
@@ -222,7 +222,7 @@ def test_motors_that_cannot_synchronise_have_no_orbit():
     p = plausible(10, seed=1, **RIGID, synchronous_speed_2=110.0, breakdown_speed_2=100.0)
     state, _ = guess(MACHINES)
     state[:, 9] = 110.0
-    assert not assert_found_or_said(p, state, np.full(10, 2 * np.pi / 156)).found.any()
+    assert not assert_found_or_said(p, state, np.full(10, 2 * np.pi / 156)).converged.any()
 
 
 def test_a_machine_has_the_same_bits_in_any_company():
@@ -230,7 +230,7 @@ def test_a_machine_has_the_same_bits_in_any_company():
     constants, (state, period) = pack(systems(p).rigid), guess(p)
     found = np.isfinite(period)
     together = orbit.find_orbits(constants, state, period, 24)
-    assert together.found[found].sum() > 30
+    assert together.converged[found].sum() > 30
     order = np.random.default_rng(4).permutation(37)
     shuffled = orbit.find_orbits(constants[order], state[order], period[order], 24)
     for got, expected in zip(shuffled, together, strict=True):
@@ -244,5 +244,5 @@ def test_a_machine_has_the_same_bits_in_any_company():
 def test_a_symmetric_machine_runs_in_phase():
     p = Params._make(np.array([value]) for value in SYMMETRIC)
     orbits = find(p, 24, off=0.3)
-    assert orbits.found.all() and orbits.multiplier[0] < 1
+    assert orbits.converged.all() and orbits.multiplier[0] < 1
     assert abs(mean_angle(p, orbits, 24)[0]) < 1e-12

@@ -63,11 +63,11 @@ def test_angles_are_accurate_over_all_bounds():
     exists = averaged.disphasing(p).stable
     m = prepared(Params._make(field[exists] for field in p))
     known = propose(m, 0)
-    assert known.found.sum() > 10
-    for i in np.flatnonzero(known.found):
+    assert known.exists.sum() > 10
+    for i in np.flatnonzero(known.exists):
         state, period = known.orbits.state[[i]], known.orbits.period[[i]]
         fine = find_orbits(m.constants[[i]], state, period, 4 * known.steps[i])
-        assert fine.found and abs(wrapped(fine.angle[0] - known.disphasing[i])) < 1e-6
+        assert fine.converged and abs(wrapped(fine.angle[0] - known.disphasing[i])) < 1e-6
 
 
 def test_theory_and_simulation_agree_at_small_angles():
@@ -228,7 +228,7 @@ def fold_of_synchronous_orbits(p):
             breakdown_speed_2=trial.synchronous_speed_2 - 31.0,
         )
         known = search(prepared(trial), speed, angle, np.ones(1, bool), 0)
-        if known.found[0]:
+        if known.exists[0]:
             apart += step
             angle, speed = known.disphasing, 2 * np.pi / known.orbits.period
         else:
