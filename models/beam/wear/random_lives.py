@@ -96,7 +96,7 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
     whole = log1p(growths[:, -1:] / head_start)
     unfinished = grown < growths[:, -1:] * (1 - 1e-9)
     control = np.where(unfinished, rate, 0.0)
-    waiting = unfinished.any(axis=1) & ~(control > 0).any(axis=1)
+    waiting = np.asarray(unfinished.any(axis=1) & ~(control > 0).any(axis=1))
     control[waiting] = rate[waiting]
     fast = control.argmax(axis=1)[:, None]
     here, top = (np.take_along_axis(a, fast, axis=1) for a in (grown, control))
