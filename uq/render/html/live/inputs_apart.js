@@ -22,7 +22,7 @@ function medianAmong({order, values}, mask, chosen, count) {
 }
 
 // The mean of the chosen rows, of numbers between 0 and 1, with Student's interval of the rows, or of the parts that are independent;
-// of independent ones it allows for two more outliers, as beyond_outliers in uq/intervals.py.
+// of independent ones it allows for two more outliers, as beyond_outliers in uq/stats/intervals.py.
 function meanAmong(rows, values, mask, count) {
   const part = rows.replicate ?? rows.sample, kept = new Float64Array(count), parts = part && new Int32Array(count);
   for (let row = 0, i = 0; i < count; row++) {
