@@ -26,7 +26,7 @@ MODULES = (
 for module in MODULES:
     import_module(module)
 "".encode("utf-8-sig")
-for module in ("app", "run", "upkeep"):
+for module in ("app", "run", "status"):
     import_module(f"uq.cli.{module}")
 
 

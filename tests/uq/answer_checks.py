@@ -293,7 +293,7 @@ class Checker:
 
 def is_about_even(one, seen=0.0):
     """Whether a number is near the middle of its interval, if it has one that can be seen."""
-    if not one.has_interval or one.high - one.low < seen:
+    if not one.has_interval or 0 <= one.high - one.low < seen:
         return True
     uneven = abs(one.high + one.low - 2 * one.value)
     return uneven <= 0.3 * (one.high - one.low) + 1e-6 * abs(one.value)

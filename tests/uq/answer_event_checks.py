@@ -68,6 +68,9 @@ def _denied_limit(event, x, hits):
     shown = [float(one) for one in place[1:] if one is not None]
     if not any(abs(one - at) <= 0.006 * abs(one) for one in shown):
         yield event.limited
+    outer = x[known].max() if event.limit.is_lower else x[known].min()
+    if len(shown) > 1 and not any(abs(end - outer) <= 0.006 * abs(end) for end in shown):
+        yield event.limited
     if unwanted[beyond].mean() >= 0.05:
         yield event.limited
     if unwanted[beyond].mean() >= unwanted[known & ~beyond].mean():
@@ -105,7 +108,7 @@ def denied_advice(ds, advice, found):
         else [("lower", "5")]
     )
     if told not in ([("lower", "5")], [("upper", "95")]) or found.lead.promise.coverage != 0.95:
-        yield advice.sure.promised
+        yield advice.sure.promised if advice.sure else f"coverage of {one.sentence}"
     if one.harms or (one.wants_more is not None and one.rises != one.wants_more):
         yield one.sentence
     yield from _denied_besides(ds, advice, found.lead)

@@ -18,7 +18,7 @@ ASKED = {"thresholds": {"life": 1.0}, "sensitivity": ["rbd-fast"]}
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    ds = with_output(kinds(samples=100, analysis=ASKED), "odd", np.arange(100.0))
+    ds = with_output(kinds(samples=200, analysis=ASKED), "odd", np.arange(200.0))
     ds["odd"].attrs["long_name"] = HOSTILE
     ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)

@@ -101,7 +101,7 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
             if place == "look":  # the rows of a look are all there, and nobody has looked
                 patch.setattr(runner.stopping, "interim_estimate", raising)
             if place == "cut":  # enough is known and the file is not written
-                patch.setattr(runner.store.DiskStore, "dataset", raising)
+                patch.setattr(runner.disk_store.DiskStore, "dataset", raising)
             runner.run(of, path, progress=killed_at(total // 2) if place == "chunk" else None)
         found = run_status(path)
         assert found.state == "interrupted" or place == "cut"

@@ -221,9 +221,14 @@ def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tupl
         # A replicate that enters a part by luck carries the mean, not the geometric mean.
         low *= float(np.exp(np.log(outcome.estimates).mean())) / probability
         high = max(high, outcome.supported)
-    if wide is not None and wide.is_enough and wide.probability > high:
+    if wide is not None and wide.is_enough and _is_above(wide.probability, wide.interval[0], high):
         high = max(high, float(wide.interval[1]))
     return probability, (low, high)
+
+
+def _is_above(wide: float, low: float, high: float) -> bool:
+    """Return whether rows drawn wide estimate more than an interval by over a standard error."""
+    return (wide * low) ** 0.5 > high
 
 
 def _is_missed(outcome: _Outcome, wide: WideSearch) -> bool:
@@ -353,7 +358,8 @@ def _notes(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
             " of the event is entered by a jump; the high end is what plain rows support"
         )
     if "hidden_high" in ds:
-        if not by_wide and (ds["wide"] > most or most == ds["wide_high"]):
+        above = _is_above(float(ds["wide"]), float(ds["wide_low"]), most)
+        if not by_wide and (above or most == ds["wide_high"]):
             notes.append(
                 f"rows drawn wide estimate {float(ds['wide']):.2g}, above the interval of method"
                 f" '{ds.attrs['method']}': it may miss a part of the event"

@@ -153,12 +153,16 @@ def sd_interval(
     Returns
     -------
     low, high : float
-        Of independent rows, or samples of several rows: Student's t of their squares about the
-        mean, as the relative error of the variance, with that of the mean, both for the logarithm;
-        it allows for more outliers (`uq.stats.intervals.beyond_outliers`), since samples without
-        them scatter too little. Replicates: Student's t of the logarithms of their variances, with
-        the error of jumps that they do not show (`uq.stats.jumps`); the upper end is raised by
-        what one more row as extreme as the farthest would add.
+        Of independent rows, or samples of several rows: Student's t of their squares [1]_ about
+        the mean, as the relative error of the variance, with that of the mean, both for the
+        logarithm; it allows for more outliers (`uq.stats.intervals.beyond_outliers`), since
+        samples without them scatter too little. Replicates: Student's t of the logarithms of
+        their variances, with the error of jumps that they do not show (`uq.stats.jumps`); the
+        upper end is raised by what one more row as extreme as the farthest would add.
+
+    References
+    ----------
+    .. [1] A. W. van der Vaart, "Asymptotic statistics", Cambridge (1998), example 3.2.
     """
     n = len(values)
     if n < _FEWEST or is_constant(values):

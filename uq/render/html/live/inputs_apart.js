@@ -21,7 +21,8 @@ function medianAmong({order, values}, mask, chosen, count) {
   return count % 2 ? values[own.at(-1)] : (values[own.at(-2)] + values[own.at(-1)]) / 2;
 }
 
-// The mean of the chosen rows, of numbers between 0 and 1, with Student's interval of the rows, or of the parts that are independent.
+// The mean of the chosen rows, of numbers between 0 and 1, with Student's interval of the rows, or of the parts that are independent;
+// of independent ones it allows for two more outliers, as beyond_outliers in uq/stats/intervals.py.
 function meanAmong(rows, values, mask, count) {
   const part = rows.replicate ?? rows.sample, kept = new Float64Array(count), parts = part && new Int32Array(count);
   for (let row = 0, i = 0; i < count; row++) {
@@ -34,7 +35,9 @@ function meanAmong(rows, values, mask, count) {
   const size = estimates.length, centre = total(estimates) / size;
   const scatter = total(estimates.map(one => (one - centre) ** 2)) / (size - 1) / size;
   const half = size > 1 && scatter > 0 ? student(rows.students, size - 1) * Math.sqrt(scatter) : NaN;
-  return {mean, low: Math.max(mean - half, 0), high: Math.min(mean + half, 1)};
+  const ends = rows.replicate ? [] : estimates, spread = [Math.max(...ends) - mean, mean - Math.min(...ends)];
+  const moved = rows.replicate ? 0 : 2 * (spread[0] - spread[1]) / size;
+  return {mean, low: Math.max(mean - half + Math.min(moved, 0), 0), high: Math.min(mean + half + Math.max(moved, 0), 1)};
 }
 
 function isClear({low, high}, middle) {
