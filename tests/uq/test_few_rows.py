@@ -7,7 +7,7 @@ import pytest
 from asked_indices import sensitivities
 from computed import linear, with_output
 
-from uq.indices.given_data import effective_rows
+from uq.indices.groups import effective_rows
 
 ATTRS = {
     "role": "output",

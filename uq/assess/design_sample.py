@@ -1,4 +1,9 @@
-"""The sample of a sensitivity method: the place of each row of its design in a result."""
+"""The sample of a sensitivity method: the place of each row of its design in a result.
+
+The rows themselves do not show which input changes from row to row of a group: a factor recovered
+from a product is rounded, and seems to change where only what it multiplies does; a discrete input
+may keep its value in its own step. Therefore the points of the design are drawn once more.
+"""
 
 from dataclasses import replace
 from typing import Any

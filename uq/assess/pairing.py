@@ -1,4 +1,4 @@
-"""How the rows of two results are paired, and the correlation of their estimates.
+"""Pairing of the rows of two results, and the correlation of their estimates.
 
 Two studies with the same seed draw the same numbers. Where this pairs their rows or replicates,
 and the pairs are independent of each other, the difference is known better than from independent
@@ -28,7 +28,7 @@ from uq.result.weights import has_weights
 from uq.sampling.designs import DESIGNS
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import exact_interval
+from uq.stats.exact_shares import exact_interval
 from uq.stats.jumps import beyond_jumps
 from uq.stats.weighted_means import share_to_compare
 from uq.study.file import Tied

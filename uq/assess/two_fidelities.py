@@ -22,7 +22,7 @@ from uq.result.weights import refuse_weights
 from uq.sampling.named_values import read_settings
 from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import FEW
+from uq.stats.exact_shares import FEW
 from uq.stats.moments import moments
 from uq.study.definition import Study, study_from_text
 from uq.study.evaluate import evaluate

@@ -1,13 +1,15 @@
 """Sensitivity from a plain sample: indices beside those of inputs without effect.
 
-A replicate with three hits of an event, or three rows of the regime that scatters, does not show
-the scatter of the next three, and eight such replicates may agree by chance. Where few rows count,
-intervals are therefore widened; docs/statistics.md states what they cover with and without it, and
-`benchmarks/coverage/few.py` counts the widened ones.
+RBD-FAST, Borgonovo's delta, PAWN, quantile-oriented indices and regional sensitivity need no design
+of their own (`uq.indices.measures`, `uq.indices.quantile_oriented`). Their scatter is not known:
+bootstrap intervals of these estimates cover far less than their nominal level. Each index is
+therefore compared with a null: the same estimate for inputs without effect, which one in twenty of
+them exceeds, and a second one, which the largest of all inputs would exceed once in twenty. An
+index below its null is negligible. An input with many equal values has a null of its own, from its
+values shuffled.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,137 +17,6 @@ from uq.indices.index import IndexKind, Indices, Null, RefusedError
 from uq.indices.sample import DesignSample, Floats
 from uq.indices.slices import has_many_equal
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import CONFIDENCE, scatter_interval, upper_probability
-from uq.stats.quantile_functions import student
-
-ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
-"""Where the variance rests on fewer rows of each replicate, and on less than this share of them,
-intervals are widened. Of a normal law it rests on a third of the rows."""
-
-Values = Mapping[IndexKind, Mapping[str, float]]
-"""Kind of index -> input -> value."""
-
-
-def pooled_with_intervals(
-    estimate: Callable[[Floats], Values],
-    pooled: Floats,
-    replicates: Sequence[Floats],
-    noun: str,
-    lacking: str = "",
-    confidence: float = CONFIDENCE,
-) -> tuple[dict[IndexKind, dict[str, Estimate]], tuple[str, ...]]:
-    """Estimate from all groups together, with intervals from the same estimate by replicates.
-
-    Parameters
-    ----------
-    estimate : callable
-        Whole groups, along the first axis -> indices.
-    pooled : ndarray
-        All whole groups.
-    replicates : sequence of ndarray
-        Groups of each replicate.
-    noun : str
-        Name of the indices in messages.
-    lacking : str
-        Why single replicates give no estimates, or "".
-    confidence : float, optional
-
-    Returns
-    -------
-    indices : dict
-    notes : tuple of str
-        Why there are no intervals.
-    """
-    notes: tuple[str, ...] = ()
-    if len(replicates) == 1:
-        notes = (f"no intervals: with replicates = 1 nothing shows the scatter of the {noun}",)
-    elif lacking:
-        notes = (f"no intervals: {lacking}",)
-    scatter = [] if notes else [estimate(replicate) for replicate in replicates]
-
-    def with_interval(kind: IndexKind, label: str, value: float) -> Estimate:
-        estimates = np.array([values[kind][label] for values in scatter])
-        return Estimate(value, *scatter_interval(value, estimates, confidence), lacking)
-
-    indices = {
-        kind: {label: with_interval(kind, label, value) for label, value in values.items()}
-        for kind, values in estimate(pooled).items()
-    }
-    return indices, notes
-
-
-def with_difference(
-    estimate: Callable[[Floats], Values], pair: tuple[str, str] | None
-) -> Callable[[Floats], Values]:
-    """Return an estimate that also gives the difference between the indices of two inputs."""
-    if pair is None:
-        return estimate
-    first, second = pair
-
-    def both(groups: Floats) -> Values:
-        return {
-            kind: {**values, f"{first} - {second}": values[first] - values[second]}
-            if first in values
-            else values
-            for kind, values in estimate(groups).items()
-        }
-
-    return both
-
-
-def effective_rows(deviations: Floats) -> float:
-    """Return the number of rows that a variance rests on.
-
-    Parameters
-    ----------
-    deviations : ndarray, shape (n,) or (n, e)
-        From the mean, of each element.
-
-    Returns
-    -------
-    float
-        n over the kurtosis: n/3 for a normal law, about the number of hits for a rare event.
-    """
-    squares = _squares(deviations)
-    return float(squares.sum() ** 2 / (squares**2).sum())
-
-
-def one_more_row(
-    deviations: Floats, groups: int, replicates: int, confidence: float = CONFIDENCE
-) -> float:
-    """Return the half-width that one more row, as extreme as the most extreme, adds to an interval.
-
-    Parameters
-    ----------
-    deviations : ndarray, shape (n,) or (n, e)
-        Of the independent rows from their mean, of variance 1, all elements together.
-    groups, replicates : int
-        All groups of all replicates.
-    confidence : float, optional
-
-    Returns
-    -------
-    float
-        A half-width; zero where the variance rests on enough rows, or on a common share of them.
-    """
-    enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
-    if replicates < 2 or effective_rows(deviations) >= enough:
-        return 0.0
-    wide = student(upper_probability(confidence), replicates - 1)
-    return float(wide * _squares(deviations).max() / groups)
-
-
-def _squares(deviations: Floats) -> Floats:
-    squares = deviations**2
-    return squares if squares.ndim == 1 else np.asarray(squares.sum(axis=1))
-
-
-def widened(estimate: Estimate, by: float) -> Estimate:
-    """Return an estimate whose half-widths are sqrt(half^2 + by^2)."""
-    value = estimate.value
-    below, above = (np.hypot(end - value, by) for end in (estimate.low, estimate.high))
-    return replace(estimate, low=float(value - below), high=float(value + above))
-
 
 MIN_ROWS = 64
 """Fewer rows than this leave too few in each slice of an input."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uq.indices.given_data import Values, pooled_with_intervals
+from uq.indices.groups import Values, pooled_with_intervals
 from uq.indices.index import IndexKind, Indices, RefusedError
 from uq.indices.method import NO_EFFECT
 from uq.indices.sample import DesignSample, Floats

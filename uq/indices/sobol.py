@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from uq.indices.given_data import (
+from uq.indices.groups import (
     Values,
     effective_rows,
     one_more_row,

@@ -1,4 +1,10 @@
-"""Points that fill the unit cube: random, stratified, low-discrepancy, curves, trajectories."""
+"""Points that fill the unit cube: random, stratified, low-discrepancy, curves, trajectories.
+
+Each function draws points start..stop of each replicate, shape (stop - start, replicates, d), with
+the same bits for any start and stop. SALib draws Morris trajectories, and on request selects those
+that are far apart. Its search is slow beyond a dozen, so such a design consists of bundles of at
+most eight, each the best of four times as many.
+"""
 
 from collections.abc import Callable
 from copy import copy

@@ -1,4 +1,4 @@
-"""The interval of a mean whose coverage skewness does not lower."""
+"""Skewness-corrected confidence intervals of a mean (Hall 1992)."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,9 @@
-"""Weighted means of numbers between 0 and 1, with intervals."""
+"""Weighted means of numbers between 0 and 1, with intervals.
+
+Rows are independent, or belong to independent parts: the replicates of a design, or samples of
+several rows (`uq.stats.intervals`). Where few rows carry a mean, its interval is that of a share of
+hits.
+"""
 
 from collections.abc import Callable
 from math import inf
@@ -10,6 +15,7 @@ from scipy import special
 from uq.contract import Floats
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
+from uq.stats.exact_shares import exact_interval
 from uq.stats.importance_weights import (
     HOPELESS,
     carries_little,
@@ -27,7 +33,6 @@ from uq.stats.intervals import (
     Ends,
     Replicates,
     beyond_outliers,
-    exact_interval,
     is_constant,
     outlier_shift,
     scatter_interval,
