@@ -2,13 +2,14 @@
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
 from math import isinf
 
 from uq.execution.options import Progress, Report
 from uq.files.interrupts import undone
+from uq.text.literals import plain_line
 from uq.text.numbers import duration, number
 
 _PLAIN_SECONDS = 10.0
@@ -86,6 +87,12 @@ def _plain() -> Iterator[Report]:
 def say(line: str) -> None:
     """Tell the user something on standard error."""
     print(line, file=sys.stderr, flush=True)
+
+
+def say_each(sentences: Iterable[str]) -> None:
+    """Tell the user sentences on standard error, a line each, without control characters."""
+    for sentence in sentences:
+        say(plain_line(sentence))
 
 
 def _moving() -> Iterator[Report]:

@@ -8,12 +8,11 @@ import numpy as np
 import xarray as xr
 
 from uq.cli.printing import grid, heading, note, number, print_json
-from uq.cli.progress import say
+from uq.cli.progress import say_each
 from uq.contract import Model
 from uq.errors import InputError
 from uq.study.definition import Study
 from uq.study.hints import undeclared_lives
-from uq.text.literals import plain_line
 from uq.text.numbers import quantity
 from uq.text.numbers import threshold as threshold_in_words
 from uq.text.quantities import read_threshold
@@ -33,8 +32,7 @@ def warn(study: Study, output: str) -> None:
     """Print on standard error if an output has the name of a life, but is not declared as one."""
     name = output.partition("[")[0]
     if name in study.model.outputs:
-        for sentence in undeclared_lives(study.model, (name,)):
-            say(plain_line(sentence))
+        say_each(undeclared_lives(study.model, (name,)))
 
 
 def show(ds: xr.Dataset, json: bool, study: Study, threshold: float) -> int:
@@ -108,7 +106,7 @@ def _shown_unseen(ds: xr.Dataset) -> list[tuple[str, str]]:
     ]
 
 
-def _limit(ds: xr.Dataset) -> str:
+def _part_alone(ds: xr.Dataset) -> str:
     """Say beside the interval if it holds for a part of the event only."""
     return "" if ds.attrs["interval_of"] == "event" else f", only {ds.attrs['interval_of']}"
 
@@ -127,7 +125,7 @@ def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
     grid(
         [
             ("probability", _cell(float(ds["probability"]))),
-            ("95 % interval", f"{low} to {high}{_limit(ds)}"),
+            ("95 % interval", f"{low} to {high}{_part_alone(ds)}"),
             *_shown_unseen(ds),
             *([("with failed rows inside", f"up to {worst}")] if worst != "-" else []),
             ("rows", str(int(ds["rows"]))),

@@ -1,4 +1,4 @@
-"""What the verbs that compute rows of a result show."""
+"""Output of the verbs that compute rows of a result."""
 
 import shlex
 import sys
@@ -36,8 +36,7 @@ def loaded(
 
 def warn(study: Study) -> None:
     """Print what a study will lack, on standard error."""
-    for sentence in hints(study):
-        progress.say(plain_line(sentence))
+    progress.say_each(hints(study))
 
 
 def amended(

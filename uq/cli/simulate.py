@@ -1,4 +1,4 @@
-"""What ``uq simulate`` does."""
+"""The command ``uq simulate``."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uq.cli.printing import duration, grid, heading, number, print_json
-from uq.cli.progress import say, say_compiling
+from uq.cli.progress import say_compiling, say_each
 from uq.contract import Model, Status
 from uq.errors import InputError
 from uq.execution.loading import load_model
@@ -16,7 +16,7 @@ from uq.files.paths import file_behind
 from uq.machines.compilation import compilation
 from uq.result.one_row import Row
 from uq.study.hints import undeclared_lives
-from uq.text.literals import plain_line, read_number, read_toml
+from uq.text.literals import read_number, read_toml
 from uq.text.numbers import in_brackets
 from uq.text.symbols import readable
 from uq.text.units import typical, unit_of
@@ -42,8 +42,7 @@ def simulate(
         row = run_alone(reference, given, chosen, compiling=say_compiling)
         if output or plot:
             _keep(row, output, plot)
-    for sentence in undeclared_lives(row.model):
-        say(plain_line(sentence))
+    say_each(undeclared_lives(row.model))
     print_json(as_json(row)) if json else _show(row)
     return 1 if row.failed else 0
 

@@ -70,6 +70,19 @@ class WideSearch(NamedTuple):
         )
 
 
+def is_above(wide: float, low: float, high: float) -> bool:
+    """Return whether rows drawn wide estimate more than an interval by over a standard error.
+
+    Parameters
+    ----------
+    wide, low : float
+        Their estimate, and the low end of its interval.
+    high : float
+        The high end of the other interval.
+    """
+    return (wide * low) ** 0.5 > high
+
+
 def wide_search(
     margin: Margin, d: int, samples: int, generators: list[np.random.Generator]
 ) -> WideSearch:
