@@ -6,6 +6,8 @@ a site depends only on the gaps, and its life is the integral of dx over it (eqs
 hundredfold.
 """
 
+from functools import partial
+
 import numpy as np
 
 from models.beam.response.averages import SHORTEST, time_mean
@@ -110,6 +112,21 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
         return np.where(top > 0, grown + step, np.nan)
 
 
+def _wear(grown: Array, rate: Array, doubt: Array, site: int, begin: int, end: int) -> FittedWear:
+    """Return the wear of a site, fitted to its nodes from the first to the last, included."""
+    nodes = slice(begin, end + 1)
+    return FittedWear(grown[nodes, site], rate[nodes, site], doubt[nodes, site])
+
+
+def _waiting(path: FittedWear, before: float, after: float) -> tuple[float, float]:
+    """Return the time until a stop is met, and its error, from the wear of the other stop.
+
+    The stop is met at an unknown growth of the other gap between two nodes, `before` and `after`.
+    """
+    (early, _), (late, noise) = path.life(before), path.life(after)
+    return (early + late) / 2, float(np.hypot(noise, (late - early) / np.sqrt(12)))
+
+
 def _note(
     i: int,
     out: Lives,
@@ -130,10 +147,7 @@ def _note(
     if np.isnan(rate).any():
         return
 
-    def wear_of(site: int, begin: int, end: int) -> FittedWear:
-        nodes = slice(begin, end + 1)
-        return FittedWear(grown[nodes, site], rate[nodes, site], doubt[nodes, site])
-
+    wear_of = partial(_wear, grown, rate, doubt)
     at = np.full((2, len(growths)), np.nan)
     simulated = 0.0
     for site in range(2):
@@ -146,12 +160,10 @@ def _note(
         met = int((rate[:, site] > 0).argmax())
         end = int(worn.argmax()) if worn[-1] else len(x) - 1
         wear = wear_of(site, met, end)
-        wait, doubt_of_wait = 0.0, 0.0
-        if met:
-            path, other = wear_of(1 - site, 0, met), grown[:, 1 - site]
-            (early, _), (late, noise) = path.life(other[met - 1]), path.life(other[met])
-            # The stop is met at an unknown growth between two nodes.
-            wait, doubt_of_wait = (early + late) / 2, np.hypot(noise, (late - early) / np.sqrt(12))
+        other = grown[:, 1 - site]
+        wait, doubt_of_wait = (
+            _waiting(wear_of(1 - site, 0, met), other[met - 1], other[met]) if met else (0.0, 0.0)
+        )
         whole = wait + wear.life(x[end])[0]
         for k in np.flatnonzero((instants > 0) & (instants < whole)).tolist():
             out.depth[i, site, k] = wear.grown(instants[k] - wait)

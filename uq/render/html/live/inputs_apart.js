@@ -35,8 +35,9 @@ function meanAmong(rows, values, mask, count) {
   const size = estimates.length, centre = total(estimates) / size;
   const scatter = total(estimates.map(one => (one - centre) ** 2)) / (size - 1) / size;
   const half = size > 1 && scatter > 0 ? student(rows.students, size - 1) * Math.sqrt(scatter) : NaN;
-  const ends = rows.replicate ? [] : estimates, spread = [Math.max(...ends) - mean, mean - Math.min(...ends)];
-  const moved = rows.replicate ? 0 : 2 * (spread[0] - spread[1]) / size;
+  let least = centre, most = centre;
+  for (const estimate of estimates) [least, most] = [Math.min(least, estimate), Math.max(most, estimate)];
+  const moved = rows.replicate ? 0 : 2 * (most + least - 2 * mean) / size;
   return {mean, low: Math.max(mean - half + Math.min(moved, 0), 0), high: Math.min(mean + half + Math.max(moved, 0), 1)};
 }
 
