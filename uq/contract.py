@@ -1,4 +1,4 @@
-"""What a model declares: the only module of ``uq`` that a model may import.
+"""Declarations of a model: the only module of ``uq`` that a model may import.
 
 For model authors
 -----------------

@@ -213,7 +213,7 @@ class Checker:
             shown = [numbers_in(text)[0] for text in map(each._size, each.indices)]
             if not np.allclose(shown, np.multiply(values, per), atol=0.6 * per / 100, rtol=0.01):
                 yield f"{each.words}: {each.size}"
-            seen = 0.001 if each.share_of_variance else 0.0  # of a share, whole per cent are told
+            seen = 0.001 if each.share_of_variance else 0.0  # shares are shown in whole per cent
             if not all(is_about_even(index, seen) for index in each.indices):
                 yield f"interval of {each.words}: {each.size}"
             for name, change in zip(each.inputs, each.changes, strict=False):

@@ -86,7 +86,7 @@ NAMES = ("hostile.py", "./hostile.py:MODEL", "hostile:MODEL", "hostile.toml", "h
 
 
 TAKE_A_MODEL = ("extend", "verify")
-"""Verbs of which one computes rows and the other computes some again."""
+"""A verb that computes new rows, and one that computes some rows again."""
 
 
 @pytest.mark.parametrize(

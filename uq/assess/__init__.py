@@ -2,64 +2,65 @@
 
 Reading order; each part imports only those above it:
 
+    effects               average effects of inputs
+    event_curve           the probability of an event over an input
     independent_inputs    the inputs of a result with a law of their own
     joint_bounds          tolerance bounds that hold for several outputs at once
-    regime_switching      how likely a repeat of the same unit ends in another regime
-    targets               targets of sensitivity indices
-    variance_by_level     one table of numbers apportioned to levels
+    solver_error          effect of stated errors of rows on their values and scatter
     input_changes         differences between two studies of one model: inputs, settings, design
     row_inputs            the uncertain inputs of some rows
+    random_effects        distribution of the failure probability over shared inputs
     scale_laws            the law of a life in each row
-    effects               average effects of inputs
-    random_effects        how the probability of a unit's life spreads over worlds
-    event_curve           the probability of an event over an input
+    regime_switching      probability that a repeat of the same unit ends in another regime
+    variance_by_level     one table of numbers apportioned to levels
     ranked_indices        the indices of a target as the lines of a table that ends with inputs
-    solver_error          what the errors that a model states for its rows do to their values
+    transforms            transforms of outputs whose own variance is not informative
     design_sample         the sample of a sensitivity method
+    earliest              distinguishing inputs of the rows that end first
     sampled_inputs        the laws and rank correlations of the inputs
-    earliest              what distinguishes the rows that end first
-    joint_targets         all elements of an output as one target
+    densities             ratio of the densities of inputs under two studies
+    posterior_scale       the law of a life in each row
+    targets               targets of sensitivity indices: one number per row
+    conditional_survival  the law of a life in each row
+    scaling               inputs of a result that only scale a life
     expected_widths       the expected width of the intervals of a study, from a few of its rows
     few_events            events that happen, or do not, in few rows
-    densities             how much denser the inputs of some rows are under another study
-    posterior_scale       the law of a life in each row
-    chosen_targets        which targets a user means
-    conditional_survival  the law of a life in each row
-    scaling               which inputs of a result only scale a life
-    sensitivities         which inputs explain the scatter of an output
+    joint_targets         all elements of an output as one target
     population            probabilities and quantiles of a population
-    scaling_by_level      what only scales a life, level by level
     reweighting           the rows of a result as those of another study
-    sensitivity_table     sensitivity indices as arrays
-    sensitivity_json      sensitivity indices as the command line prints them with ``--json``
+    scaling_by_level      exactly known variance of lives from inputs that only scale them
+    chosen_targets        targets that a user names, or that suit a method
     estimators            estimators: the rows that take part, and the influence of each
     fleets                fleets: units of one world, and how many of them have ended
+    sensitivities         sensitivity indices of a whole result, by every method
+    pairing               pairing of the rows of two results
     statistic             a statistic of an output
-    pairing               how the rows of two results are paired
+    sensitivity_json      sensitivity indices as the command line prints them with ``--json``
+    sensitivity_table     sensitivity indices as arrays
     failed_rows           bounds of an estimate with the failed rows at best and at worst
-    survival              lifetimes: the probability of a longer life than each time
     fleet_numbers         the numbers of fleets of one size
+    survival              lifetimes: the probability of a longer life than each time
     life_quantiles        times by which a given share of rows has ended
-    stopping              when a run may stop
     life_fit              Weibull and lognormal laws fitted to lifetimes
     statistics            the statistics of an output: ``table`` lists them
-    stopping_status       what is said of a run that may stop
+    stopping              when a run may stop
     fit_table             laws fitted to a lifetime as a table
-    two_fidelities        two fidelities
     level_shares          shares of the variance
+    two_fidelities        two fidelities
+    stopping_status       status of a run that may stop
+    level_table           variance shares by level as a Dataset
     summary               the summary of a result
-    level_table           shares of the variance by level as a Dataset to display and to
-    summary_table         the summary of a result as a table to display and to compute with
     convergence           convergence
     differences           differences between the statistics of two results
-    regime_boundary       how intermingled the regimes of a result are
     fleet                 fleets
+    regime_boundary       the boundary between the regimes of a result
+    summary_table         the summary of a result as a table
     running_estimates     running estimates, each with the numbers of samples that it comes from
     comparison            two studies of one model
-    regimes               the regimes of a result compared
     findings              a result and what several tables and figures show of it
-    summary_json          what results say, as the command line prints it with ``--json``
+    regimes               the regimes of a result compared
+    summary_json          summaries and comparisons as JSON
     fleet_json            numbers of fleets as the command line prints them with ``--json``
-    what_if               what a result would say if its inputs followed other laws
+    what_if               a result under other laws of its inputs: the same rows, weighted
     answer                the answer of a study
 """

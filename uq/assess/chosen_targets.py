@@ -1,4 +1,4 @@
-"""Which targets a user means: those that suit a method, or those of some names."""
+"""Targets that a user names, or that suit a method."""
 
 import re
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""How much denser the inputs of some rows are under another study."""
+"""Ratio of the densities of inputs under two studies."""
 
 from collections.abc import Collection
 

@@ -1,4 +1,4 @@
-"""What distinguishes the rows that end first: where their inputs lie within all rows."""
+"""Distinguishing inputs of the rows that end first: their place within all rows."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Shares of the variance by level as a Dataset to display and to compute with."""
+"""Variance shares by level as a Dataset."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""How the probability of a unit's life spreads over worlds, without the noise of their units."""
+"""Distribution of the failure probability over shared inputs, without the noise of units."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""How intermingled the regimes of a result are: the boundary between them."""
+"""The boundary between the regimes of a result: how intermingled they are."""
 
 from typing import Any
 

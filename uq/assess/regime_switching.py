@@ -1,4 +1,4 @@
-"""How likely a repeat of the same unit ends in another regime."""
+"""Probability that a repeat of the same unit ends in another regime."""
 
 from collections.abc import Collection
 

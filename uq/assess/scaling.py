@@ -1,4 +1,4 @@
-"""Which inputs of a result only scale a life, and the laws of its lives given all others."""
+"""Inputs of a result that only scale a life, and the laws of its lives given all others."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

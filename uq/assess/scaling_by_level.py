@@ -1,4 +1,4 @@
-"""What only scales a life, level by level: its part in the scatter of lives is known exactly.
+"""Exactly known variance of lives from inputs that only scale them, level by level.
 
 The logarithm of a life is that of everything else, plus a sum of independent terms of each level.
 With the terms at their means, the variances of the terms are added to those of the levels.

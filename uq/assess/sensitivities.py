@@ -1,4 +1,4 @@
-"""Which inputs explain the scatter of an output: every method, for a whole result."""
+"""Sensitivity indices of a whole result, by every method."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

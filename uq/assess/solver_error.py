@@ -1,4 +1,4 @@
-"""What the errors that a model states for its rows do to their values, and to their scatter."""
+"""Effect of stated errors of rows on their values and scatter."""
 
 from dataclasses import replace
 

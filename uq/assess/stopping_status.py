@@ -1,4 +1,4 @@
-"""What is said of a run that may stop: why it did, or how far it is from that."""
+"""Status of a run that may stop: its reason to end, or its distance from the goal."""
 
 from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""What results say, as the command line prints it with ``--json``."""
+"""Summaries and comparisons as JSON."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby

@@ -1,4 +1,4 @@
-"""The summary of a result as a table to display and to compute with."""
+"""The summary of a result as a table."""
 
 from math import inf, isfinite, nan
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a result would say if its inputs followed other laws: the same rows, weighted."""
+"""A result under other laws of its inputs: the same rows, weighted."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass

@@ -9,27 +9,27 @@ Reading order; each part imports only those above it:
     encodings        characters that the encoding of a stream lacks, as it can write them
     options          arguments and options shared by several verbs of ``uq``, with their help
     compare          the output of ``uq compare``
-    trace            what ``uq trace`` shows
-    levels           what ``uq levels`` shows
-    estimates        what ``uq twin`` and ``uq convergence`` print
-    guide            what ``uq`` without a command says: what to do next
-    next_inspection  what ``uq next-inspection`` shows
-    sensitivity      what ``uq sensitivity`` shows: tables of 80 columns
-    models           what ``uq models`` shows
-    fleet            what ``uq fleet`` shows
+    estimates        terminal output of ``uq twin`` and ``uq convergence``
+    fleet            terminal output of ``uq fleet``
+    guide            output of ``uq`` without a command: next steps
+    levels           terminal output of ``uq levels``
+    models           terminal output of ``uq models``
+    new_machine      files of ``uq init --machine NAME``
+    next_inspection  terminal output of ``uq next-inspection``
+    sensitivity      terminal output of ``uq sensitivity``: tables of 80 columns
     summary_tables   the summary of a result, as tables of 80 columns
-    new_machine      what ``uq init --machine NAME`` writes
-    check            what ``uq check`` shows
-    simulate         what ``uq simulate`` does
-    plan             what ``uq plan`` does
-    rare_event       what ``uq rare-event`` shows
-    status           what ``uq status`` and ``uq verify`` do
+    trace            terminal output of ``uq trace``
+    check            terminal output of ``uq check``
+    plan             the command ``uq plan``
+    rare_event       terminal output of ``uq rare-event``
+    simulate         the command ``uq simulate``
+    status           the commands ``uq status`` and ``uq verify``
     streams          standard streams that are closed, full or no longer read
+    run              output of the verbs that compute rows of a result
     what_if          the output of ``uq what-if``
-    run              what the verbs that compute rows of a result show
-    row              what ``uq row`` shows
+    row              terminal output of ``uq row``
     changed_file     a warning where a result has changed since it was written
-    learning         what ``uq update`` shows
+    learning         terminal output of ``uq update``
     verbs            the verbs of ``uq``: what each takes, and what it calls
     app              the command ``uq``: its verbs, in the order of ``uq --help``
 """

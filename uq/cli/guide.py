@@ -1,4 +1,4 @@
-"""What ``uq`` without a command says: what to do next."""
+"""Output of ``uq`` without a command: next steps."""
 
 import shlex
 import tomllib

@@ -1,4 +1,4 @@
-"""What ``uq init --machine NAME`` writes: a machine, its test, a study and a guide to them."""
+"""Files of ``uq init --machine NAME``: a machine, its test, a study and a guide to them."""
 
 import keyword
 from importlib.util import find_spec

@@ -1,4 +1,4 @@
-"""What ``uq plan`` does."""
+"""The command ``uq plan``."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

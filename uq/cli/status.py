@@ -1,4 +1,4 @@
-"""What ``uq status`` and ``uq verify`` do."""
+"""The commands ``uq status`` and ``uq verify``."""
 
 from dataclasses import asdict
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a user chooses and sees of a run; no choice changes a bit of a sound row."""
+"""Options of a run and its progress; no option changes a bit of a sound row."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a study will cost: a few of its rows are run, spread over all of them."""
+"""Cost of a study, estimated from a few of its rows."""
 
 import subprocess
 import time

@@ -1,4 +1,4 @@
-"""How far a run is, even one under way: read from its journal, without disturbing it."""
+"""Progress of a run, even one under way: read from its journal, without disturbing it."""
 
 from collections import Counter
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Whether a result is as written, and would be the same if computed here."""
+"""Verification of a result: unchanged since it was written, and reproducible here."""
 
 from pathlib import Path
 

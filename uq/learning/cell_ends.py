@@ -1,4 +1,4 @@
-"""Where in each row the values of the integrated input begin and end that inspections allow."""
+"""Ends of the values of the integrated input that inspections allow, row by row."""
 
 from collections.abc import Callable
 

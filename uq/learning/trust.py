@@ -1,4 +1,4 @@
-"""Whether the rows of a result can represent what inspections leave of it."""
+"""Diagnosis of whether the rows of a result can represent a posterior."""
 
 from collections.abc import Iterator
 from math import ceil

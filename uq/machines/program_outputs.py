@@ -1,4 +1,4 @@
-"""What a program has written: by keys of JSON, columns of CSV, netCDF variables, or a pattern."""
+"""Outputs of a program: keys of JSON, columns of CSV, netCDF variables, or a pattern."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""Rows computed one after the other by something that takes numbers and returns a dict."""
+"""Rows computed one after the other by a function of numbers that returns a dict."""
 
 import keyword
 import os

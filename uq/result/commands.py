@@ -1,4 +1,4 @@
-"""What commands on a result are given: its file, and where a model that is not installed lives."""
+"""Arguments of commands on a result: its file, and the place of a model that is not installed."""
 
 import shlex
 from pathlib import Path

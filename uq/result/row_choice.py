@@ -1,4 +1,4 @@
-"""Which row of a result: the one with the lowest value, or the one closest to a quantile."""
+"""Choice of a row: the one with the lowest value, or the one closest to a quantile."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

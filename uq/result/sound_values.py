@@ -1,4 +1,4 @@
-"""Whether the values of a result are possible: no run leaves others behind."""
+"""Checks that the values of a result are possible."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -1,4 +1,4 @@
-"""Checks of the weights and attributes that inspections have written to a result."""
+"""Checks of weights and attributes that inspections have left in a result."""
 
 import json
 from collections.abc import Iterator

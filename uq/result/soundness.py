@@ -1,4 +1,4 @@
-"""Whether a Dataset is a sound result: it may be damaged or come from an untrusted file."""
+"""Checks of a Dataset that may be damaged or come from an untrusted file."""
 
 import json
 from collections.abc import Iterator

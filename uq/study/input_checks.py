@@ -1,4 +1,4 @@
-"""Whether the inputs suit each other, their parameters and the design."""
+"""Consistency of inputs with each other, their parameters and the design."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

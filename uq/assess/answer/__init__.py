@@ -2,31 +2,31 @@
 
 Reading order; each part imports only those above it:
 
+    sources             quality of the source of a number: measured, assumed, or chosen
     wording             inputs and elements by their names
     measured_indices    the index of each input, and what tells it from the others
-    sources             how well a number is known, according to its source
-    contributions       what inputs contribute
-    limits              in which range of the input that decides an event the unwanted side is
-    earliest            which rows end first, and what distinguishes them
-    tolerance_bound     what can be promised of an output, and its likely range
-    regime_mixing       whether the regimes are intermingled
+    assumptions         assumptions of an answer: laws and values without a measurement
+    contributions       contributions of inputs
+    earliest            the rows that end first, and their distinguishing inputs
     halved_scatter      laws with half their scatter
-    number_targets      what a number of a result is about, by the name that a person reads
-    assumptions         what an answer rests on without a measurement
-    levels              which level decides
-    promised_bounds     which bounds of an output are promised
-    repeat_interval     what the same study with another seed would most likely find
-    remedies            what could be done
-    solver_error        what the numerical error of the rows themselves would do to a promise
-    rankings            which inputs contribute most to a target
-    parts               what is said of an event and of a quantity
+    limits              ranges of the deciding input in which the unwanted side is rare on
+    number_targets      the subject of a number of a result, by the name that a person reads
+    regime_mixing       intermingled regimes
+    tolerance_bound     tolerance bound that can be promised of an output, and its likely range
+    levels              variance components
+    promised_bounds     the promised bounds of an output
+    remedies            remedies: effects of a tighter tolerance, and each piece of advice
+    repeat_interval     prediction interval
+    solver_error        effect of the numerical error of rows on a promise, in words
+    rankings            ranking of inputs for a target; indistinguishable inputs are grouped
+    parts               events and quantities of an answer, with their sentences
+    quantities          quantities of an answer: promises, likely ranges, and probabilities
+    sample_size         sample size that settles an answer: intervals narrow as one over root n
     tighter_tolerances  tighter tolerances
-    sample_size         what is not settled, and how many rows would settle it
-    quantities          what can be promised of an output, its likely range
-    sufficiency         whether the rows are enough for what the study is about
+    sufficiency         sufficiency of the rows for the subject of a study
     facts               the answer as a whole: its parts in the order in which they are read
+    advice              advice by rules: mend, add rows, measure, tighten, or nothing
     answer_json         the answer as the command line prints it with ``--json``
-    advice              what to do, by rules: mend, add rows, measure, tighten, or nothing
     answer              the answer of a study, computed once from what is known of its result
-    verdict             whether the rows are enough for all that a study asks, in sentences
+    verdict             verdict on the number of rows, in sentences
 """

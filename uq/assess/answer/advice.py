@@ -1,4 +1,4 @@
-"""What to do, by rules: mend, add rows, measure, tighten, or nothing."""
+"""Advice by rules: mend, add rows, measure, tighten, or nothing."""
 
 from collections.abc import Iterator, Sequence
 from math import ceil, isfinite, isinf, isnan

@@ -87,7 +87,9 @@ def _levels(one: VarianceComponents) -> dict[str, Any]:
     return {
         "sentence": one.sentence,
         "target": one.target,
-        "shares": {each.name: estimate_json.numbers(each.share) for each in one.levels},
+        "shares": {
+            component.name: estimate_json.numbers(component.share) for component in one.levels
+        },
         "another_regime": None if one.another is None else estimate_json.numbers(one.another),
     }
 

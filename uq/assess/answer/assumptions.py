@@ -1,4 +1,4 @@
-"""What an answer rests on without a measurement: the laws and values that are assumed."""
+"""Assumptions of an answer: laws and values without a measurement."""
 
 from collections.abc import Sized
 

@@ -1,4 +1,4 @@
-"""What inputs contribute: shares, directions and sizes, and the sentences from them."""
+"""Contributions of inputs: shares, directions and sizes, and their sentences."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

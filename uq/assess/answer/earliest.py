@@ -1,4 +1,4 @@
-"""Which rows end first, and what distinguishes them."""
+"""The rows that end first, and their distinguishing inputs."""
 
 import shlex
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Which level decides: what units share, what is each one's own, or what changes each time."""
+"""Variance components: shared by units, own to each unit, or changing each time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""In which range of the input that decides an event the unwanted side is rare on average."""
+"""Ranges of the deciding input in which the unwanted side is rare on average."""
 
 from dataclasses import dataclass, field, replace
 from math import inf, nan

@@ -1,4 +1,4 @@
-"""What a number of a result is about, by the name that a person reads."""
+"""The subject of a number of a result, by the name that a person reads."""
 
 import xarray as xr
 

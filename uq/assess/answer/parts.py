@@ -1,4 +1,4 @@
-"""What is said of an event and of a quantity, each sentence written from its own numbers."""
+"""Events and quantities of an answer, with their sentences."""
 
 from dataclasses import dataclass, field, replace
 from math import isnan

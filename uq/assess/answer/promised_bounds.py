@@ -1,4 +1,4 @@
-"""Which bounds of an output are promised: joint ones where a study asks for them, else its own."""
+"""The promised bounds of an output: joint ones where a study asks for them, else its own."""
 
 from collections.abc import Iterator
 from math import inf, isfinite, isnan, nan

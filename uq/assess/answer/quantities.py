@@ -1,4 +1,4 @@
-"""What can be promised of an output, its likely range, and the probabilities asked for."""
+"""Quantities of an answer: promises, likely ranges, and probabilities."""
 
 from collections.abc import Iterator
 from dataclasses import replace

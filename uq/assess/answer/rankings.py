@@ -1,4 +1,4 @@
-"""Which inputs contribute most to a target; those that cannot be distinguished stand together."""
+"""Ranking of inputs for a target; indistinguishable inputs are grouped."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -132,7 +132,7 @@ def unexplained(indices: Indices) -> Estimate:
     """
     if indices.unexplained.has_interval:
         return indices.unexplained
-    return Estimate(1 - sum(one.value for one in indices.values[S1].values()))
+    return Estimate(1 - sum(index.value for index in indices.values[S1].values()))
 
 
 def _totals(findings: Findings, name: str) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Whether the regimes are intermingled: better known inputs then tell little of the outcome."""
+"""Intermingled regimes: better known inputs then tell little of the outcome."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What could be done: what a tighter tolerance would change, and each piece of advice."""
+"""Remedies: effects of a tighter tolerance, and each piece of advice."""
 
 from dataclasses import dataclass, field
 from math import isfinite

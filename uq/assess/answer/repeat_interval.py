@@ -1,4 +1,4 @@
-"""What the same study with another seed would most likely find."""
+"""Prediction interval: where the same study with another seed would most likely end."""
 
 from dataclasses import dataclass, field
 from math import isfinite, nan, sqrt

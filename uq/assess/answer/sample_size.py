@@ -1,4 +1,4 @@
-"""What is not settled, and how many rows would settle it: intervals narrow as one over root n."""
+"""Sample size that settles an answer: intervals narrow as one over root n."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What the numerical error of the rows themselves would do to a promise, in words."""
+"""Effect of the numerical error of rows on a promise, in words."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace

@@ -1,4 +1,4 @@
-"""How well a number is known, according to its source."""
+"""Quality of the source of a number: measured, assumed, or chosen."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Whether the rows are enough for what the study is about, and what another seed would find."""
+"""Sufficiency of the rows for the subject of a study, and predictions for another seed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

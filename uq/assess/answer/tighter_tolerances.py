@@ -38,45 +38,45 @@ def tightened(
     inputs : sequence of str
         All of them at once.
     """
-    known = list(_promised(quantity))
+    promised_numbers = list(_promised(quantity))
     laws = halvings(ds, inputs)
-    if not known or not laws:
+    if not promised_numbers or not laws:
         return
-    names = tuple(inputs)
-    what = TighterTolerance(names, "", law=halvings_in_words(ds, laws))
+    unanswered = TighterTolerance(tuple(inputs), "", law=halvings_in_words(ds, laws))
     changes = {
         f"uncertain.{name}.{key}": value
         for name, arguments in laws.items()
         for key, value in arguments.items()
     }
     try:
-        found = weighted(ds, changes, _asked(ds, quantity, [key for key, *_ in known]), _PARTS)
-    except (InputError, RunError) as refused:
-        yield replace(what, reason=f"{_UNKNOWN} ({refused})")
+        keys = [key for key, *_ in promised_numbers]
+        answer = weighted(ds, changes, _asked(ds, quantity, keys), _PARTS)
+    except (InputError, RunError) as refusal:
+        yield replace(unanswered, reason=f"{_UNKNOWN} ({refusal})")
         return
-    described = found.summary.outputs.get(quantity.name)
-    for key, words, before, unit, more in known:
-        one = described.find(*key) if described is not None else None
-        if one is None:
-            yield replace(what, what=words, reason=_UNKNOWN)
+    described = answer.summary.outputs.get(quantity.name)
+    for key, words, before, unit, more in promised_numbers:
+        statistic = described.find(*key) if described is not None else None
+        if statistic is None:
+            yield replace(unanswered, what=words, reason=_UNKNOWN)
             continue
-        after = one.best.estimate
+        after = statistic.best.estimate
         if not isfinite(after.value):
-            yield replace(what, what=words, reason=f"{_UNKNOWN} ({after.reason})")
+            yield replace(unanswered, what=words, reason=f"{_UNKNOWN} ({after.reason})")
             continue
         given = {name: repr(value) for name, value in changes.items()}
         yield replace(
-            what,
+            unanswered,
             what=words,
             before=before,
             after=after,
             is_share=key[0] == "thresholds",
             unit=unit,
-            effective_rows=found.effective_rows,
+            effective_rows=answer.effective_rows,
             key=key_of("outputs", quantity.name, *key, verb="what-if", options=given),
             wants_more=more,
             promise=_bounding(quantity, key),
-            failed=one.best.failed,
+            failed=statistic.best.failed,
         )
 
 
@@ -84,8 +84,8 @@ def _asked(ds: xr.Dataset, quantity: Quantity, keys: Sequence[Sequence[str]]) ->
     """Return what a study asks for, of this quantity and these quantiles alone."""
     asked = analysis_of(ds, quantity.output)
     wanted = {key[1] for key in keys if key[0] == "quantiles"}
-    some = tuple(p for p in asked.quantiles if repr(p) in wanted)
-    return asked.model_copy(update={"quantiles": some})
+    quantiles = tuple(p for p in asked.quantiles if repr(p) in wanted)
+    return asked.model_copy(update={"quantiles": quantiles})
 
 
 def _bounding(quantity: Quantity, key: Sequence[str]) -> ToleranceBound | None:
@@ -111,15 +111,15 @@ def _promised(
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
         return
-    known = quantity.wants_more
-    if quantity.events and known is None:  # which quantile matters is not known
+    wants_more = quantity.wants_more
+    if quantity.events and wants_more is None:  # which quantile matters is not known
         return
-    if quantity.is_life and known is not None:
-        known = not known  # more ends are shorter lives
+    if quantity.is_life and wants_more is not None:
+        wants_more = not wants_more  # more ends are shorter lives
     for p, before in zip(promise.probabilities, promise.quantiles, strict=True):
         if isfinite(before.value):
             words = f"the {100 * p:g} % quantile"
-            yield ("quantiles", repr(p)), words, before, promise.unit, known
+            yield ("quantiles", repr(p)), words, before, promise.unit, wants_more
 
 
 MOST = 4
@@ -141,56 +141,72 @@ def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterato
     leader : Contribution
         What contributes most: its number is the one that all are compared by.
     """
-    found = [_shown(ds, quantity, one) for one in _candidates(ds, quantity, leader)]
-    known = [one for each in found for one in each if not one.reason]
-    better = [one for one in known if one.helps and one.is_seen and not one.may_stay]
+    of_contributions = [
+        _shown(ds, quantity, contribution) for contribution in _candidates(ds, quantity, leader)
+    ]
+    estimated = [
+        tolerance
+        for tolerances in of_contributions
+        for tolerance in tolerances
+        if not tolerance.reason
+    ]
+    better = [
+        tolerance
+        for tolerance in estimated
+        if tolerance.helps and tolerance.is_seen and not tolerance.may_stay
+    ]
     if not better:
-        unknown = [one for one in found[0] if one.reason]
+        refused = [tolerance for tolerance in of_contributions[0] if tolerance.reason]
         yield from (
-            Advice("tighten", one.sentence, one.inputs, tightened=one) for one in unknown[:1]
+            Advice("tighten", tolerance.sentence, tolerance.inputs, tightened=tolerance)
+            for tolerance in refused[:1]
         )
         return
-    compared = [one for one in better if one.what == better[0].what]
+    compared = [tolerance for tolerance in better if tolerance.what == better[0].what]
     best, *others = compared[:1]
     if best.wants_more is not None:
-        best, *others = sorted(compared, key=lambda one: -one.gain)
+        best, *others = sorted(compared, key=lambda tolerance: -tolerance.gain)
     yield Advice(
         "tighten",
         best.sentence,
         best.inputs,
         tightened=best,
         key=best.key,
-        alike=tuple(one for one in others if _is_alike(best, one)),
-        tolerances=tuple(known),
+        alike=tuple(other for other in others if _is_alike(best, other)),
+        tolerances=tuple(estimated),
     )
 
 
 def twins(leader: Contribution) -> tuple[str, ...]:
     """Return the first of the inputs that lead, and its twins among them."""
-    return tuple(one for one in leader.sure if twin_of(one) == twin_of(leader.inputs[0]))
+    return tuple(name for name in leader.sure if twin_of(name) == twin_of(leader.inputs[0]))
 
 
 def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> list[Contribution]:
     """Return what contributes and is not chosen, no input named twice, the leader first."""
     rankings = [event.ranking for event in quantity.events] + [quantity.ranking]
-    every = [one for ranking in rankings if ranking is not None for one in ranking.contributions]
-    found = [leader]
-    for one in every:
-        if any(mark_of(ds, name) == CHOSEN for name in one.inputs):
-            continue
-        if not any(set(one.inputs) & set(other.inputs) for other in found):
-            found.append(one)
-    return found[:MOST]
+    candidates = [leader]
+    for ranking in rankings:
+        for contribution in ranking.contributions if ranking is not None else ():
+            inputs = set(contribution.inputs)
+            if any(mark_of(ds, name) == CHOSEN for name in inputs):
+                continue
+            if not any(inputs & set(candidate.inputs) for candidate in candidates):
+                candidates.append(contribution)
+    return candidates[:MOST]
 
 
-def _shown(ds: xr.Dataset, quantity: Quantity, of: Contribution) -> Sequence[TighterTolerance]:
+def _shown(
+    ds: xr.Dataset, quantity: Quantity, contribution: Contribution
+) -> Sequence[TighterTolerance]:
     """Return what half the scatter of inputs would change, of as many as the rows can show."""
-    found: list[TighterTolerance] = []
-    for inputs in dict.fromkeys((of.sure, twins(of), of.inputs[:1])):
-        found = list(tightened(ds, quantity, inputs))
-        if any(not one.reason for one in found):
+    tolerances: list[TighterTolerance] = []
+    sets = (contribution.sure, twins(contribution), contribution.inputs[:1])
+    for inputs in dict.fromkeys(sets):
+        tolerances = list(tightened(ds, quantity, inputs))
+        if any(not tolerance.reason for tolerance in tolerances):
             break
-    return found
+    return tolerances
 
 
 def _is_alike(best: TighterTolerance, other: TighterTolerance) -> bool:

@@ -1,4 +1,4 @@
-"""What can be promised of an output, and its likely range."""
+"""Tolerance bound that can be promised of an output, and its likely range."""
 
 from dataclasses import dataclass, field, replace
 from math import inf, isfinite, nan

@@ -1,4 +1,4 @@
-"""Whether the rows are enough for all that a study asks, in sentences."""
+"""Verdict on the number of rows, in sentences."""
 
 from math import isfinite
 

@@ -1,4 +1,4 @@
-"""How many rows have no value, or one less accurate than requested."""
+"""Numbers of rows without a value, or less accurate than requested."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

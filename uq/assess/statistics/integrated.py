@@ -1,4 +1,4 @@
-"""What is integrated exactly of the lives of an output, and what that is worth."""
+"""Variance reduction by exact integration of the lives of an output."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The probabilities that an output lies above and below the thresholds of a study."""
+"""Probabilities that an output lies above and below thresholds."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What figures of the elements of an output share: styles, titles, units, bins and regimes."""
+"""Common parts of figures of elements: styles, titles, units, bins and regimes."""
 
 import textwrap
 from collections.abc import Sequence

@@ -4,21 +4,21 @@ Reading order; each part imports only those above it:
 
     bars             a number as a bar with its interval, in HTML that needs no script
     keyed_sentences  sentences of the answer as HTML
-    paths            paths of a drawing, written with few characters
-    references       what a model asks to cite
-    inspections      the inspections from which a result was learnt
+    references       references that a model asks to cite
+    first_scatter    the scatter plot that a page shows first
     symbols          symbols of formulas as HTML
-    first_scatter    what the scatter plot of a page shows first
-    tolerances       what a page needs to weight its rows
+    tolerances       data by which a page weights its rows
+    inspections      the inspections from which a result was learnt
+    paths            paths of a drawing, written with few characters
     cells            tables of a report, in plain data that the template lays out
-    folded           what is secondary in the answer, as HTML to be unfolded
-    pictures         figures of a page: embedded SVG, or an image if the SVG would be too large
+    folded           secondary parts of the answer, as HTML to be unfolded
     embedded_rows    the rows inside a page, with which its scripts (``live/``) compute
-    levels           what is shared, own, or due to chance, in a report
-    inputs           the inputs in a report: laws, sources, and how well each number is known
-    fleets           what a report says of fleets: as many units as a sample has
-    outcomes         the rows in a report: how they ended, and the statistics of the outputs
+    pictures         figures of a page: embedded SVG, or an image if the SVG would be too large
+    fleets           fleets in a report: as many units as a sample has
     indices          sensitivities in a report: one table for each target of each method
+    inputs           the inputs in a report: laws, sources, and how well each number is known
+    levels           variance by level in a report: shared, own, or due to chance
+    outcomes         the rows in a report: how they ended, and the statistics of the outputs
     answer           the answer as HTML, for a notebook and for the head of a report
     convergence      convergence in a report
     head             the head of a report

@@ -1,4 +1,4 @@
-"""What the scatter plot of a page shows first: what the answer is about, and what it depends on."""
+"""The scatter plot that a page shows first."""
 
 from collections.abc import Sequence
 

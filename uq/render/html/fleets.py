@@ -1,4 +1,4 @@
-"""What a report says of fleets: as many units as a sample has."""
+"""Fleets in a report: as many units as a sample has."""
 
 from collections.abc import Iterator
 from functools import partial

@@ -1,4 +1,4 @@
-"""What is secondary in the answer, as HTML to be unfolded."""
+"""Secondary parts of the answer, as HTML to be unfolded."""
 
 from collections.abc import Collection, Iterable
 

@@ -1,4 +1,4 @@
-"""What is shared, own, or due to chance, in a report."""
+"""Variance by level in a report: shared, own, or due to chance."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""What a model asks to cite."""
+"""References that a model asks to cite."""
 
 import xarray as xr
 

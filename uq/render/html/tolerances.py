@@ -1,4 +1,4 @@
-"""What a page needs to weight its rows: the laws of inputs, and how they scale lives."""
+"""Data by which a page weights its rows: laws of inputs, and how they scale lives."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite

@@ -1,4 +1,4 @@
-"""What a function estimates and whom it cites, from its docstring: each is stated once."""
+"""Summary and references of an estimator, from its docstring."""
 
 import inspect
 import re

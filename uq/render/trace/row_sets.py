@@ -1,4 +1,4 @@
-"""Which rows of a result a number rests on: runs of rows, block by block of the design."""
+"""Rows of a result behind a number: runs of rows, block by block of the design."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""What was assessed: context, quantities, software, models, inputs."""
+"""The assessed system: context, quantities, software, models, inputs."""
 
 from collections.abc import Iterator
 from shlex import quote

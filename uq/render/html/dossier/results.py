@@ -1,4 +1,4 @@
-"""What was found: propagation, convergence, sensitivities, uncertainty, conclusions."""
+"""Results: propagation, convergence, sensitivities, uncertainty, conclusions."""
 
 from collections.abc import Iterator
 from math import isfinite
