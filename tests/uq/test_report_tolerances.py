@@ -167,11 +167,14 @@ def test_the_page_says_what_could_then_be_promised(shown):
     now = api.answer(ds).lead.promise
 
     def promised(words):
-        cells = "[...document.querySelectorAll('#tolerances .promised data')]"
+        at_once = (  # the page may change between two questions
+            "(() => { const cell = document.querySelector('#tolerances .promised');"
+            " const numbers = [...cell.querySelectorAll('data')].map(data => Number(data.value));"
+            " return [numbers, cell.innerText] })()"
+        )
         for _ in range(100):
             browser.painted()
-            values = browser.value(f"{cells}.map(one => Number(one.value))")
-            text = browser.value("document.querySelector('#tolerances .promised').innerText")
+            values, text = browser.value(at_once)
             if words in text:
                 return values, text.replace("\N{NO-BREAK SPACE}", " ")
         raise AssertionError("nothing is promised")
