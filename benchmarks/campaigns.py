@@ -14,6 +14,7 @@ import uq
 from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.posterior import posterior
 from uq.learning.worn_depth import WornDepths
+from uq.result.result import Result
 from uq.text.literals import read_toml, toml
 
 RODS, WORLDS, CV, LIMIT, MOST = 20, 300, 0.15, 3e-5, 1.5e-4
@@ -73,7 +74,7 @@ def main():
             truth, others = apart(rows, number)
             inspections, _ = campaign(truth, rng)
             began = time.process_time()
-            posterior(others, inspections)
+            posterior(Result(others), inspections)
             taken.append(time.process_time() - began)
     longest = max(taken)
     print(

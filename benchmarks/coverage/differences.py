@@ -30,7 +30,7 @@ def differences(repetitions):
         wide, narrow = _studies(*design)
         for seed in range(repetitions):
             pair = computed(with_seed(wide, seed)), computed(with_seed(narrow, seed + apart))
-            compared = comparison_json(comparison(*pair))["outputs"]["y"]
+            compared = comparison_json(comparison(*map(Result, pair)))["outputs"]["y"]
             entries = {f"quantile {p}": compared["quantiles"][p] for p in QUANTILES} | {
                 "sd": compared["sd"],
                 f"P(> {THRESHOLD})": compared["thresholds"][str(THRESHOLD)]["above"],

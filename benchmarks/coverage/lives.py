@@ -15,6 +15,7 @@ from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
+from uq.result.result import Result
 
 TIMES = (0.3, 0.8)
 
@@ -52,7 +53,7 @@ def lives(design, repetitions):
         )
     }
     for ds in repeated(study, repetitions):
-        outputs = summary_json(summarise(ds))["outputs"]
+        outputs = summary_json(summarise(Result(ds)))["outputs"]
         for name, tally in tallies.items():
             cdf = never_cdf if name == "never" else LIFE.cdf  # alike below the plateau
             for label, p in B_LIVES.items():
@@ -96,7 +97,7 @@ def mixed(design, samples, repetitions):
     rows = f"{design}, {replicates} replicates of " * (replicates > 1) + f"{samples} rows"
     tally = Tally(f"60 % never end, known at once, the others may be censored; {rows}")
     for ds in repeated(study, repetitions):
-        entry = summary_json(summarise(ds))["outputs"]["mixed"]
+        entry = summary_json(summarise(Result(ds)))["outputs"]["mixed"]
         tally.entry("B10", MIXED.ppf(0.1 / ENDS), entry["b_lives"]["B10"])
         for time in LIMITS:
             below = entry["thresholds"][repr(time)]["kaplan_meier"]["below"]

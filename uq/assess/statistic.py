@@ -7,11 +7,10 @@ from functools import cached_property
 from math import isfinite, isinf, isnan
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.estimators import Estimator
 from uq.assess.joint_bounds import JointBound, joint_bounds
 from uq.result.elements import Element
+from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
@@ -48,7 +47,7 @@ class Context:
         Of the rows with nothing integrated, where they stand for another study.
     """
 
-    rows: xr.Dataset
+    rows: Result
     analysis: AnalysisTable
     replicate: Replicates
     weights: Smoothed | None = None

@@ -11,7 +11,6 @@ from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.design_sample import sample_of
 from uq.assess.joint_targets import wholes
@@ -22,8 +21,8 @@ from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
 from uq.contract import Floats
 from uq.indices.methods import METHODS, kinds_with_intervals
-from uq.result.elements import Element, independent_rows, named_elements, replicates_of
-from uq.result.nesting import first_samples
+from uq.result.elements import Element
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import PATHS
 from uq.stats import group_sequential, intervals
@@ -109,14 +108,14 @@ def _rests_on_replicates(design: "DesignTable") -> bool:
     return not (design.has_independent_samples or paths)
 
 
-def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
+def interim_estimate(design: "DesignTable", result: Result) -> InterimEstimate:
     """Estimate from the rows of a run so far.
 
     Parameters
     ----------
     design : DesignTable
         With `until`.
-    ds : xarray.Dataset
+    result : Result
         Its rows.
 
     Returns
@@ -126,7 +125,7 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
     """
     assert design.until is not None
     estimates = _indices if design.until.index else _statistics
-    widest = max(estimates(design, ds), key=lambda one: one.half_width)
+    widest = max(estimates(design, result), key=lambda one: one.half_width)
     return widest._replace(estimate=_explained(widest.estimate, design))
 
 
@@ -141,29 +140,32 @@ def _explained(found: Estimate, design: "DesignTable") -> Estimate:
     return replace(found, reason=f"the same in each {part}")
 
 
-def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
+def ended(design: "DesignTable", result: Result) -> bool:
     """Whether a run ends at this result although its budget is not spent."""
-    size = _latest(design, ds)
-    return size > 0 and interim_estimate(design, first_samples(ds, size)).reached
+    size = _latest(design, result)
+    return size > 0 and interim_estimate(design, result.first_samples(size)).reached
 
 
-def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
+def _latest(design: "DesignTable", result: Result) -> int:
     """Return the size of the last interim estimate, 0 before the first or without `until`.
 
     The result may be larger, if it was extended.
     """
     if design.until is None:
         return 0
-    return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
+    return max(
+        (size for size in interim_sizes(design) if size <= result.dataset.attrs["samples"]),
+        default=0,
+    )
 
 
-def _statistics(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:
     """Yield the estimate of each element, as a summary has it."""
     until, level = design.until, confidence(design)
     assert until is not None
-    rows = independent_rows(ds)
-    replicate = replicates_of(rows)
-    names = {element.name for element in named_elements(rows, until.output)}
+    rows = result.independent
+    replicate = rows.replicates
+    names = {element.name for element in rows.named_elements(until.output)}
     for element in population(rows, [until.output.partition("[")[0]]):
         if element.name in names:
             found = statistic(element, until, replicate, level)
@@ -242,7 +244,7 @@ def _probability(
     return Estimate(value, *intervals.share_interval(hits, within, level))
 
 
-def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+def _indices(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:
     """Yield the index of each input, or the difference between two, as `uq sensitivity` has it.
 
     An input that has no effect in any row has no interval, and does not count beside others.
@@ -250,10 +252,10 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
     until = design.until
     assert until is not None and until.index is not None
     kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
-    sample = replace(sample_of(ds), confidence=confidence(design), difference=until.difference)
-    for target in _targets(ds, until.output):
+    sample = replace(sample_of(result), confidence=confidence(design), difference=until.difference)
+    for target in _targets(result, until.output):
         own = replace(sample, values=target.values)
-        found = indices_of_target(ds, METHODS[method], target, own)
+        found = indices_of_target(result, METHODS[method], target, own)
         dropped = found.groups_dropped
         lost = f"{counted(dropped, 'group')} with missing values" if dropped else ""
         values = found.kinds().get(kind, {})
@@ -269,9 +271,9 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
             yield InterimEstimate(what, one, until.half_width, lost)
 
 
-def _targets(ds: xr.Dataset, output: str) -> Iterator[IndexTarget]:
+def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
     """Yield what has an index: each element that is meant, or all of them together."""
-    elements = named_elements(ds, output)
+    elements = result.named_elements(output)
     if is_whole(output):
         yield next(wholes(elements))
     else:

@@ -8,7 +8,8 @@ import xarray as xr
 from uq.assess.failed_rows import outer, with_failed_at
 from uq.assess.population import Population
 from uq.assess.scaling import population
-from uq.result.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
+from uq.result.elements import Element, Floats, Mask
+from uq.result.result import AnyResult, Result
 from uq.stats.beta_products import BetaProducts
 from uq.stats.clusters import Clusters, dealt
 from uq.stats.intervals import (
@@ -23,12 +24,12 @@ from uq.stats.quantile_functions import normal
 from uq.stats.survival_band import simultaneous_band
 
 
-def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
+def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Dataset:
     """Estimate how likely a lifetime exceeds each time.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         A lifetime, or one element of it such as ``time_to_depth[site=left,depth=0.00025]``. All
@@ -72,16 +73,17 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
     >>> bool(half["low"] < 0.5 < half["high"])
     True
     """
-    rows = independent_rows(ds)
-    wanted = {element.name for element in lifetimes(rows, output)}
+    result = Result.of(result)
+    rows = result.independent
+    wanted = {element.name for element in rows.lifetimes(output)}
     whole = population(rows, [output.partition("[")[0]], plain=plain)
     chosen = [element for element in whole if element.name in wanted]
     time = _times(chosen)
-    replicate = replicates_of(rows)
+    replicate = rows.replicates
     lost = any(element.failed.any() for element in chosen)
     found = [_variables(element, time, replicate, lost) for element in chosen]
 
-    of = rows[chosen[0].output]
+    of = rows.dataset[chosen[0].output]
     places = {dim: of[dim] for dim in of.dims if dim != "sample"}
     dims = tuple(places) if output == of.name else ()
     shape = tuple(of.sizes[dim] for dim in dims)

@@ -36,11 +36,11 @@ def ranked_rows(ds: xr.Dataset) -> xr.Dataset:
     return first_samples(ds, max(RANKED * samples // rows, 1)).load()
 
 
-def ranked_in_words(ds: xr.Dataset, ranked: xr.Dataset) -> str:
+def ranked_in_words(ranked: xr.Dataset, ds: xr.Dataset) -> str:
     """Return a phrase for the rows that are ranked: ``by the first 50 000 rows``; "" for all."""
-    if ds is ranked:
+    if ranked is ds:
         return ""
-    count = grouped(ds.sizes["sample"])
+    count = grouped(ranked.sizes["sample"])
     if DESIGNS[ds.attrs["design"]].imported:
         return f"by {count} rows chosen at random"
     return f"by the first {count} rows"

@@ -5,12 +5,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.population import Population
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
 from uq.assess.statistics.thresholds import share_of
-from uq.result.elements import Element, elements_of, output_names
+from uq.result.elements import Element
+from uq.result.result import Result
 from uq.result.variables import error_name
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
@@ -70,7 +70,7 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
 
     Rows count if their value is finite and not censored; one that states no error falls short.
     """
-    asked = context.rows[element.output].attrs.get("accuracy")
+    asked = context.rows.dataset[element.output].attrs.get("accuracy")
     error = stated_error(context.rows, element)
     if asked is None or error is None:
         return
@@ -94,15 +94,15 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     )
 
 
-def stated_error(ds: xr.Dataset, element: Element) -> Element | None:
+def stated_error(result: Result, element: Element) -> Element | None:
     """Return the error that the model states for an element of these rows, None if it states none.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
     element : Element
     """
     name = error_name(element.output)
-    if name not in output_names(ds):
+    if name not in result.output_names:
         return None
-    return next((one for one in elements_of(ds, [name]) if one.place == element.place), None)
+    return next((one for one in result.elements([name]) if one.place == element.place), None)
