@@ -8,6 +8,7 @@ from benchmarks.coverage.problems import computed, study_of, with_seed
 from benchmarks.coverage.tally import Tally
 from uq.assess.comparison import comparison
 from uq.assess.summary_json import comparison_json
+from uq.result.result import Result
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
 WIDE = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)

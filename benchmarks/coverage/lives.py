@@ -10,7 +10,7 @@ from scipy import stats
 from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.assess.life_fit import fits_of
-from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.assess.survival import survival

@@ -5,7 +5,7 @@ from typing import Any
 import pandas as pd
 
 from uq.assess.life_fit import Fit, fits_of
-from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.result.result import AnyResult, Result
 
 _PARAMETERS = ("shape", "scale", "median", "sigma")

@@ -8,6 +8,7 @@ from math import ceil, exp, isfinite, isnan, log, nan
 import numpy as np
 
 from uq.assess.conditional_survival import learnt_terms
+from uq.assess.counted_rows import Curve, censored_before
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.clusters import Clusters
@@ -52,6 +53,16 @@ class Population:
     part: Replicates
     confidence: float = CONFIDENCE
 
+    def probability_below(self, threshold: float) -> Estimate:
+        """Estimate P(Y < threshold); unknown where rows were censored below it."""
+        unknown = self.element.unknown_sides(threshold)
+        return Estimate(reason=censored_before(unknown)) if unknown.any() else self.below(threshold)
+
+    def probability_above(self, threshold: float) -> Estimate:
+        """Estimate P(Y > threshold); unknown where rows were censored below it."""
+        unknown = self.element.unknown_sides(threshold)
+        return Estimate(reason=censored_before(unknown)) if unknown.any() else self.above(threshold)
+
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
         kept = ~self.element.failed
@@ -81,6 +92,18 @@ class Population:
         if not isfinite(found.value):
             return found
         return self._trusted(found, self.element.present)
+
+    def life_quantile(self, probability: float) -> Estimate:
+        """Estimate the time by which a share has ended: no Kaplan-Meier curve has weights."""
+        return self.quantile(probability)
+
+    def survival(self, time: Floats) -> Curve:
+        """Estimate P(T > t) at times that ascend, with pointwise intervals."""
+        return Curve(*np.array([self.outliving(at).numbers for at in time]).reshape(-1, 3).T)
+
+    def rows_needed(self, probability: float) -> int | None:
+        """Return None: effective rows are counted with each quantile."""
+        return None
 
     def times_the_rows(self, threshold: float) -> float:
         """Return the variance of P(Y < threshold) from lives as computed over that of this one.

@@ -9,6 +9,7 @@ from typing import Any
 
 from uq.assess.estimators import Estimator
 from uq.assess.joint_bounds import JointBound, joint_bounds
+from uq.assess.sample import Sample, as_sample
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats import estimate_json
@@ -56,6 +57,10 @@ class Context:
     def joint_bounds(self) -> list[JointBound]:
         """The bounds of all elements that hold at once."""
         return joint_bounds(self.rows, self.analysis)
+
+    def sample(self, element: Element) -> Sample:
+        """Return the rows of an element as a sample."""
+        return as_sample(element, self.replicate)
 
     def present(self, element: Element) -> Replicates:
         """Return the replicate of each row in which the element has a value."""

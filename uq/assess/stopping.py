@@ -14,8 +14,7 @@ import numpy as np
 
 from uq.assess.design_sample import sample_of
 from uq.assess.joint_targets import wholes
-from uq.assess.life_quantiles import life_quantiles, quantile_estimate
-from uq.assess.population import Population
+from uq.assess.sample import as_sample
 from uq.assess.scaling import population
 from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
@@ -202,13 +201,14 @@ def statistic(
     -------
     Estimate
     """
+    sample = as_sample(element, replicate, level)
     if until.threshold is not None:
-        return _probability(element, until, replicate, level)
-    if until.quantile is not None and element.is_plain:
-        within = intervals.replicates_of_some(replicate, element.present)
-        return quantile_estimate(element, until.quantile, within, level)
-    if (p := until.probability) is not None:
-        return life_quantiles(element, {"": p}, replicate, level)[""]
+        is_above = until.above is not None
+        return (sample.probability_above if is_above else sample.probability_below)(until.threshold)
+    if until.quantile is not None:
+        return sample.quantile(until.quantile)
+    if until.probability is not None:
+        return sample.life_quantile(until.probability)
     values = element.at_most
     if not len(values):
         return NOTHING
@@ -225,23 +225,6 @@ def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Esti
         return found
     low, high = corrected_mean_interval(values, replicate, level)
     return replace(found, low=low, high=high)
-
-
-def _probability(
-    element: Element, until: "Until", replicate: intervals.Replicates, level: float
-) -> Estimate:
-    threshold = until.threshold
-    assert threshold is not None
-    if not element.is_plain:
-        of = Population(element, replicate, level)
-        return of.below(threshold) if until.above is None else of.above(threshold)
-    if element.unknown_sides(threshold).any():
-        return Estimate(reason="some rows are censored before that")
-    kept, values = ~element.failed, element.for_thresholds
-    hits = (values > threshold if until.above is not None else values < threshold)[kept]
-    within = intervals.replicates_of_some(replicate, kept)
-    value = float(hits.mean()) if kept.any() else np.nan
-    return Estimate(value, *intervals.share_interval(hits, within, level))
 
 
 def _indices(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from uq.assess import stopping_status
+from uq.assess.counted_rows import share_of
 from uq.assess.estimators import in_categories, share
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.life_fit import Fit, fits_of
@@ -15,7 +16,6 @@ from uq.assess.reweighting import Weighting
 from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
-from uq.assess.statistics.thresholds import share_of
 from uq.result.elements import (
     Element,
     Mask,

@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from uq.assess.counted_rows import share_of
 from uq.assess.failed_rows import failed_share_bounds
-from uq.assess.statistics.thresholds import SIDES, event, share_of
+from uq.assess.statistics.thresholds import SIDES
 from uq.contract import Floats
 from uq.errors import InputError, first_fault_alone
 from uq.result.elements import Element, elements_of, shown_outputs
@@ -161,9 +162,9 @@ def _estimates(
             )
             yield "mean", Sharpened(*found, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
-        sides = event(element, threshold)
-        if sides is None or not kept.any():
+        if element.unknown_sides(threshold).any() or not kept.any():
             continue
+        sides = (element.above(threshold) > 0, element.below(threshold) > 0)
         for sign, hits in zip(SIDES.values(), sides, strict=True):
             found = controlled_share(
                 hits, kept, control=control.for_thresholds, many=many.for_thresholds

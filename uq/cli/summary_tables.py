@@ -9,9 +9,9 @@ from uq.assess.answer.answer import conclude
 from uq.assess.answer.facts import Answer
 from uq.assess.findings import Findings
 from uq.assess.life_fit import Fit
-from uq.assess.life_quantiles import B_LIVES
 from uq.assess.regime_boundary import in_words
 from uq.assess.statistic import Reader, Statistic
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import REGIME, Described, Summary
 from uq.assess.targets import split_name
 from uq.cli.printing import console, grid, heading, note, paragraph

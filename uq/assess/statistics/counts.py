@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from uq.assess.counted_rows import share_of
 from uq.assess.population import Population
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
-from uq.assess.statistics.thresholds import share_of
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.result.variables import error_name

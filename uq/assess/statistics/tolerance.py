@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.assess.life_quantiles import whenever_censored_rows_end
+from uq.assess.counted_rows import whenever_censored_rows_end
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json

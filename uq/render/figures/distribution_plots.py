@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.assess.life_quantiles import B_LIVES
 from uq.assess.statistic import Statistic
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import Described, Summary, summarise
 from uq.assess.survival import survival
 from uq.render.figures.elements_plot import (
