@@ -37,7 +37,7 @@ def worlds(folder):
 def apart(rows, number):
     """Return the rods of one world, which is the truth, and the rows of all others."""
     in_world = rows["world"].values == number
-    return rows.isel(sample=in_world), rows.isel(sample=~in_world)
+    return rows.isel(row=in_world), rows.isel(row=~in_world)
 
 
 def campaign(truth, rng):
@@ -78,7 +78,7 @@ def main():
             taken.append(time.process_time() - began)
     longest = max(taken)
     print(
-        f"{len(taken)} campaigns of {2 * RODS} inspections, {others.sizes['sample']:,} rows:"
+        f"{len(taken)} campaigns of {2 * RODS} inspections, {others.sizes['row']:,} rows:"
         f" {np.median(taken):.2f} s of CPU each, {longest:.2f} s at most (goal {SECONDS:g} s)"
     )
     return 0 if longest <= SECONDS else "too slow"

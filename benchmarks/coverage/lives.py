@@ -186,18 +186,18 @@ def _blank(rows, replicates):
 def with_life(values, censored=None, replicates=1, kind="lifetime"):
     """Return a result whose output `life` has other values, in the order of its rows."""
     ds = _blank(len(values) // replicates, replicates)
-    ds = ds.assign(life=("sample", values, ds["life"].attrs | {"kind": kind}))
+    ds = ds.assign(life=("row", values, ds["life"].attrs | {"kind": kind}))
     if censored is None or not censored.any():
         return ds
     flag = {"role": "censored", "long_name": "whether life is only a lower bound"}
-    return ds.assign(life_censored=("sample", censored.astype(np.int8), flag))
+    return ds.assign(life_censored=("row", censored.astype(np.int8), flag))
 
 
 def _cut(ds, horizon):
     life = ds["life"].values
     flag = {"role": "censored", "long_name": "whether life is only a lower bound"}
-    ds = ds.assign(life=("sample", np.minimum(life, horizon), ds["life"].attrs))
-    return ds.assign(life_censored=("sample", (life > horizon).astype(np.int8), flag))
+    ds = ds.assign(life=("row", np.minimum(life, horizon), ds["life"].attrs))
+    return ds.assign(life_censored=("row", (life > horizon).astype(np.int8), flag))
 
 
 def _asymptotic(tally, law, life, parameters):

@@ -44,7 +44,7 @@ def few_hits(result: Result, target: IndexTarget, intervals: bool = True) -> tup
     if not (target.event or len(np.unique(values[np.isfinite(values)])) == 2):
         return ()
     if not result.why_no_statistics:
-        values = independent_rows(result.dataset.assign(hit=("sample", values)))["hit"].values
+        values = independent_rows(result.dataset.assign(hit=("row", values)))["hit"].values
     known = values[np.isfinite(values)]
     hits = known > known.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))

@@ -63,7 +63,11 @@ def levels(result: AnyResult, output: str | None = None, *, plain: bool = False)
         data["another_regime"] = ("sample", found.switching)
         for end, value in zip(("mean", "low", "high"), found.another_regime.numbers, strict=True):
             data["another_regime_mean" + f"_{end}" * (end != "mean")] = value
-    attrs = {name: getattr(found, name) for name in ("samples", "units", "repeats")}
+    attrs: dict[str, Any] = {
+        "samples": found.samples,
+        "units_per_sample": found.units,
+        "repeats": found.repeats,
+    }
     attrs |= quality(found.weights)
     coords = {"output": list(found.outputs), "level": list(SOURCES)}
     return xr.Dataset(data, coords, attrs)

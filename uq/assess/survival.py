@@ -77,7 +77,7 @@ def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Datas
     found = [_variables(element, time, replicate, lost) for element in chosen]
 
     of = rows.dataset[chosen[0].output]
-    places = {dim: of[dim] for dim in of.dims if dim != "sample"}
+    places = {dim: of[dim] for dim in of.dims if dim != "row"}
     dims = tuple(places) if output == of.name else ()
     shape = tuple(of.sizes[dim] for dim in dims)
     data = {}

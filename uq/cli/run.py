@@ -108,7 +108,7 @@ def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixe
         if (text := result.dataset["status"].attrs.get(f"example_{status.name.lower()}"))
     ]
     print(
-        f"{failed} of {result.dataset.sizes['sample']} rows failed, more than max_failed = "
+        f"{failed} of {result.dataset.sizes['row']} rows failed, more than max_failed = "
         f"{study.analysis.max_failed:g} allows ({plain_line('; '.join(examples))})",
         file=sys.stderr,
     )

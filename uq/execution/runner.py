@@ -93,7 +93,7 @@ def run(
     Examples
     --------
     >>> ds = uq.run("studies/ishigami.toml")  # also in results/ishigami.nc
-    >>> ds.sizes["sample"]
+    >>> ds.sizes["row"]
     10240
     """
     if not isinstance(study, Study):

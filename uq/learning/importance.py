@@ -90,7 +90,7 @@ def with_rounds(
     names = list(study_rows.dataset.data_vars)
     new = xr.concat(
         [round_rows[names].drop_vars(("replicate", "group", "block")) for round_rows in rounds],
-        "sample",
+        "row",
         data_vars="minimal",
         coords="minimal",
         compat="override",
@@ -98,28 +98,25 @@ def with_rounds(
         combine_attrs="override",
     )
     new = new.assign_coords(
-        {
-            name: ("sample", values)
-            for name, values in _places(study_rows, new.sizes["sample"]).items()
-        }
+        {name: ("row", values) for name, values in _places(study_rows, new.sizes["row"]).items()}
     )
     combined = xr.concat(
         [study_rows.dataset, new],
-        "sample",
+        "row",
         data_vars="minimal",
         coords="minimal",
         compat="override",
         join="override",
         combine_attrs="override",
     )
-    sizes = [n, *(round_rows.sizes["sample"] for round_rows in rounds)]
+    sizes = [n, *(round_rows.sizes["row"] for round_rows in rounds)]
     about = {"role": IMPORTANCE, "units": "1"}
     meaning = "how much the row counts before the inspections"
     combined = combined.assign(
         {
-            IMPORTANCE: ("sample", np.exp(log_importance), about | {"long_name": meaning}),
+            IMPORTANCE: ("row", np.exp(log_importance), about | {"long_name": meaning}),
             ROUND: (
-                "sample",
+                "row",
                 np.repeat(np.arange(len(sizes)), sizes),
                 about | {"long_name": "0: a row of the study"},
             ),
@@ -128,7 +125,7 @@ def with_rounds(
     size = int(study_rows.dataset.attrs["samples"]), int(study_rows.dataset.attrs["replicates"])
     count = len(np.unique(repetition))
     return combined.assign_coords(
-        sample=combined["sample"].copy(data=np.arange(combined.sizes["sample"])),
+        row=combined["row"].copy(data=np.arange(combined.sizes["row"])),
         replicate=combined["replicate"].copy(data=repetition),
     ).assign_attrs({"samples": len(repetition) // count, "replicates": count, OWN_SIZE: size})
 

@@ -99,13 +99,13 @@ def as_result(
     n = len(rows)
     meaning = "how much the row counts, given the inspections"
     attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
-    both = ("inspected", "sample")
+    both = ("inspected", "row")
     most = [weighted.weights.most for weighted in _units(posterior)]
     of_units = np.stack(
         [_spread_out(weighted, weighted.weights.weights, n, 0.0) for weighted in _units(posterior)]
     )
     variables = {
-        WEIGHT: ("sample", posterior.any_unit.weights.weights, attrs),
+        WEIGHT: ("row", posterior.any_unit.weights.weights, attrs),
         UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
         UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
     }
@@ -161,9 +161,9 @@ def _of_law(posterior: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
     of_scores = attrs | {"long_name": f"normal score before, of {posterior.scale.name}"}
     units = np.stack([weighted.without_own(pulls) for weighted in _units(posterior)])
     return {
-        LAW_PULLS: (("sample", "term"), posterior.any_unit.without_own(pulls), of_pulls),
-        UNIT_PULLS: (("inspected", "sample", "term"), units, of_pulls),
-        LAW_FOLLOWS: (("sample", "term"), posterior.any_unit.terms, of_terms),
+        LAW_PULLS: (("row", "term"), posterior.any_unit.without_own(pulls), of_pulls),
+        UNIT_PULLS: (("inspected", "row", "term"), units, of_pulls),
+        LAW_FOLLOWS: (("row", "term"), posterior.any_unit.terms, of_terms),
         LAW_SCORES: (SCORE, law.scores, of_scores),
     }
 

@@ -47,7 +47,7 @@ class Result:
         if isinstance(source, Result):
             return source
         if isinstance(source, xr.Dataset):
-            return cls(source)
+            return cls(result_file.upgraded(source))
         if isinstance(source, str | Path):
             return cls.open(source)
         raise InputError(
@@ -61,11 +61,11 @@ class Result:
 
     def __len__(self) -> int:
         """Return the number of rows."""
-        return self.dataset.sizes["sample"]
+        return self.dataset.sizes["row"]
 
     def take(self, rows: slice | Sequence[int] | NDArray[Any]) -> "Result":
         """Return some rows: a slice, a mask or their places."""
-        return Result(self.dataset.isel(sample=rows))
+        return Result(self.dataset.isel(row=rows))
 
     # The study and its design
 

@@ -57,7 +57,7 @@ def lowest_row(result: Result, name: str) -> Choice:
     words = f"the lowest {element.name}"
     if earlier:
         words += f"; {counted(earlier, 'row was', 'rows were')} censored earlier"
-    return Choice(int(result.dataset["sample"].values[place]), words)
+    return Choice(int(result.dataset["row"].values[place]), words)
 
 
 def lowest_rows(result: Result, name: str, most: int) -> list[tuple[int, float]]:
@@ -78,7 +78,7 @@ def lowest_rows(result: Result, name: str, most: int) -> list[tuple[int, float]]
     """
     element, order = next(_ordered(result, name))
     ended = [i for i in order[:most] if not (element.censored[i] or element.never[i])]
-    return [(int(result.dataset["sample"].values[i]), float(element.values[i])) for i in ended]
+    return [(int(result.dataset["row"].values[i]), float(element.values[i])) for i in ended]
 
 
 def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
@@ -130,7 +130,7 @@ def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
     else:  # it depends on censored rows, or is never
         place = order[min(max(round(probability * len(order)), len(ended)), len(order) - 1)]
     words = f"closest to the {100 * probability:g} % quantile of {element.name}"
-    return Choice(int(rows.dataset["sample"].values[place]), words)
+    return Choice(int(rows.dataset["row"].values[place]), words)
 
 
 def _ordered(result: Result, name: str) -> Iterator[tuple[Element, NDArray[np.intp]]]:

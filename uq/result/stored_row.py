@@ -19,7 +19,7 @@ def place_of(result: Result, number: int) -> int:
         When there is no such row.
     """
     result.refuse_empty()
-    numbers = result.dataset["sample"].values
+    numbers = result.dataset["row"].values
     places = (numbers == number).nonzero()[0]
     if not len(places):
         raise InputError(f"no such row: {number} (allowed: {numbers.min()} to {numbers.max()})")

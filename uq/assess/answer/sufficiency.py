@@ -150,6 +150,6 @@ def needed(one: Unsettled, result: Result) -> str:
     """Return the rows that would settle it, and of how many samples where these have several."""
     many = "more than" if one.factor > MOST else "about"
     factor = min(one.factor, MOST)
-    rows = f"{many} {rows_in_words(factor * result.dataset.sizes['sample'])} rows"
+    rows = f"{many} {rows_in_words(factor * result.dataset.sizes['row'])} rows"
     samples = rows_in_words(factor * int(result.dataset.attrs["samples"]))
     return f"{rows} ({samples} samples)" if result.is_nested else rows

@@ -107,7 +107,7 @@ def rows_inside(
         "file": shlex.quote(plain(file)),
         "total": len(whole),
         "allowed": _allowed(findings.result),
-        "numbers": encoded(rows.dataset["sample"].values, "<i4"),
+        "numbers": encoded(rows.dataset["row"].values, "<i4"),
         "failed": encoded(rows.failed, "u1"),
         "columns": columns,
         "categories": list(_categories(rows)),
@@ -120,7 +120,7 @@ def rows_inside(
 
 def _allowed(result: Result) -> list[int]:
     """Return the first and last number of a row, whether the page holds it or not."""
-    numbers = result.dataset["sample"].values
+    numbers = result.dataset["row"].values
     return [int(numbers.min()), int(numbers.max())]
 
 

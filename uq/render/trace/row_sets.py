@@ -30,7 +30,7 @@ class Run(NamedTuple):
 
 def runs_of(rows: Result) -> list[Run]:
     """Return the numbers of some rows of a result as runs, block by block."""
-    numbers, blocks = rows.dataset["sample"].values, rows.dataset["block"].values
+    numbers, blocks = rows.dataset["row"].values, rows.dataset["block"].values
     return [
         Run(label, *run)
         for code, label in flags(rows.dataset["block"])
