@@ -169,7 +169,7 @@ def _quantity(
             known_of(element),
             element.is_lifetime,
         ),
-        tuple(_events(findings, described, element, unit)),
+        tuple(_events(findings, described, element)),
         _as_computed(_ranking(findings, element, unit), described),
         wanted,
         earliest(findings, element, unit, context.replicate)
@@ -230,9 +230,7 @@ def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | Non
     return replace(ranking, what=f"{ranking.what}, of lives as computed")
 
 
-def _events(
-    findings: Findings, described: Described, element: Element, unit: DisplayUnit
-) -> Iterator[Event]:
+def _events(findings: Findings, described: Described, element: Element) -> Iterator[Event]:
     side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
     for one in described.parts["thresholds"]:
         if one.key[-1] != side or one.at is None:
