@@ -21,7 +21,7 @@ from benchmarks import newmark
 from benchmarks.figures import Figure, keep
 from models.beam import MODEL, exact
 from models.beam.parameters import REGIMES, Params, Settings
-from tests.models.beam.incremental import follow
+from tests.support.references.incremental import follow
 from uq.study.definition import load_study
 from uq.study.row_sampling import row_block
 

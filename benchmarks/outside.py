@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.figures import Figure, keep
-from tests.their_server import TheirServer
+from tests.support.machines.their_server import TheirServer
 from uq.machines.function import machine, model_of
 from uq.machines.program import program_of
 from uq.machines.server import server_model

@@ -4,7 +4,6 @@
 page drawn, a brush from the move of a handle to the page drawn, and the same for a tolerance.
 """
 
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -17,8 +16,6 @@ from uq.result.result import Result
 from uq.study import row_sampling
 from uq.study.definition import study_from_text
 from uq.study.evaluate import evaluate
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "uq"))
 
 ROWS = 100_000
 REPEAT = 9
@@ -69,7 +66,7 @@ def moved(browser, selector, handle, steps):
 
 def main():
     """Print size and times."""
-    from browser import tab
+    from tests.support.pages.browser import tab
 
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -8,11 +8,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
-
-HOUSE = Path(__file__).parents[1]
-sys.path.insert(0, str(HOUSE / "docs"))
-
-from layers import (  # noqa: E402
+from layers import (
     DEFERRED,
     MACHINES,
     READERS,
@@ -22,6 +18,8 @@ from layers import (  # noqa: E402
     place_of,
     reading_order,
 )
+
+HOUSE = Path(__file__).parents[1]
 
 SIDE_BY_SIDE = 12
 """Modules that one folder of a machine may hold, its ``__init__`` apart."""

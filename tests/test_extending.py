@@ -1,37 +1,34 @@
 """What is added from outside by one entry of a table appears everywhere it should."""
 
 import json
-import sys
 from pathlib import Path
 from typing import Literal
 
+import generated
 import numpy as np
 import pytest
 import scipy
+from computed import kinds
+
+from uq import open_result, plots, sensitivity, summary
+from uq.assess.statistic import Statistic
+from uq.assess.statistics.table import STATISTICS
+from uq.indices.index import IndexKind, Indices
+from uq.indices.method import SensitivityMethod
+from uq.indices.methods import METHODS
+from uq.render.figures import subjects
+from uq.render.figures.catalogue import Entry
+from uq.render.figures.panel import column, finish
+from uq.render.html.page import page
+from uq.sampling.design import Design
+from uq.sampling.designs import DESIGNS
+from uq.sampling.law import Law, Positive
+from uq.sampling.laws import LAWS
+from uq.sampling.unit_cube import monte_carlo
+from uq.stats.estimate import Estimate
+from uq.study.schema import json_schema
 
 HOUSE = Path(__file__).parents[1]
-sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
-
-import generated  # noqa: E402
-from computed import kinds  # noqa: E402
-
-from uq import open_result, plots, sensitivity, summary  # noqa: E402
-from uq.assess.statistic import Statistic  # noqa: E402
-from uq.assess.statistics.table import STATISTICS  # noqa: E402
-from uq.indices.index import IndexKind, Indices  # noqa: E402
-from uq.indices.method import SensitivityMethod  # noqa: E402
-from uq.indices.methods import METHODS  # noqa: E402
-from uq.render.figures import subjects  # noqa: E402
-from uq.render.figures.catalogue import Entry  # noqa: E402
-from uq.render.figures.panel import column, finish  # noqa: E402
-from uq.render.html.page import page  # noqa: E402
-from uq.sampling.design import Design  # noqa: E402
-from uq.sampling.designs import DESIGNS  # noqa: E402
-from uq.sampling.law import Law, Positive  # noqa: E402
-from uq.sampling.laws import LAWS  # noqa: E402
-from uq.sampling.unit_cube import monte_carlo  # noqa: E402
-from uq.stats.estimate import Estimate  # noqa: E402
-from uq.study.schema import json_schema  # noqa: E402
 
 # A figure
 

@@ -6,17 +6,15 @@ import sys
 from pathlib import Path
 from textwrap import dedent
 
+import generated
 import numpy as np
 import pytest
 
+from uq import open_result, summary
+from uq.render.html.page import page
+from uq.study.schema import json_schema
+
 HOUSE = Path(__file__).parents[1]
-sys.path.insert(0, str(HOUSE / "docs"))
-
-import generated  # noqa: E402
-
-from uq import open_result, summary  # noqa: E402
-from uq.render.html.page import page  # noqa: E402
-from uq.study.schema import json_schema  # noqa: E402
 
 PENDULUM = """
     from dataclasses import dataclass

@@ -1,22 +1,13 @@
 """Real runs of the command line in processes of their own, which can be killed."""
 
 import multiprocessing
-import os
-import signal
-import time
 from collections import Counter
-from pathlib import Path
-from typing import NamedTuple
 
-import command
 import pytest
 from faulty_studies import FAULTY
+from killed_runs import MODEL, Command, kept, until
 
-from uq.execution.row_folder import history
 from uq.study.definition import load_study
-
-PATIENCE = 180.0
-"""How long a busy machine may take for what should take a moment [s]."""
 
 OUTCOMES = {
     "SIGKILL of a run": "resumes, bit-identical",
@@ -70,35 +61,6 @@ OUTCOMES = {
     "row: dtype": "the model is refused with a message",
 }
 """What is done to runs, and what the tests demand then: in any case that no row is lost."""
-
-OUT = Path("results/small.nc")
-ROWS = Path("results/small.nc.rows")
-
-
-class Command:
-    """One ``uq`` command under way."""
-
-    def __init__(self, context, folder, arguments, environment):
-        self.output = folder / f"output-{time.monotonic_ns()}"
-        self.process = context.Process(
-            target=command.run, args=(folder, arguments, environment, self.output)
-        )
-        self.process.start()
-
-    def send(self, number):
-        os.kill(self.process.pid, number)
-
-    def wait(self):
-        """Return exit code and all that was printed."""
-        self.process.join(PATIENCE)
-        assert self.process.exitcode is not None, "waited in vain"
-        text = self.output.read_text() if self.output.exists() else ""
-        self.output.unlink(missing_ok=True)
-        return self.process.exitcode, text
-
-    def kill(self):
-        self.send(signal.SIGKILL)
-        return self.wait()
 
 
 @pytest.fixture(scope="session")
@@ -178,20 +140,6 @@ def pytest_terminal_summary(terminalreporter):
     terminalreporter.write_line("\n".join(lines))
 
 
-class Kept(NamedTuple):
-    """What the journal says is kept."""
-
-    chunks: int
-    rows: int
-
-
-def kept():
-    """Return how many chunk files and rows the journal names."""
-    found = history(ROWS)
-    records = found.chunks if found else []
-    return Kept(len(records), sum(record.rows for record in records))
-
-
 @pytest.fixture
 def study(write_study):
     """Return the path of a study some of whose rows fail."""
@@ -223,13 +171,3 @@ def undisturbed(study, call, folder, results={}):  # noqa: B006  each computed o
         assert call("run", study, *MODEL, "-o", "undisturbed.nc")[0] == 0
         results[text] = (folder / "undisturbed.nc").read_bytes()
     return results[text]
-
-
-MODEL = ("--model", "command:PATIENT", "--workers", "0", "--quiet")
-
-
-def until(condition):
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.0005)

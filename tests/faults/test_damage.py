@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from conftest import MODEL, OUT, ROWS, until
+from killed_runs import MODEL, OUT, ROWS, until
 from wordings import sentence
 
 import uq

@@ -1,7 +1,7 @@
 """A study that is edited between runs: other rows are refused, more rows are appended."""
 
 import pytest
-from conftest import MODEL, OUT, ROWS, kept, until
+from killed_runs import MODEL, OUT, ROWS, kept, until
 from wordings import sentence
 
 import uq

@@ -8,7 +8,7 @@ import signal
 
 import psutil
 import pytest
-from conftest import MODEL, OUT, PATIENCE, ROWS, kept, until
+from killed_runs import MODEL, OUT, PATIENCE, ROWS, kept, until
 from wordings import sentence
 
 import uq

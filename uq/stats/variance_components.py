@@ -119,7 +119,7 @@ def nested_shares(
     share p, on the scale log((p + e) / (1 - p + f)), where e and f are the noise that was
     subtracted from a component: what is left are ratios of mean squares, which are positive, skewed
     as their logarithms suppose, and not pinned where a component vanishes. Analytic
-    variances are added to the components. Measured in `tests/uq/test_coverage_levels.py`.
+    variances are added to the components. Measured in `tests/uq/assess/test_coverage_levels.py`.
 
     References
     ----------

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from exact_beams import at_omega, set_up
+from return_map import first_crossing, return_map
 
 from models.beam.branches.orbits import find_orbit, settled_orbit
 from models.beam.exact.passage import passage
 from models.beam.exact.tuning import Tuning
-from tests.models.beam.return_map import first_crossing, return_map
 
 KNOWN = {5.61: (3.919359, 3.394367), 9.9: (82.55679, 29.56878), 9.5: (32.36390, 32.36390)}
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path += [str(Path(__file__).parent / name) for name in ("numerics", "beam", "mole", "vibrator")]
+TESTS = Path(__file__).parents[2] / "models"
+sys.path += [str(TESTS / name) for name in ("numerics", "beam", "mole", "vibrator")]
 
 import test_dop853  # noqa: E402  (found in the folders above)
 import test_lanes  # noqa: E402

@@ -1,17 +1,14 @@
 """Pictures of the machines on a phone: whole, and their letters are legible."""
 
 import shutil
-import sys
 from pathlib import Path
 
+import generated
 import pytest
+from browser import CHROMIUM, tab
+from sketches import sheet
 
-HOUSE = Path(__file__).parents[1]
-sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
-
-import generated  # noqa: E402
-from browser import CHROMIUM, tab  # noqa: E402
-from sketches import sheet  # noqa: E402
+HOUSE = Path(__file__).parents[2]
 
 PHONE = 375  # px
 SMALLEST = 12.0  # letters are drawn with 11 points

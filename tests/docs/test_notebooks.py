@@ -11,7 +11,7 @@ from nbclient import NotebookClient
 
 import uq
 
-HOUSE = Path(__file__).parents[1]
+HOUSE = Path(__file__).parents[2]
 NOTEBOOKS = sorted((HOUSE / "notebooks").glob("*.ipynb"))
 FEWER = "7"
 """A seventh of the rows: fewer have no sensitivities to show."""

@@ -11,7 +11,12 @@ import tomllib
 from inspect import isfunction
 from pathlib import Path
 
+import first_answer
+import generated
+import house
+import pages
 import pytest
+import sketches
 import yaml
 from matplotlib import pyplot
 
@@ -25,14 +30,7 @@ from uq.render.html.page import page
 from uq.study.definition import study_from_text
 from uq.study.installed_models import find_model, model_names
 
-HOUSE = Path(__file__).parents[1]
-sys.path.insert(0, str(HOUSE / "docs"))
-
-import first_answer  # noqa: E402
-import generated  # noqa: E402
-import house  # noqa: E402
-import pages  # noqa: E402
-import sketches  # noqa: E402
+HOUSE = Path(__file__).parents[2]
 
 SOURCES = {
     str(path.relative_to(HOUSE)): path.read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
 """Every 95 % interval of a Sobol' index holds the truth in 90 to 99 % of 200 repetitions.
 
-``pytest -m slow -s tests/uq/test_coverage_indices.py`` prints the table.
+``pytest -m slow -s tests/uq/indices/test_coverage_indices.py`` prints the table.
 """
 
 from math import prod

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 PAPERS = {
     "Beam": ["Figure 2", "Figure 3", "Figure 4", "Figure 5", "Figure 6", "Journal paper"],
     "Vibrator": ["Table 1", "Figure 5", "Figure 6", "Figure 7", "Figure 8"],

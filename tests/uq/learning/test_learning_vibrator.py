@@ -12,7 +12,7 @@ from uq.learning.posterior import posterior
 from uq.learning.trust import distrust
 from uq.study.definition import load_study
 
-STUDY = Path(__file__).parents[2] / "studies" / "vibrator-tolerances.toml"
+STUDY = Path(__file__).parents[3] / "studies" / "vibrator-tolerances.toml"
 ERRORS = {"disphasing_angle": np.radians(1.0), "speed": 0.1}  # rad, rad/s
 
 

@@ -2,20 +2,17 @@
 
 import os
 import re
-import sys
 from inspect import isfunction
 from pathlib import Path
 
+import gallery
 import pytest
 from matplotlib.figure import Figure
 
 import uq
 from uq import plots
 
-HOUSE = Path(__file__).parents[1]
-sys.path.insert(0, str(HOUSE / "docs"))
-
-import gallery  # noqa: E402
+HOUSE = Path(__file__).parents[2]
 
 EXAMPLES = {one.name: one for one in gallery.EXAMPLES}
 FEWER = {

@@ -1,6 +1,6 @@
 """Every 95 % interval that is printed holds the truth in 90 to 99 % of 200 repetitions.
 
-``pytest -m slow -s tests/uq/test_coverage.py`` prints the table.
+``pytest -m slow -s tests/uq/assess/test_coverage.py`` prints the table.
 """
 
 from itertools import product

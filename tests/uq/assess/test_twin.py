@@ -224,7 +224,7 @@ def _vibrator(folder):
 def api_root():
     from pathlib import Path
 
-    return Path(__file__).parents[2]
+    return Path(__file__).parents[3]
 
 
 def test_cheap_outputs_have_the_bits_of_the_dear_ones():

@@ -2,19 +2,17 @@
 
 import re
 import shutil
-import sys
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("ziamath", reason="part of the packages for the documentation")
 
-HOUSE = Path(__file__).parents[1]
-sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
+import formulas
+import pages
+from browser import CHROMIUM, tab
 
-import formulas  # noqa: E402
-import pages  # noqa: E402
-from browser import CHROMIUM, tab  # noqa: E402
+HOUSE = Path(__file__).parents[2]
 
 MACHINES = sorted((HOUSE / "docs" / "machines").glob("*.md"))
 _HEAD = """<!doctype html><meta charset="utf-8"><link rel="stylesheet" href="pages.css">

@@ -207,7 +207,7 @@ def test_the_command(uq, folder, result):
 
 
 def test_a_study_is_run_first(uq, folder):
-    study = Path(__file__).parents[2] / "studies" / "exponential-wear.toml"
+    study = Path(__file__).parents[3] / "studies" / "exponential-wear.toml"
     (folder / "found.csv").write_text("unit,output,kind,time\nA,life,survived,1\n")
     ended = uq("update", study, "found.csv", "-o", "posterior.nc", "--rows", "200", "--json")
     assert ended.code == 0, ended.err
