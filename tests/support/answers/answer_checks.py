@@ -12,6 +12,7 @@ from scipy.stats import binomtest
 
 from uq.assess.findings import Findings
 from uq.result.elements import independent_rows, labels, named_elements, replicates_of
+from uq.result.result import Result
 from uq.result.result_file import failed
 
 
@@ -20,7 +21,7 @@ class Checker:
 
     def __init__(self, ds):
         self.ds, self.rows = ds, independent_rows(ds)
-        self.findings = Findings(ds)
+        self.findings = Findings(Result(ds))
 
     def wrong(self, found):
         """Return what is wrong with an answer, in words."""
@@ -53,7 +54,7 @@ class Checker:
         yield from denied_mixing(self.ds, found)
         yield from denied_levels(self.ds, found)
         yield from denied_enough(self.ds, found)
-        shown = [self.ds.sizes["sample"], *([found.failed] if found.failed else [])]
+        shown = [self.ds.sizes["row"], *([found.failed] if found.failed else [])]
         counts = re.sub(r"(?<=\d) (?=\d{3}\b)", "", found.rows_sentence)
         if sorted(numbers_in(counts)) != sorted(shown):
             yield found.rows_sentence
@@ -262,7 +263,7 @@ class Checker:
             return
         values = self.values(one)
         (every,) = named_elements(self.ds, one.name)  # rows that are not independent are named, too
-        everything, everywhere = every.values, self.ds["sample"].values
+        everything, everywhere = every.values, self.ds["row"].values
         for number, life in re.findall(r"(\d+) \(([\d.e+-]+)", said.first):
             (own,) = everything[everywhere == int(number)]
             rank = (everything < own).sum()

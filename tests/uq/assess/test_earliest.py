@@ -13,6 +13,7 @@ from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
 from uq.render.html.embedded_rows import rows_inside
 from uq.result.elements import independent_rows, named_elements
+from uq.result.result import Result
 from uq.result.row_choice import lowest_row
 
 
@@ -33,20 +34,20 @@ def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
     ds = lived(lambda x1, x4: 3600 * np.exp(-x4 - 0.3 * x1))
     found = answer(ds).lead.earliest
     order = np.argsort(ds["life"].values)[:3]
-    assert found.rows == tuple(ds["sample"].values[order])
+    assert found.rows == tuple(ds["row"].values[order])
     named = re.findall(r"(\d+) \(([\d.e+]+)", found.first)
     assert [int(number) for number, _ in named] == list(found.rows)
     shown = [float(life) * found.unit.per for _, life in named]
     assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
     assert found.command == "uq row OUT --lowest life"
-    assert lowest_row(ds, "life").number == found.rows[0]
+    assert lowest_row(Result(ds), "life").number == found.rows[0]
 
 
 def test_commands_that_compute_rows_name_a_model_that_is_not_installed():
-    own = Findings(kinds(analysis={"outputs": ["life"]}))
-    assert answer(own.ds).lead.earliest.command.endswith("]' --model FILE")
+    own = Findings(Result(kinds(analysis={"outputs": ["life"]})))
+    assert answer(own.result).lead.earliest.command.endswith("]' --model FILE")
     assert rows_inside(own, "a.nc")["model"] == " --model FILE"
-    assert rows_inside(Findings(lived(lambda x1, x4: x1)), "a.nc")["model"] == ""
+    assert rows_inside(Findings(Result(lived(lambda x1, x4: x1))), "a.nc")["model"] == ""
 
 
 def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():
@@ -122,7 +123,7 @@ def test_replicates_show_what_differs_and_one_design_alone_does_not():
     found = answer(ds).lead.earliest
     assert found.inputs[0].name == "x4"
     rows = independent_rows(ds)
-    assert found.of == rows.sizes["sample"]
+    assert found.of == rows.sizes["row"]
     assert answer(lived(law, 512, "sobol")).lead.earliest.sentence == ""
 
 
@@ -171,7 +172,7 @@ def test_page_terminal_and_json_say_the_same():
     html = str(fragment(found))
     assert "What ends first" in html and said.command in html
     assert said.sentence in repr(found) and said.first in repr(found)
-    plain = answer_json(conclude(Findings(ds)))["quantities"]["life"]["earliest"]
+    plain = answer_json(conclude(Findings(Result(ds))))["quantities"]["life"]["earliest"]
     assert (
         plain["lives"] == dict(zip(map(str, said.rows), said.lives, strict=True))
         and plain["sentence"] == said.sentence

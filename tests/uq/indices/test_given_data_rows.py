@@ -120,7 +120,7 @@ def test_given_data_drops_rows_and_counts_them():
         assert found["groups_dropped"] == int(ds["y"].isnull().sum()) > 0
         assert found["rows_used"] == 200 - found["groups_dropped"]
         assert found["outputs"]["y"]["rows_used"] == found["rows_used"]
-        sound = ds.isel(sample=~np.isnan(ds["y"].values))
+        sound = ds.isel(row=~np.isnan(ds["y"].values))
         alone = indices(sound, method)["outputs"]["y"]
         assert alone == found["outputs"]["y"] | {"groups_dropped": 0}
 

@@ -13,6 +13,7 @@ from uq.explore.updating import update
 from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.remaining_life import ANY, remaining
+from uq.result.result import Result
 
 LEFT = "life[side=left,depth=100.0]"
 
@@ -22,7 +23,7 @@ def said(unit, kind, time, output="life"):
 
 
 def lives_of(ds, *by):
-    return {(one.unit, one.output): one for one in remaining(ds, by)}
+    return {(one.unit, one.output): one for one in remaining(Result(ds), by)}
 
 
 @pytest.fixture(scope="module")

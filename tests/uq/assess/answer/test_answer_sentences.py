@@ -28,6 +28,7 @@ from uq.assess.findings import Findings
 from uq.cli.summary_tables import show_answer
 from uq.contract import Status
 from uq.render.html.answer import fragment
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 
 DAY = 86400.0
@@ -233,11 +234,11 @@ def test_the_rarer_regimes_say_what_decides_them():
 
 @pytest.mark.parametrize("method", ["saltelli", "shapley", "sobol"])
 def test_nothing_is_settled_without_intervals(method):
-    found = Findings(linear(method, samples=512))
+    found = Findings(Result(linear(method, samples=512)))
     (said,) = verdict(found)
     assert said.startswith("Whether the rows are enough is not known: the rows of a")
     assert said.endswith("set replicates = 8.")
-    own = answer(found.ds)
+    own = answer(found.result)
     rules = {one.rule: one.text for one in own.advice}
     assert "set replicates = 8" in rules["rows"] and "nothing" not in rules
     ranking = own.lead.ranking
