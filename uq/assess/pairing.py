@@ -161,32 +161,40 @@ class Pair:
         self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
 
     def difference(
-        self, estimator: Estimator, samples: list[SelectedRows], known: list[Estimate]
+        self, estimator: Estimator, samples: list[SelectedRows], estimates: list[Estimate]
     ) -> Estimate:
         """Return an estimate from the second result less that from the first."""
         if self.kinship is Kinship.REPLICATES and not estimator.is_share:
-            value = known[1].value - known[0].value
-            own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
-            if not np.isfinite(own).all():
+            value = estimates[1].value - estimates[0].value
+            by_replicate = [
+                self._by_replicate(estimator, i, rows) for i, rows in enumerate(samples)
+            ]
+            if not np.isfinite(by_replicate).all():
                 return Estimate(value)
-            apart = own[1] - own[0]
-            if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
+            apart = by_replicate[1] - by_replicate[0]
+            if intervals.is_constant(
+                apart + np.abs(by_replicate).max()
+            ):  # they differ only by rounding
                 return Estimate(value)
             ends = intervals.scatter_interval(value, apart)
             return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
         if self.kinship is Kinship.WEIGHTED:
-            return two_samples.difference(known[0], known[1], self.unpaired)
-        if estimator.counts_hits and all(one is None for one in self._replicate):
-            known = [_newcombe(sample) for sample in samples]
+            return two_samples.difference(estimates[0], estimates[1], self.unpaired)
+        if estimator.counts_hits and all(replicate is None for replicate in self._replicate):
+            estimates = [_newcombe(sample) for sample in samples]
         elif estimator.averages:
-            known = [self._averaged(i, sample) for i, sample in enumerate(samples)]
+            estimates = [self._averaged(i, sample) for i, sample in enumerate(samples)]
         elif self._shared is not None and not estimator.is_share:
-            known = [_students(estimator, *pair) for pair in zip(samples, known, strict=True)]
-        found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
-        wide = sum(one.high - one.low for one in known)
-        if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
-            return Estimate(found.value)  # equal in each pair, but for rounding
-        return found
+            estimates = [
+                _students(estimator, *pair) for pair in zip(samples, estimates, strict=True)
+            ]
+        between = two_samples.difference(
+            estimates[0], estimates[1], self._correlation(estimator, samples)
+        )
+        wide = sum(estimate.high - estimate.low for estimate in estimates)
+        if self._paired and between.high - between.low <= _ROUNDING * wide < np.inf:
+            return Estimate(between.value)  # equal in each pair, but for rounding
+        return between
 
     def are_equal(self, samples: list[SelectedRows]) -> bool:
         """Whether the rows are paired and both rows of each pair have the same numbers."""
@@ -220,14 +228,16 @@ class Pair:
         rows = int(np.count_nonzero(sample.kept))
         return float(exact_interval(0.0, rows, intervals.CONFIDENCE)[1])
 
-    def ratio(self, samples: list[SelectedRows], known: list[Estimate]) -> Estimate:
+    def ratio(self, samples: list[SelectedRows], estimates: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
-        if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
-            found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
-            return _factor(known[1].value / known[0].value, found[1], found[0])
+        if self.kinship is Kinship.REPLICATES and all(estimate.value > 0 for estimate in estimates):
+            by_replicate = [self._by_replicate(SD, i, sample) for i, sample in enumerate(samples)]
+            return _factor(
+                estimates[1].value / estimates[0].value, by_replicate[1], by_replicate[0]
+            )
         if self._shared is not None:
-            known = [_students(SD, *pair) for pair in zip(samples, known, strict=True)]
-        return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
+            estimates = [_students(SD, *pair) for pair in zip(samples, estimates, strict=True)]
+        return two_samples.ratio(estimates[0], estimates[1], self._correlation(SD, samples))
 
     @property
     def unpaired(self) -> float:
@@ -248,7 +258,7 @@ class Pair:
             first, second = (pull.numbers for pull in pulls)
             return correlation(first, second, self._shared, is_share=estimator.is_share)
         means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
-        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
+        if not all(np.isfinite(mean).all() and not intervals.is_constant(mean) for mean in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
 
@@ -279,12 +289,12 @@ class Pair:
     def _by_replicate(self, estimator: Estimator, i: int, sample: SelectedRows) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].dataset.attrs["replicates"])
         assert of is not None, "independent rows have no replicates"
-        found = np.full(count, np.nan)
+        estimates = np.full(count, np.nan)
         for r in range(count):
             values = sample.numbers[sample.kept & (of == r)]
             if len(values):
-                found[r] = estimator.of(values)
-        return found
+                estimates[r] = estimator.of(values)
+        return estimates
 
 
 def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
@@ -295,18 +305,20 @@ def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
     return SelectedRows(sample.kept, pull)
 
 
-def _students(estimator: Estimator, sample: SelectedRows, known: Estimate) -> Estimate:
+def _students(estimator: Estimator, sample: SelectedRows, estimate: Estimate) -> Estimate:
     """Return a moment with Student's interval, from which the difference of paired rows is built.
 
     The interval of a single moment allows for outliers that its rows do not show; most of them
     cancel in the difference.
     """
-    if not known.has_interval:
-        return known
+    if not estimate.has_interval:
+        return estimate
     low, high = intervals.scatter_interval(0.0, estimator.influence(sample.numbers[sample.kept]))
-    if estimator.is_scale and known.value > 0:  # by the logarithm, so that both ends are positive
-        low, high = known.value * np.expm1(np.array([low, high]) / known.value)
-    return Estimate(known.value, known.value + float(low), known.value + float(high))
+    if (
+        estimator.is_scale and estimate.value > 0
+    ):  # by the logarithm, so that both ends are positive
+        low, high = estimate.value * np.expm1(np.array([low, high]) / estimate.value)
+    return Estimate(estimate.value, estimate.value + float(low), estimate.value + float(high))
 
 
 def _newcombe(sample: SelectedRows) -> Estimate:

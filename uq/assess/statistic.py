@@ -89,32 +89,32 @@ class Listing:
     keeps_empty: bool = False
 
 
-def entry(one: "Statistic") -> dict[str, Any]:
+def entry(statistic: "Statistic") -> dict[str, Any]:
     """Return a statistic as JSON."""
-    found = estimate_json.whole(one.estimate)
-    if one.rows_needed is not None:
-        found["rows_needed"] = one.rows_needed
-    if one.of:
-        found["of"] = one.of
-    if one.otherwise is not None:
-        found["kaplan_meier"] = entry(one.otherwise)
-    return found | estimate_json.failed(one.failed)
+    document = estimate_json.whole(statistic.estimate)
+    if statistic.rows_needed is not None:
+        document["rows_needed"] = statistic.rows_needed
+    if statistic.of:
+        document["of"] = statistic.of
+    if statistic.otherwise is not None:
+        document["kaplan_meier"] = entry(statistic.otherwise)
+    return document | estimate_json.failed(statistic.failed)
 
 
 def entries(group: Sequence["Statistic"]) -> dict[str, Any]:
     """Return each statistic under the last part of its key."""
-    return {one.key[-1]: one.kind.entry(one) for one in group}
+    return {statistic.key[-1]: statistic.kind.entry(statistic) for statistic in group}
 
 
 def counts(group: Sequence["Statistic"]) -> dict[str, int | None]:
     """Return numbers of rows; None where no number will do."""
-    numbers = {one.key[-1]: one.estimate.value for one in group}
+    numbers = {statistic.key[-1]: statistic.estimate.value for statistic in group}
     return {name: int(count) if isfinite(count) else None for name, count in numbers.items()}
 
 
 def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
     """Return the facts of the statistics."""
-    return {name: fact for one in group for name, fact in one.facts.items()}
+    return {name: fact for statistic in group for name, fact in statistic.facts.items()}
 
 
 def count_in_words(value: float) -> str:

@@ -124,19 +124,21 @@ def interim_estimate(design: "DesignTable", result: Result) -> InterimEstimate:
     """
     assert design.until is not None
     estimates = _indices if design.until.index else _statistics
-    widest = max(estimates(design, result), key=lambda one: one.half_width)
+    widest = max(estimates(design, result), key=lambda estimate: estimate.half_width)
     return widest._replace(estimate=_explained(widest.estimate, design))
 
 
-def _explained(found: Estimate, design: "DesignTable") -> Estimate:
+def _explained(estimate: Estimate, design: "DesignTable") -> Estimate:
     """Return an estimate with the reason if it has no interval because nothing scatters."""
-    if found.reason or not (isfinite(found.value) and isnan(found.low) and isnan(found.high)):
-        return found
+    if estimate.reason or not (
+        isfinite(estimate.value) and isnan(estimate.low) and isnan(estimate.high)
+    ):
+        return estimate
     if _rests_on_replicates(design):
         part = "replicate"
     else:
         part = "path" if DESIGNS[design.method].layout is PATHS else "row"
-    return replace(found, reason=f"the same in each {part}")
+    return replace(estimate, reason=f"the same in each {part}")
 
 
 def ended(design: "DesignTable", result: Result) -> bool:
@@ -167,11 +169,11 @@ def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstima
     names = {element.name for element in rows.named_elements(until.output)}
     for element in population(rows, [until.output.partition("[")[0]]):
         if element.name in names:
-            found = statistic(element, until, replicate, level)
+            estimate = statistic(element, until, replicate, level)
             units = "1" if until.threshold is not None else element.units
             lost = _lost(element)
             what = f"{until.estimate} of {element.name}"
-            yield InterimEstimate(what, found, until.half_width, lost, units)
+            yield InterimEstimate(what, estimate, until.half_width, lost, units)
 
 
 def _lost(element: Element) -> str:
@@ -220,11 +222,11 @@ def statistic(
 
 def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
     """Estimate a mean: a few replicates show little of the skewness of their means."""
-    found = moments(values, replicate, level).mean
-    if replicate is None or intervals.parts_are_independent(replicate) or not found.has_interval:
-        return found
+    mean = moments(values, replicate, level).mean
+    if replicate is None or intervals.parts_are_independent(replicate) or not mean.has_interval:
+        return mean
     low, high = corrected_mean_interval(values, replicate, level)
-    return replace(found, low=low, high=high)
+    return replace(mean, low=low, high=high)
 
 
 def _indices(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:
@@ -237,21 +239,25 @@ def _indices(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]
     kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
     sample = replace(sample_of(result), confidence=confidence(design), difference=until.difference)
     for target in _targets(result, until.output):
-        own = replace(sample, values=target.values)
-        found = indices_of_target(result, METHODS[method], target, own)
-        dropped = found.groups_dropped
+        target_sample = replace(sample, values=target.values)
+        indices = indices_of_target(result, METHODS[method], target, target_sample)
+        dropped = indices.groups_dropped
         lost = f"{counted(dropped, 'group')} with missing values" if dropped else ""
-        values = found.kinds().get(kind, {})
+        values = indices.kinds().get(kind, {})
         label = until.label
         asked = {label: values.get(label, NOTHING)} if label else dict(values)
-        alive = {name: one for name, one in asked.items() if one.value != 0 or one.has_interval}
+        alive = {
+            name: estimate
+            for name, estimate in asked.items()
+            if estimate.value != 0 or estimate.has_interval
+        }
         if not alive:
-            why = found.refused or "no row shows an effect"
-            value = next((one.value for one in asked.values()), np.nan)
+            why = indices.refused or "no row shows an effect"
+            value = next((estimate.value for estimate in asked.values()), np.nan)
             alive = {label: Estimate(value, reason=why)}
-        for name, one in alive.items():
+        for name, estimate in alive.items():
             what = " ".join(filter(None, (until.index, name, "of", target.name)))
-            yield InterimEstimate(what, one, until.half_width, lost)
+            yield InterimEstimate(what, estimate, until.half_width, lost)
 
 
 def _targets(result: Result, output: str) -> Iterator[IndexTarget]:

@@ -74,15 +74,15 @@ def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Datas
     time = _times(chosen)
     replicate = rows.replicates
     lost = any(element.failed.any() for element in chosen)
-    found = [_variables(element, time, replicate, lost) for element in chosen]
+    curves = [_variables(element, time, replicate, lost) for element in chosen]
 
     of = rows.dataset[chosen[0].output]
     places = {dim: of[dim] for dim in of.dims if dim != "row"}
     dims = tuple(places) if output == of.name else ()
     shape = tuple(of.sizes[dim] for dim in dims)
     data = {}
-    for name in found[0]:
-        values = np.stack([one[name] for one in found])
+    for name in curves[0]:
+        values = np.stack([curve[name] for curve in curves])
         along = ("time",) if values.ndim > 1 else ()
         attrs = {"long_name": _MEANINGS[name], "units": "1"}
         data[name] = ((*dims, *along), values.reshape(shape + values.shape[1:]), attrs)
@@ -161,16 +161,18 @@ def _variables(
     rows = int(kept.sum())
     worth = None if element.weights is None else element.weights[kept]
     never = np.average(element.never[kept], weights=worth) if rows else np.nan
-    found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
-    found |= {"never": never, "rows": rows}
-    found |= {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
+    variables = plain._asdict() | {"band_low": band_low, "band_high": band_high}
+    variables |= {"never": never, "rows": rows}
+    variables |= {
+        name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")
+    }
     if with_failed:
         for end, life in (("low", 0.0), ("high", np.inf)):
             other = as_sample(with_failed_at(element, life), replicate).survival(time)
             alone = np.isnan(other.low).all() and np.isnan(other.high).all()
             bound = other.survival if alone else getattr(other, end)
-            found[f"failed_{end}"] = outer(end, bound, getattr(plain, end))
-    return found
+            variables[f"failed_{end}"] = outer(end, bound, getattr(plain, end))
+    return variables
 
 
 def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:

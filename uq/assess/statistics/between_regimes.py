@@ -98,8 +98,8 @@ def between_share(
         low, high = UNKNOWN
     else:
         of = replicate[kept]
-        found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
-        low, high = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
+        shares = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
+        low, high = scatter_interval(value, shares) if np.isfinite(shares).all() else UNKNOWN
     return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
 
 

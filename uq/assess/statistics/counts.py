@@ -20,7 +20,9 @@ from uq.text.numbers import counted, percent
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    return {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
+    return {
+        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
+    }
 
 
 _EFFECTIVE = StatisticKind(
@@ -74,8 +76,8 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     error = stated_error(context.rows, element)
     if asked is None or error is None:
         return
-    known = np.isfinite(element.values) & ~element.censored
-    kept = np.abs(error.values[known]) <= asked * np.abs(element.values[known])
+    ended = np.isfinite(element.values) & ~element.censored
+    kept = np.abs(error.values[ended]) <= asked * np.abs(element.values[ended])
     rows, missed = len(kept), int((~kept).sum())
     share = missed / rows if rows else None
     lost = percent(share) if missed and share else ""
@@ -105,4 +107,4 @@ def stated_error(result: Result, element: Element) -> Element | None:
     name = error_name(element.output)
     if name not in result.output_names:
         return None
-    return next((one for one in result.elements([name]) if one.place == element.place), None)
+    return next((error for error in result.elements([name]) if error.place == element.place), None)

@@ -21,30 +21,30 @@ from uq.text.numbers import percent
 SIDES = {"above": ">", "below": "<"}
 
 
-def _alone(one: Statistic) -> dict[str, Any]:
+def _alone(statistic: Statistic) -> dict[str, Any]:
     """Return one side as `uq compare` has it."""
-    assumes = one.estimate.assumes
-    return _side(one) | ({"assumes": assumes} if assumes else {})
+    assumes = statistic.estimate.assumes
+    return _side(statistic) | ({"assumes": assumes} if assumes else {})
 
 
-def _side(one: Statistic) -> dict[str, Any]:
-    reason = one.estimate.reason if one.estimate.assumes else ""
-    bare = replace(one.estimate, assumes="", reason=reason)
-    return entry(replace(one, estimate=bare, otherwise=None))
+def _side(statistic: Statistic) -> dict[str, Any]:
+    reason = statistic.estimate.reason if statistic.estimate.assumes else ""
+    bare = replace(statistic.estimate, assumes="", reason=reason)
+    return entry(replace(statistic, estimate=bare, otherwise=None))
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
     """Return both sides of a threshold."""
-    found: dict[str, Any] = {one.key[-1]: _side(one) for one in group}
-    found |= group[0].facts
-    guesses = {one.key[-1]: one.otherwise for one in group if one.otherwise}
+    sides: dict[str, Any] = {statistic.key[-1]: _side(statistic) for statistic in group}
+    sides |= group[0].facts
+    guesses = {statistic.key[-1]: statistic.otherwise for statistic in group if statistic.otherwise}
     if reason := group[0].estimate.reason:
-        found["reason"] = reason
+        sides["reason"] = reason
     if guesses:
         assumes = group[0].best.estimate.assumes
-        found["kaplan_meier"] = {side: _side(one) for side, one in guesses.items()}
-        found["kaplan_meier"]["assumes"] = assumes
-    return found
+        sides["kaplan_meier"] = {side: _side(guess) for side, guess in guesses.items()}
+        sides["kaplan_meier"]["assumes"] = assumes
+    return sides
 
 
 _LISTING = Listing("Probabilities, with 95 % intervals", by="threshold")
