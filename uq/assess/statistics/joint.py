@@ -27,7 +27,7 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     asked = context.analysis
     if context.replicate is not None or context.weights is not None:
         return
-    bounds = [one for one in context.joint_bounds if one.element == element.name]
+    bounds = [limit for limit in context.joint_bounds if limit.element == element.name]
     if not bounds:
         return
     coverage, confidence = (f"{100 * share:g}" for share in asked.tolerance or USUAL)

@@ -1,0 +1,61 @@
+"""Results written in schema version 1 are read by every verb as before."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import uq as api
+
+KEPT = Path(__file__).parents[2] / "support" / "version_1"
+KINDS = ("plain", "units", "posterior")
+VERBS = [
+    *((kind, verb) for kind in KINDS for verb in ("status", "summary --fits", "report", "plot")),
+    ("plain", "sensitivity"),
+    ("plain", "convergence"),
+    ("plain", "what-if --set uncertain.rate.sigma=0.9"),
+    ("plain", "row 3"),
+    ("plain", "trace outputs/life/quantiles/0.5"),
+    ("plain", "verify"),
+    ("units", "levels"),
+    ("units", "fleet --size 2 --by 1e6"),
+    ("units", "verify"),
+]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_summary_of_version_one_has_the_same_numbers(kind, uq):
+    expected = json.loads((KEPT / f"{kind}.json").read_text())
+    assert json.loads(uq("summary", KEPT / f"{kind}.nc", "--json").out) == expected
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_rows_of_version_one_are_those_of_today(kind):
+    with xr.open_dataset(KEPT / f"{kind}.nc", decode_timedelta=False) as old:
+        assert old.attrs["schema_version"] == 1 and "sample" in old.dims
+        new = api.open_result(KEPT / f"{kind}.nc")
+        assert new.attrs["schema_version"] == 2
+        assert new.sizes["row"] == old.sizes["sample"] and "sample" not in new.variables
+        for name, variable in old.data_vars.items():
+            assert np.array_equal(new[name].values, variable.values, equal_nan=True)
+        assert api.summary(old).equals(api.summary(new))
+
+
+@pytest.mark.parametrize("kind, command", VERBS)
+def test_every_verb_reads_version_one(kind, command, uq, folder):
+    verb, *options = command.split()
+    shutil.copy(KEPT / f"{kind}.nc", "old.nc")
+    ended = uq(verb, "old.nc", *options)
+    assert (ended.code or 0, ended.err) == (0, "")
+
+
+def test_a_result_of_version_one_is_extended(uq, folder):
+    shutil.copy(KEPT / "plain.nc", "old.nc")
+    before = api.open_result("old.nc")
+    assert uq("extend", "old.nc", "--samples", "60", "--quiet").code == 0
+    after = api.open_result("old.nc")
+    assert after.sizes["row"] == 60
+    assert np.array_equal(after["life"].values[:40], before["life"].values)
