@@ -46,8 +46,8 @@ ROUGH = replace(
 def accuracy_of(ds, name):
     """Return what is said of the accuracy of an output without dimensions."""
     (element,) = elements_of(ds, [name])
-    (found,) = accuracy(element, Context(ds, analysis_of(ds), None))
-    return found.facts["accuracy"]
+    (statistic,) = accuracy(element, Context(ds, analysis_of(ds), None))
+    return statistic.facts["accuracy"]
 
 
 def rough(accuracy=0.04):
