@@ -41,7 +41,7 @@ from uq.text.units import ReadableUnit
             "histogram: edges 100, 200, 400 µm, counts 3, 1",
         ),
     ],
-    ids=lambda one: one["distribution"] if isinstance(one, dict) else "",
+    ids=lambda value: value["distribution"] if isinstance(value, dict) else "",
 )
 def test_a_law_is_in_the_unit_of_its_input(stated, words):
     assert law_in_unit(law_of(stated), ReadableUnit("µm", 1e-6)) == words
@@ -181,5 +181,5 @@ def test_an_interval_whose_ends_read_alike_is_none():
     sure, bounds = Estimate(1.0, 1.0, 1.0), Estimate(nan, 1.0, 1.0)
     assert share_text(sure) == "100 % (exact to these digits)"
     assert share_text(sure, bounds).endswith("digits; with failed rows 100 %)")
-    known = share_text(Estimate(0.5, 0.4, 0.6), bounds)
-    assert known == "50.0 % (95 % interval 40.0 to 60.0 %; with failed rows 100 %)"
+    text = share_text(Estimate(0.5, 0.4, 0.6), bounds)
+    assert text == "50.0 % (95 % interval 40.0 to 60.0 %; with failed rows 100 %)"
