@@ -186,3 +186,36 @@ def _module_of(dotted, modules):
     """Return the module that an import names, be it the module itself or a name in it."""
     candidates = (dotted, dotted.rpartition(".")[0])
     return next((name for name in candidates if name in modules), None)
+
+
+WITHOUT_A_NOUN = {"one", "found", "known", "said", "own"}
+"""Names that do not tell what they hold: a variable is called by the noun of the field."""
+
+NAMED = ("benchmarks", "models", "tests") + tuple(
+    f"uq/{package}"
+    for package in ("cli", "explore", "files", "indices", "learning", "machines")
+    + ("result", "sampling", "stats", "study", "text")
+)
+"""Folders whose variables are all named for what they hold."""
+
+
+@pytest.mark.parametrize("folder", NAMED)
+def test_variables_are_named_for_what_they_hold(folder):
+    nameless = [
+        f"{path.relative_to(HOUSE)}:{node.lineno}: {name}"
+        for path in sorted((HOUSE / folder).rglob("*.py"))
+        if re.search(rf"\b({'|'.join(WITHOUT_A_NOUN)})\b", text := path.read_text())
+        for node in ast.walk(ast.parse(text))
+        if (name := _named_by(node)) in WITHOUT_A_NOUN
+    ]
+    assert nameless == []
+
+
+def _named_by(node):
+    """Return the name that a node gives to a variable, an argument, a function or an import."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+            return name
+        case ast.FunctionDef(name=name) | ast.alias(asname=name) | ast.ExceptHandler(name=name):
+            return name
+    return None
