@@ -2,27 +2,16 @@
 
 import numpy as np
 import pytest
+from nominal_beams import nominal, prepared
 
 from models.beam import exact, lanes
 from models.beam.explore.lyapunov import exponents, lyapunov_exponent
 from models.beam.lanes.tangents import carry
 from models.beam.parameters import Params, Settings
 from models.beam.response.settling import settle
-from models.beam.structure.modal import beams
 from models.numerics.blocks import LANES
 
 FUNDAMENTAL = 57.1042 / 9.900  # [Hz]
-
-
-def nominal(n=1, **values):
-    fields = {**Params._field_defaults, **values}
-    return Params(*(np.broadcast_to(np.asarray(v, float), (n,)).copy() for v in fields.values()))
-
-
-def prepared(propagator, p, **settings):
-    s = Settings(**settings)
-    ((_, system),) = propagator.groups(beams(p, s), s)
-    return system
 
 
 def rattling(propagator, p, periods=40, **settings):

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from random_load import LEVEL, PURE, nominal, prepared, started
+from nominal_beams import nominal
+from random_load import LEVEL, PURE, prepared, started
 from scipy.integrate import quad, solve_ivp
 from scipy.signal import welch
 from scipy.stats import kstest

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from random_load import LEVEL, PURE, nominal, prepared, started
+from nominal_beams import nominal
+from random_load import LEVEL, PURE, prepared, started
 
 from models.beam import MODEL, lanes
 from models.beam.lanes import propagator

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import openturns as ot
 import pytest
-from asked_indices import sensitivities
+from asked_indices import sensitivities, values
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
@@ -51,10 +51,6 @@ def plain(model, samples=1024, seed=1):
 
 def entry_of(ds, method, output="y"):
     return sensitivities(ds, method, output)["outputs"][output]
-
-
-def values(entry, kind):
-    return [index["value"] for index in entry[kind].values()]
 
 
 def columns(ds, names):

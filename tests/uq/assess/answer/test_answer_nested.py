@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from answered import numbers
 from computed import asking, computed, linear, study_of, summarised, with_output
 from noisy_studies import noisy
 
@@ -12,14 +13,7 @@ from uq import what_if
 from uq.assess.answer.answer import answer
 
 DAY = 86400.0
-NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
 LEVELS = {"rate": "shared", "threshold": "own", "depth": "chance"}
-
-
-def numbers(pattern, text):
-    match = re.fullmatch(pattern.replace("#", NUMBER), text)
-    assert match, text
-    return [float(group) for group in match.groups()]
 
 
 def wear(**design):

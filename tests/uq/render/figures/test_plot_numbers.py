@@ -9,18 +9,13 @@ import xarray as xr
 from answered import lifetime
 from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
+from drawn import words
 
 from uq import plots
 from uq.render.figures.style import COLOURS, thinned
 from uq.render.figures.words import as_label
 
 DAY = 86400.0
-
-
-def words(figure):
-    """Return everything that is written in a figure."""
-    texts = [text.get_text() for text in figure.findobj(lambda artist: hasattr(artist, "get_text"))]
-    return " ".join(" ".join(texts).split())
 
 
 def lives(ds):
