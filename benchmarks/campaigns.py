@@ -14,6 +14,7 @@ import uq
 from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.posterior import posterior
 from uq.learning.worn_depth import WornDepths
+from uq.result.result import Result
 from uq.text.literals import read_toml, toml
 
 RODS, WORLDS, CV, LIMIT, MOST = 20, 300, 0.15, 3e-5, 1.5e-4
@@ -36,7 +37,7 @@ def worlds(folder):
 def apart(rows, number):
     """Return the rods of one world, which is the truth, and the rows of all others."""
     in_world = rows["world"].values == number
-    return rows.isel(sample=in_world), rows.isel(sample=~in_world)
+    return rows.isel(row=in_world), rows.isel(row=~in_world)
 
 
 def campaign(truth, rng):
@@ -73,11 +74,11 @@ def main():
             truth, others = apart(rows, number)
             inspections, _ = campaign(truth, rng)
             began = time.process_time()
-            posterior(others, inspections)
+            posterior(Result(others), inspections)
             taken.append(time.process_time() - began)
     longest = max(taken)
     print(
-        f"{len(taken)} campaigns of {2 * RODS} inspections, {others.sizes['sample']:,} rows:"
+        f"{len(taken)} campaigns of {2 * RODS} inspections, {others.sizes['row']:,} rows:"
         f" {np.median(taken):.2f} s of CPU each, {longest:.2f} s at most (goal {SECONDS:g} s)"
     )
     return 0 if longest <= SECONDS else "too slow"

@@ -90,7 +90,7 @@ def _written(folder, name):
     study = study_of(method, samples, replicates, "benchmarks.large:LARGE", LAWS, analysis=ANALYSIS)
     ds = computed(study)
     ds.to_netcdf(path)
-    print(f"{name}: {ds.sizes['sample']:,} rows, {path.stat().st_size / 1e6:.0f} MB", flush=True)
+    print(f"{name}: {ds.sizes['row']:,} rows, {path.stat().st_size / 1e6:.0f} MB", flush=True)
     return path
 
 

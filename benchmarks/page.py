@@ -12,6 +12,7 @@ import numpy as np
 
 from uq.render.html.page import page
 from uq.result import result_file
+from uq.result.result import Result
 from uq.study import row_sampling
 from uq.study.definition import study_from_text
 from uq.study.evaluate import evaluate
@@ -71,7 +72,7 @@ def main():
         folder = Path(name)
         path = folder / "page.html"
         began = time.perf_counter()
-        path.write_text(page(result(), "wear.nc"), encoding="utf-8")
+        path.write_text(page(Result(result()), "wear.nc"), encoding="utf-8")
         print(f"written in {time.perf_counter() - began:.1f} s, {path.stat().st_size / 1e6:.2f} MB")
         (folder / "browser").mkdir()
         with tab(folder / "browser") as browser:

@@ -12,7 +12,7 @@ from uq.sampling.named_values import read_settings
 from uq.study.evaluate import evaluate
 from uq.study.installed_models import find_model, model_names
 
-RESERVED = {"sample", "replicate", "group", "block", "status", "trajectory", "time", "quantity"}
+RESERVED = {"row", "replicate", "group", "block", "status", "trajectory", "time", "quantity"}
 TIME_UNITS = {"days", "hours", "minutes", "seconds", "milliseconds", "microseconds", "nanoseconds"}
 """Units that plain xarray would turn into calendar arithmetic."""
 

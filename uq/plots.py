@@ -7,8 +7,6 @@ or that of the given axes. To add one for results, write its file and an entry o
 import os
 from pathlib import Path
 
-import xarray as xr
-
 from uq.assess.findings import Findings
 from uq.errors import InputError
 from uq.files.paths import refuse_standard_output
@@ -35,6 +33,7 @@ from uq.render.figures.response_plot import curve as curve
 from uq.render.figures.scatter_plot import pairs as pairs
 from uq.render.figures.scatter_plot import scatter as scatter
 from uq.render.figures.shares_plot import shares as shares
+from uq.result.result import Result
 
 FIGURES: dict[str, Entry] = {
     "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,), needs=("summary",)),
@@ -107,12 +106,12 @@ FIGURES: dict[str, Entry] = {
 """Figures of a result, in the order of `uq plot`; keys are the first words of file names."""
 
 
-def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
+def save_all(result: Result, folder: str | Path) -> list[Path]:
     """Draw every figure of a result, as PNG, SVG and PDF.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     folder : path-like
         Created if it does not exist.
@@ -138,7 +137,7 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
     try:
         return [
             path
-            for one in drawables(FIGURES, Findings(ds))
+            for one in drawables(FIGURES, Findings(result))
             for path in write(one.draw(), folder / one.file)
         ]
     except OSError as error:

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from benchmarks.coverage.lives import FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
 from uq.assess.life_fit import fits_of
-from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
 

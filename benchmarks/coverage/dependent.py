@@ -23,6 +23,7 @@ from uq.contract import Model, Output, Parameter
 from uq.indices.index import SHAPLEY, RefusedError
 from uq.indices.methods import METHODS
 from uq.indices.paths import controlled, parts_of
+from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.stats.intervals import scatter_interval
 
@@ -160,7 +161,7 @@ def of_paths_alone(ds, output):
 
     Empty where they do not tell the variance from zero.
     """
-    sample = sample_of(ds)
+    sample = sample_of(Result(ds))
     none = np.full_like(sample.scores, np.nan)
     sample = replace(sample, values=ds[output].values, scores=none)
     try:
@@ -171,7 +172,7 @@ def of_paths_alone(ds, output):
 
 def of_residuals(ds, output):
     """Return the Shapley effects of a result with intervals from the residuals as they are."""
-    sample = replace(sample_of(ds), values=ds[output].values)
+    sample = replace(sample_of(Result(ds)), values=ds[output].values)
     parts, _ = controlled(sample, parts_of(sample, sample.grouped[sample.whole]))
     mean = parts.mean(axis=0)
     shares = mean / mean.sum()

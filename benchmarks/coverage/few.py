@@ -15,6 +15,7 @@ from uq.assess.targets import IndexTarget
 from uq.assess.two_fidelities import with_twin
 from uq.indices.index import RefusedError
 from uq.indices.methods import METHODS
+from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.stats.intervals import share_interval
 
@@ -92,7 +93,7 @@ def indices(repetitions):
     }
     expected = {name: truths(function) for name, (function, _) in OUTPUTS.items()}
     for ds in repeated(study, repetitions):
-        sample = sample_of(ds)
+        sample = sample_of(Result(ds))
         for name, (function, is_event) in OUTPUTS.items():
             values = function(*(ds[x].values for x in UNIFORMS)).astype(float)
             try:
@@ -125,7 +126,7 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        estimates = with_twin(ds, NAME).outputs["ishigami"]
+        estimates = with_twin(Result(ds), NAME).outputs["ishigami"]
         for hits, limit in limits.items():
             estimate = estimates[f"P(>{limit!r})"].estimate
             tally.estimate(f"by the twin, {hits:g} hits expected", hits / 300, estimate)
@@ -154,7 +155,7 @@ def failed(repetitions):
         ds = blank.copy(deep=True)
         ds["life"].values[:] = np.where(lost, np.nan, life)
         ds["status"].values[lost] = 2
-        entry = summary_json(summarise(ds))["outputs"]["life"]
+        entry = summary_json(summarise(Result(ds)))["outputs"]["life"]
         above = entry["thresholds"]["5.0"]["above"]
         median, b10 = entry["quantiles"]["0.5"], entry["b_lives"]["B10"]
         for quantity, truth, statistic in (

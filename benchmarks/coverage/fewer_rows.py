@@ -23,6 +23,7 @@ from uq.explore.design_points import design_points, drawn_around
 from uq.explore.rare_events import ESTIMATORS, estimate_of
 from uq.explore.subset_simulation import subset_interval, subset_simulation
 from uq.explore.wide_search import wide_search
+from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.stats.intervals import UNKNOWN, log_scatter_interval
 
@@ -41,7 +42,7 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        estimates = with_twin(ds, NAME).outputs["ishigami"]
+        estimates = with_twin(Result(ds), NAME).outputs["ishigami"]
         # A sample in a thousand seems to have a tail too heavy for a mean.
         mean = estimates["mean"].estimate if "mean" in estimates else NOTHING
         tally.estimate("mean by the twin", ISHIGAMI_MEAN, mean)

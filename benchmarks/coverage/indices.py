@@ -210,7 +210,7 @@ def nulls(method, repetitions):
     )
     for seed, ds in enumerate(repeated(study, repetitions)):
         idle = np.random.default_rng((seed, 1)).random(samples)
-        ds = ds.assign(x2=("sample", idle, ds["x2"].attrs))
+        ds = ds.assign(x2=("row", idle, ds["x2"].attrs))
         if method == "hdmr":  # which takes no jumps
             ds["jump"].values[:] = (ds["x1"] + ds["x3"] ** 2 + 0.3 * ds["x1"] * ds["x3"]).values
         entry = indices_of(ds, method, output)[output]

@@ -10,11 +10,12 @@ from scipy import stats
 from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.assess.life_fit import fits_of
-from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
+from uq.result.result import Result
 
 TIMES = (0.3, 0.8)
 
@@ -52,7 +53,7 @@ def lives(design, repetitions):
         )
     }
     for ds in repeated(study, repetitions):
-        outputs = summary_json(summarise(ds))["outputs"]
+        outputs = summary_json(summarise(Result(ds)))["outputs"]
         for name, tally in tallies.items():
             cdf = never_cdf if name == "never" else LIFE.cdf  # alike below the plateau
             for label, p in B_LIVES.items():
@@ -96,7 +97,7 @@ def mixed(design, samples, repetitions):
     rows = f"{design}, {replicates} replicates of " * (replicates > 1) + f"{samples} rows"
     tally = Tally(f"60 % never end, known at once, the others may be censored; {rows}")
     for ds in repeated(study, repetitions):
-        entry = summary_json(summarise(ds))["outputs"]["mixed"]
+        entry = summary_json(summarise(Result(ds)))["outputs"]["mixed"]
         tally.entry("B10", MIXED.ppf(0.1 / ENDS), entry["b_lives"]["B10"])
         for time in LIMITS:
             below = entry["thresholds"][repr(time)]["kaplan_meier"]["below"]
@@ -185,18 +186,18 @@ def _blank(rows, replicates):
 def with_life(values, censored=None, replicates=1, kind="lifetime"):
     """Return a result whose output `life` has other values, in the order of its rows."""
     ds = _blank(len(values) // replicates, replicates)
-    ds = ds.assign(life=("sample", values, ds["life"].attrs | {"kind": kind}))
+    ds = ds.assign(life=("row", values, ds["life"].attrs | {"kind": kind}))
     if censored is None or not censored.any():
         return ds
     flag = {"role": "censored", "long_name": "whether life is only a lower bound"}
-    return ds.assign(life_censored=("sample", censored.astype(np.int8), flag))
+    return ds.assign(life_censored=("row", censored.astype(np.int8), flag))
 
 
 def _cut(ds, horizon):
     life = ds["life"].values
     flag = {"role": "censored", "long_name": "whether life is only a lower bound"}
-    ds = ds.assign(life=("sample", np.minimum(life, horizon), ds["life"].attrs))
-    return ds.assign(life_censored=("sample", (life > horizon).astype(np.int8), flag))
+    ds = ds.assign(life=("row", np.minimum(life, horizon), ds["life"].attrs))
+    return ds.assign(life_censored=("row", (life > horizon).astype(np.int8), flag))
 
 
 def _asymptotic(tally, law, life, parameters):

@@ -19,6 +19,7 @@ from uq.assess.level_shares import by_level
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.contract import Model, Output
+from uq.result.result import Result
 from uq.stats.variance_components import nested_shares
 
 NAME = "benchmarks.coverage.nested:NESTED"
@@ -104,7 +105,7 @@ def statistics(name, repetitions):
 
 
 def _count(tally, ds, quantiles):
-    summary = summary_json(summarise(ds))
+    summary = summary_json(summarise(Result(ds)))
     entry = summary["outputs"]["y"]
     tally.entry("mean", MEAN, entry["mean_interval"])
     tally.entry("sd", np.sqrt(VARIANCE), entry["sd_interval"])
@@ -114,7 +115,7 @@ def _count(tally, ds, quantiles):
         side = entry["thresholds"][repr(threshold)]["above"]
         tally.entry(f"P(> {threshold})", 1 - cdf(threshold), side)
     tally.entry("regime", UPPER, summary["regime"]["upper"])
-    levels = by_level(ds)
+    levels = by_level(Result(ds))
     for level, part in PARTS.items():
         share = levels.outputs["y"].shares[level]
         if not share.reason and not share.assumes:

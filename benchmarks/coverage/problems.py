@@ -12,6 +12,7 @@ from uq.assess.sensitivities import sensitivities
 from uq.assess.sensitivity_json import sensitivity_json
 from uq.contract import Model, Output, Parameter
 from uq.result import result_file
+from uq.result.result import Result
 from uq.study import row_sampling
 from uq.study.definition import study_from_text
 from uq.study.evaluate import evaluate
@@ -276,7 +277,7 @@ def computed(study):
 
 def indices_of(ds, method=None, output=None):
     """Return the sensitivity indices of each output, as ``uq sensitivity --json`` has them."""
-    return sensitivity_json(sensitivities(ds, method, output))["outputs"]
+    return sensitivity_json(sensitivities(Result(ds), method, output))["outputs"]
 
 
 def repeated(study, repetitions):

@@ -29,6 +29,7 @@ from uq.indices.methods import METHODS
 from uq.indices.sample import DesignSample
 from uq.indices.sobol import sobol_indices
 from uq.result.element import Element
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.stats.estimate import NOTHING
 from uq.study.file import DesignTable, Until
@@ -225,7 +226,7 @@ def _paths(title, study, output, truth, repetitions):
     asked = {"widest": tuple(truth), "of x1": PAIR[:1], " - ".join(PAIR): (" - ".join(PAIR),)}
     seen = []
     for ds in repeated(study, repetitions):
-        sample = replace(sample_of(ds), confidence=level, difference=PAIR)
+        sample = replace(sample_of(Result(ds)), confidence=level, difference=PAIR)
         sample = replace(sample, values=ds[output].values)
         seen.append([_effects(sample, size) for size in sizes])
     for quantity, names in asked.items():

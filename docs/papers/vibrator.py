@@ -23,7 +23,7 @@ individual values of Table 1 are missing from our copy, so the table is compared
 ranges.
 
 Sections 4 and 5 have no legible figure. Of section 4, equations (9) to (11) of a motor set on
-elastic mounts are in `models.vibrator.paper.closed_forms`, and theory and simulation include the
+elastic mounts are in `tests/support/vibrator_papers.py`, and theory and simulation include the
 set on such mounts; individual mounts for each vibrator (4.1) are not modelled. In the paper, equal
 elasticity in two perpendicular directions (4.3) does not change the disphasing; in equation (9),
 equal mounts along psi and psi + pi/2 cancel exactly, but the simulated machine has a mount along

@@ -8,12 +8,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from models.numerics.jit import kernel
 from models.numerics.sincos import cosine_sine
-
-Array = NDArray[np.float64]
 
 
 @kernel
@@ -38,18 +36,6 @@ def _log(x, out):
 def _log1p(x, out):
     for i in range(len(x)):
         out[i] = math.log1p(x[i])
-
-
-@kernel
-def _tan(x, out):
-    for i in range(len(x)):
-        out[i] = math.tan(x[i])
-
-
-@kernel
-def _arctan(x, out):
-    for i in range(len(x)):
-        out[i] = math.atan(x[i])
 
 
 @kernel
@@ -99,13 +85,3 @@ def cos(x: ArrayLike) -> Any:
 def sin(x: ArrayLike) -> Any:
     """Return the sines of angles [rad], in the shape of x."""
     return _each(_sin, x)
-
-
-def tan(x: ArrayLike) -> Any:
-    """Return the tangents of angles [rad], in the shape of x."""
-    return _each(_tan, x)
-
-
-def arctan(x: ArrayLike) -> Any:
-    """Return the arctangents [rad], in the shape of x."""
-    return _each(_arctan, x)

@@ -27,6 +27,7 @@ from uq.assess.summary_json import summary_json
 from uq.cli.summary_tables import show_summary
 from uq.errors import InputError
 from uq.render.html.page import page
+from uq.result.result import Result
 from uq.study.definition import study_from_text
 from uq.study.installed_models import find_model, model_names
 
@@ -215,11 +216,11 @@ def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch,
     def number():
         ds = public.open_result("out.nc")
         public.summary(ds)
-        summary_json(summarise(ds))
-        show_summary(ds, summarise(ds))
+        summary_json(summarise(Result(ds)))
+        show_summary(Result(ds), summarise(Result(ds)))
         public.survival(ds, "life")
         public.compare(ds, ds)
-        page(ds, "out.nc")
+        page(Result(ds), "out.nc")
 
     _, first, second = SOURCES["docs/architecture.md"].split("## The path of a ")
     for text, action in ((first, row), (second, number)):

@@ -60,6 +60,6 @@ def test_the_ball_of_notebook_06_meets_its_formula(monkeypatch):
         assert float(motion["time"][-1]) == pytest.approx(exact, rel=1e-7)
     never = uq.simulate(ball, {"restitution": 1.0})
     assert np.isposinf(never["time_to_rest"].item())
-    late = uq.simulate(ball, {"restitution": 0.999}, {"most_bounces": 5}).isel(sample=0)
+    late = uq.simulate(ball, {"restitution": 0.999}, {"most_bounces": 5}).isel(row=0)
     assert uq.labels(late["status"]).item() == "out-of-budget"
     assert late["time_to_rest_censored"].item() == 1

@@ -204,4 +204,4 @@ def test_paths_with_blanks_and_accents(study, undisturbed, start, call, folder, 
     assert call("run", study, *MODEL, "-o", place)[0] == 0
     assert place.read_bytes() == undisturbed
     assert call("verify", place, *MODEL[:2])[0] == 0
-    assert uq.open_result(place).sizes["sample"] == 1500
+    assert uq.open_result(place).sizes["row"] == 1500

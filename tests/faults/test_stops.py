@@ -108,7 +108,7 @@ def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder
     code, output = call("run", study, *MODEL[:-1])
     assert code == 0
     ended = uq.open_result(OUT)
-    size = ended.sizes["sample"]
+    size = ended.sizes["row"]
     assert size == min(look for look in LOOKS if look >= kept)
     assert f"reached at interim estimate {1 + LOOKS.index(size)} of" in " ".join(output.split())
     for name in ("x1", "x2", "y", "z", "status"):

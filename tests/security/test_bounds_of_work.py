@@ -151,7 +151,7 @@ def test_flipped_data_are_pointed_out(uq, write_study, no_other_figures, verb):
         ("x1", "source", 1.5),
         ("y", "scales", "{"),
         ("status", "flag_values", np.array([7, 8, 9, 10, 11, 12])),
-        ("sample", None, 3),
+        ("row", None, 3),
         ("group", None, -1),
     ],
 )

@@ -138,7 +138,7 @@ def spoilt(ds):
         other[name].attrs = ds[name].attrs | {"flag_meanings": "one too many for it " * 3}
         yield f"too many meanings of {name}", other
     yield "study that is none", ds.assign_attrs(study="[study")
-    yield "values of text", ds.assign(y=("sample", ds["y"].values.astype(str), ds["y"].attrs))
+    yield "values of text", ds.assign(y=("row", ds["y"].values.astype(str), ds["y"].attrs))
     yield "values without rows", ds.assign(y=((), 1.0, ds["y"].attrs))
 
 

@@ -93,9 +93,9 @@ def test_a_file_that_reaches_beyond_itself_is_refused(uq, result, folder, write_
 
 def test_a_file_that_claims_more_than_its_disk_holds_is_refused(uq, result):
     with netCDF4.Dataset("sparse.nc", "w") as file:
-        file.createDimension("sample", 80_000_000)
+        file.createDimension("row", 80_000_000)
         for name in ("y", "x1", "x2"):
-            file.createVariable(name, "f8", ("sample",), fill_value=False)[-1] = 1.0
+            file.createVariable(name, "f8", ("row",), fill_value=False)[-1] = 1.0
     assert Path("sparse.nc").stat().st_size > 1e9
     with pytest.raises(ValueError, match="MB claim to be"):
         refuse_tricks(Path("sparse.nc"))

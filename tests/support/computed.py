@@ -8,6 +8,7 @@ import numpy as np
 from uq.assess.comparison import comparison
 from uq.assess.summary import summarise
 from uq.assess.summary_json import comparison_json, summary_json
+from uq.result.result import Result
 from uq.result.result_file import build
 from uq.study import row_sampling
 from uq.study.definition import study_from_text
@@ -80,12 +81,12 @@ def kinds(method="monte-carlo", samples=64, replicates=1, analysis=None):
 
 def summarised(ds, **asked):
     """Return the summary of a result as JSON has it."""
-    return summary_json(summarise(ds, **asked))
+    return summary_json(summarise(Result(ds), **asked))
 
 
 def compared(*pair):
     """Return the comparison of two results as JSON has it."""
-    return comparison_json(comparison(*pair))
+    return comparison_json(comparison(*map(Result, pair)))
 
 
 def with_seed(study, seed):
@@ -110,11 +111,11 @@ def with_output(ds, name, values, kind="value", censored=None):
         "long_name": f"meaning of {name}",
         "may_be_undefined": 0,
     }
-    ds = ds.assign({name: ("sample", np.asarray(values, dtype=float), attrs)})
+    ds = ds.assign({name: ("row", np.asarray(values, dtype=float), attrs)})
     if censored is None:
         return ds
     flag = {"role": "censored", "long_name": f"whether {name} is only a lower bound"}
-    return ds.assign({f"{name}_censored": ("sample", np.asarray(censored, np.int8), flag)})
+    return ds.assign({f"{name}_censored": ("row", np.asarray(censored, np.int8), flag)})
 
 
 def with_status(ds, rows, code):

@@ -8,6 +8,7 @@ Reading order; each part imports only those above it:
     joint_bounds          tolerance bounds that hold for several outputs at once
     solver_error          effect of stated errors of rows on their values and scatter
     input_changes         differences between two studies of one model: inputs, settings, design
+    counted_rows          rows that count alike
     row_inputs            the uncertain inputs of some rows
     random_effects        distribution of the failure probability over shared inputs
     scale_laws            the law of a life in each row
@@ -32,23 +33,23 @@ Reading order; each part imports only those above it:
     chosen_targets        targets that a user names, or that suit a method
     estimators            estimators: the rows that take part, and the influence of each
     fleets                fleets: units of one world, and how many of them have ended
+    sample                a sample
     sensitivities         sensitivity indices of a whole result, by every method
     pairing               pairing of the rows of two results
     statistic             a statistic of an output
     sensitivity_json      sensitivity indices as the command line prints them with ``--json``
     sensitivity_table     sensitivity indices as arrays
-    failed_rows           bounds of an estimate with the failed rows at best and at worst
-    fleet_numbers         the numbers of fleets of one size
-    survival              lifetimes: the probability of a longer life than each time
-    life_quantiles        times by which a given share of rows has ended
-    life_fit              Weibull and lognormal laws fitted to lifetimes
-    statistics            the statistics of an output: ``table`` lists them
     stopping              when a run may stop
-    fit_table             laws fitted to a lifetime as a table
-    level_shares          shares of the variance
-    two_fidelities        two fidelities
+    failed_rows           bounds of an estimate with the failed rows at best and at worst
     stopping_status       status of a run that may stop
+    fleet_numbers         the numbers of fleets of one size
+    statistics            the statistics of an output: ``table`` lists them
+    survival              lifetimes: the probability of a longer life than each time
+    level_shares          shares of the variance
+    life_fit              Weibull and lognormal laws fitted to lifetimes
+    two_fidelities        two fidelities
     level_table           variance shares by level as a Dataset
+    fit_table             laws fitted to a lifetime as a table
     summary               the summary of a result
     convergence           convergence
     differences           differences between the statistics of two results

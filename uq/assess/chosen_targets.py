@@ -3,8 +3,6 @@
 import re
 from collections.abc import Iterator, Sequence
 
-import xarray as xr
-
 from uq.assess import targets
 from uq.assess.joint_targets import wholes
 from uq.assess.targets import (
@@ -20,21 +18,19 @@ from uq.errors import InputError, choices, nearest
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS
 from uq.result.element import Element
-from uq.result.elements import analysis_of, elements_of, named_elements, shown_outputs
-from uq.result.result_file import failed
-from uq.result.variables import is_category
+from uq.result.result import Result
 from uq.text.element_names import is_whole, whole_name
 from uq.text.quantities import read_threshold
 
 
 def chosen(
-    ds: xr.Dataset, method: str, output: str | Sequence[str] | None
+    result: Result, method: str, output: str | Sequence[str] | None
 ) -> Iterator[IndexTarget]:
     """Yield the targets that a user means.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     method : str
     output : str or sequence of str, optional
@@ -53,14 +49,14 @@ def chosen(
     asked = METHODS[method]
     if output is None:
         found = False
-        for name in shown_outputs(ds, analysis_of(ds)):
-            for target in targets_of(ds, name):
+        for name in result.shown_outputs(result.analysis):
+            for target in targets_of(result, name):
                 if _suits(asked, target):
                     yield target if asked.scale_free else lightened(target)
                     found = True
             if asked.aggregates:
-                yield from wholes(_elements(ds, name))
-        if not found and failed(ds).all():
+                yield from wholes(_elements(result, name))
+        if not found and result.failed.all():
             raise InputError("every row failed: there is nothing to explain")
         if not found and not asked.takes_numbers:
             raise InputError(
@@ -74,7 +70,7 @@ def chosen(
     named = [
         target
         for name in ([output] if isinstance(output, str) else output)
-        for target in _named(ds, name, asked.aggregates)
+        for target in _named(result, name, asked.aggregates)
     ]
     if not named and isinstance(output, str):
         output = canonical(output)
@@ -88,7 +84,7 @@ def chosen(
             )
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
-        names = [target.name for target in targets_of(ds, output_in(inside), every=True)]
+        names = [target.name for target in targets_of(result, output_in(inside), every=True)]
         if form == "P" and threshold:
             events = choices(name for name in names if split_name(name)[0] == "P")
             raise InputError(
@@ -104,23 +100,25 @@ def _suits(method: SensitivityMethod, target: IndexTarget) -> bool:
     return method.takes_numbers
 
 
-def _named(ds: xr.Dataset, name: str, aggregated: bool) -> list[IndexTarget]:
+def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
     """Return the targets that a user means by a name; none for an unknown name."""
     written, name = name, canonical(name)
     form, inside, _ = split_name(name)
-    if (output := inside.partition("[")[0]) in ds and (text := threshold_text(written)):
-        read_threshold("threshold", text, output, ds[output].attrs["units"])  # or refuse it
+    if (output := inside.partition("[")[0]) in result.dataset and (text := threshold_text(written)):
+        read_threshold(
+            "threshold", text, output, result.dataset[output].attrs["units"]
+        )  # or refuse it
     if is_whole(inside):
-        every = list(wholes(_elements(ds, output_in(inside)), every=True)) if aggregated else []
+        every = list(wholes(_elements(result, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
-    found = list(targets_of(ds, output_in(inside), every=True))
+    found = list(targets_of(result, output_in(inside), every=True))
     name = _as_stored(name, output_in(inside), found)
     if form:
         return [target for target in found if target.name == name]
     own = [target for target in found if split_name(target.name)[0] == ""]
-    has_whole = aggregated and name in ds and len(_elements(ds, name)) > 1
-    whole = _named(ds, whole_name(name), aggregated) if has_whole else []
-    return [*(own or targets_of(ds, name)), *whole]
+    has_whole = aggregated and name in result.dataset and len(_elements(result, name)) > 1
+    whole = _named(result, whole_name(name), aggregated) if has_whole else []
+    return [*(own or targets_of(result, name)), *whole]
 
 
 def _as_stored(name: str, element: str, found: Sequence[IndexTarget]) -> str:
@@ -134,17 +132,17 @@ def output_in(inside: str) -> str:
     return re.sub(r"^([^\[=]*(?:\[.*?\])?)=.*$", r"\1", inside)
 
 
-def _elements(ds: xr.Dataset, name: str) -> list[Element]:
+def _elements(result: Result, name: str) -> list[Element]:
     """Return the elements that belong together: none of a category."""
-    return [] if is_category(ds, name.partition("[")[0]) else named_elements(ds, name)
+    return [] if result.is_category(name.partition("[")[0]) else result.named_elements(name)
 
 
-def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[IndexTarget]:
+def targets_of(result: Result, name: str, every: bool = False) -> Iterator[IndexTarget]:
     """Return the targets of an output or of one element of it.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     name : str
     every : bool, optional
@@ -155,7 +153,7 @@ def targets_of(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Index
     iterator of IndexTarget
         Of a category, or an element of one, whether a row is in each that occurs.
     """
-    if is_category(ds, name.partition("[")[0]):
-        return category_targets(ds, name)
-    known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
-    return targets.targets(known, analysis_of(ds).thresholds, every)
+    if result.is_category(name.partition("[")[0]):
+        return category_targets(result, name)
+    known = result.elements([name]) if name in result.dataset else result.named_elements(name)
+    return targets.targets(known, result.analysis.thresholds, every)

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import pandas as pd
-import xarray as xr
 
 from uq.assess.differences import (
     ComparedOutput,
@@ -17,7 +16,8 @@ from uq.assess.pairing import Pair
 from uq.assess.scaling import population
 from uq.assess.summary import Summary, summarise
 from uq.errors import InputError
-from uq.result.elements import Element, analysis_of, output_names, shown_outputs, why_no_statistics
+from uq.result.elements import Element
+from uq.result.result import AnyResult, Result
 from uq.study.file import AnalysisTable
 
 
@@ -59,12 +59,12 @@ class Comparison:
     notes: list[str]
 
 
-def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
+def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
     """Compare the outputs of two studies of one model.
 
     Parameters
     ----------
-    first, second : xarray.Dataset
+    first, second : Result, xarray.Dataset or path
         Results.
 
     Returns
@@ -80,6 +80,8 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
     InputError
         When the two are not of one model, or have nothing to compare.
     """
+    first = Result.of(first)
+    second = Result.of(second)
     found = comparison(first, second)
     pairs = {(name, label): one for name, of in found.shares.items() for label, one in of.items()}
     for name, output in found.outputs.items():
@@ -93,22 +95,22 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
     return pd.DataFrame(lines, index, columns, dtype=float)
 
 
-def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
+def comparison(first: Result, second: Result) -> Comparison:
     """Return the findings of `compare`, and what was changed."""
     _refuse(first, second)
     results = (first, second)
-    analyses = [analysis_of(ds) for ds in results]
+    analyses = [result.analysis for result in results]
     outputs = _outputs(results, analyses)
     asked = _asked(analyses, outputs)
-    found = [summarise(ds, asked) for ds in results]
+    found = [summarise(result, asked) for result in results]
     pair = Pair(first, second)
     elements = [
         {element.name: element for element in population(rows, outputs)} for rows in pair.rows
     ]
     changed = changes(*results)
     return Comparison(
-        first=Side(str(first.attrs["title"]), found[0]),
-        second=Side(str(second.attrs["title"]), found[1]),
+        first=Side(str(first.dataset.attrs["title"]), found[0]),
+        second=Side(str(second.dataset.attrs["title"]), found[1]),
         changed=changed,
         only=only_change(first, second, changed),
         pairing=pair.kinship.name.lower().partition("_")[0],
@@ -122,26 +124,28 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
     )
 
 
-def _refuse(first: xr.Dataset, second: xr.Dataset) -> None:
-    names = [ds.attrs["model"] for ds in (first, second)]
+def _refuse(first: Result, second: Result) -> None:
+    names = [result.dataset.attrs["model"] for result in (first, second)]
     if names[0] != names[1]:
         raise InputError(
             f"the first is of model '{names[0]}', the second of '{names[1]}': only studies of the"
             " same model can be compared"
         )
-    for which, ds in zip(("first", "second"), (first, second), strict=True):
-        if why := why_no_statistics(ds):
+    for which, result in zip(("first", "second"), (first, second), strict=True):
+        if why := result.why_no_statistics:
             raise InputError(
-                f"the rows of the {which}, a '{ds.attrs['design']}' design, {why}: compare studies"
+                f"the rows of the {which}, a '{result.design_name}' design, {why}: compare studies"
                 " with another design; 'uq sensitivity' shows its indices"
             )
 
 
-def _outputs(results: tuple[xr.Dataset, ...], analyses: list[AnalysisTable]) -> list[str]:
+def _outputs(results: tuple[Result, ...], analyses: list[AnalysisTable]) -> list[str]:
     wanted = dict.fromkeys(
-        name for ds, one in zip(results, analyses, strict=True) for name in shown_outputs(ds, one)
+        name
+        for result, analysis in zip(results, analyses, strict=True)
+        for name in result.shown_outputs(analysis)
     )
-    outputs = [name for name in wanted if all(name in output_names(ds) for ds in results)]
+    outputs = [name for name in wanted if all(name in result.outputs for result in results)]
     if not outputs:
         raise InputError(
             "the results have no output in common; name one in [analysis] outputs of both studies"

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from uq.assess.sensitivities import sensitivities
 from uq.assess.statistic import Reader
@@ -16,15 +15,9 @@ from uq.errors import InputError
 from uq.indices.methods import METHODS, piloted_by
 from uq.result.elements import (
     Element,
-    are_independent,
-    elements_of,
-    independent_rows,
-    named_elements,
-    output_names,
 )
-from uq.result.nesting import first_samples
+from uq.result.result import AnyResult, Result
 from uq.result.variables import error_name
-from uq.result.weights import refuse_weights
 from uq.sampling.designs import DESIGNS
 from uq.text.element_names import is_whole, whole_name
 
@@ -33,12 +26,12 @@ COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "inp
 _FEWEST = 16  # samples
 
 
-def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
+def running_estimates(result: AnyResult, output: str | None = None) -> pd.DataFrame:
     """Estimate everything from the first samples of a result, in increasing numbers.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str, optional
         Only this output, or this element of one.
@@ -63,28 +56,31 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     >>> running[running["estimate"] == "mean"]["samples"].to_list()
     [16, 32, 63, 125, 250, 500, 1000]
     """
-    refuse_weights(ds, "running estimates")
+    result = Result.of(result)
+    result.refuse_weights("running estimates")
     names = None
     if output is not None:
         whole = output if is_whole(output) else whole_name(output)
-        names = {whole, *(element.name for element in named_elements(ds, output))}
+        names = {whole, *(element.name for element in result.named_elements(output))}
     # Those of all rows: of the first ones alone a life may have another target.
-    targets = list(sensitivities(ds, method).targets) if (method := method_shown(ds)) else []
+    targets = (
+        list(sensitivities(result, method).targets) if (method := method_shown(result)) else []
+    )
     lines = [
         (name, label, samples, *numbers, *index)
-        for samples in _sizes(ds)
-        for name, label, numbers, *index in estimates_from(first_samples(ds, samples), targets)
+        for samples in _sizes(result)
+        for name, label, numbers, *index in estimates_from(result.first_samples(samples), targets)
         if names is None or split_name(name)[1] in names
     ]
     return pd.DataFrame(lines, columns=COLUMNS)
 
 
-def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
+def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
     """Compare the error of sampling with the errors of the rows themselves.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str, optional
         Only this output, or this element of one.
@@ -99,12 +95,13 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         all of them had the same sign; ``warning``, not empty where `own` is the larger: then more
         rows do not help.
     """
-    refuse_weights(ds, "the error of sampling")
-    found, names = summarise(ds).outputs, output_names(ds)
-    rows = independent_rows(ds)
+    result = Result.of(result)
+    result.refuse_weights("the error of sampling")
+    found, names = summarise(result).outputs, result.output_names
+    rows = result.independent
     plain = [name for name in names if name not in {error_name(one) for one in names}]
     lines = {}
-    for element in named_elements(rows, output) if output else elements_of(rows, plain):
+    for element in rows.named_elements(output) if output else rows.elements(plain):
         if element.name not in found:
             continue
         lines[element.name] = compared(rows, element, found[element.name])
@@ -123,12 +120,12 @@ class Errors(NamedTuple):
     warning: str
 
 
-def compared(ds: xr.Dataset, element: Element, described: Described) -> Errors:
+def compared(result: Result, element: Element, described: Described) -> Errors:
     """Compare the error of sampling of an element with that of the rows themselves.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         The independent rows of a result.
     element : Element
     described : Described
@@ -139,7 +136,7 @@ def compared(ds: xr.Dataset, element: Element, described: Described) -> Errors:
         label, one = "median", described.find("quantiles", "0.5")
     known = one is not None and one.estimate.has_interval
     sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
-    own = _own_error(ds, element)
+    own = _own_error(result, element)
     words = _WARNING.format(own=own, units=element.units, sampling=sampling)
     return Errors(label, sampling, own, words if own > sampling else "")
 
@@ -150,17 +147,17 @@ _WARNING = (
 )
 
 
-def _own_error(ds: xr.Dataset, element: Element) -> float:
-    error = stated_error(ds, element)
+def _own_error(result: Result, element: Element) -> float:
+    error = stated_error(result, element)
     if error is None:
         return np.nan
     sizes = np.abs(error.values[np.isfinite(error.values)])
     return float(sizes.mean()) if len(sizes) else np.nan
 
 
-def _sizes(ds: xr.Dataset) -> list[int]:
-    method, size = ds.attrs["design"], int(ds.attrs["samples"])
-    if not (DESIGNS[method].append_only or are_independent(ds)):
+def _sizes(result: Result) -> list[int]:
+    method, size = result.design_name, int(result.dataset.attrs["samples"])
+    if not (DESIGNS[method].append_only or result.has_independent_rows):
         able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
         raise InputError(
             f"the first rows of design '{method}' are not a smaller one, so there are no"
@@ -172,24 +169,24 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     return sizes[::-1]
 
 
-def method_shown(ds: xr.Dataset) -> str | None:
+def method_shown(result: Result) -> str | None:
     """Return the method whose indices are estimated from the first rows, if they suffice."""
-    groups = len(np.unique(ds["group"])) * ds.attrs["replicates"]
-    name = piloted_by(DESIGNS[ds.attrs["design"]])
+    groups = len(np.unique(result.dataset["group"])) * result.dataset.attrs["replicates"]
+    name = piloted_by(result.design)
     return name if name and groups >= METHODS[name].least else None
 
 
 Line = tuple[str, str, tuple[float, float, float], str, str]
 
 
-def estimates_from(ds: xr.Dataset, targets: list[str]) -> Iterator[Line]:
+def estimates_from(result: Result, targets: list[str]) -> Iterator[Line]:
     """Yield what some rows give: output, label, value with interval; of an index kind and input."""
-    for name, output in summarise(ds).outputs.items():
+    for name, output in summarise(result).outputs.items():
         for one in output.statistics:
             if one.is_read_by(Reader.RUNNING):
                 yield name, one.label, one.estimate.finite.numbers, "", ""
-    if method := method_shown(ds):
-        for name, found in sensitivities(ds, method, targets).targets.items():
+    if method := method_shown(result):
+        for name, found in sensitivities(result, method, targets).targets.items():
             for kind, values in found.kinds().items():
                 for label, index in values.items():
                     yield name, f"{kind.key} {label}", index.numbers, kind.key, label

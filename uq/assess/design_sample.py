@@ -9,30 +9,29 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.assess.independent_inputs import correlated_inputs, independent_inputs
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.sample import DesignSample
-from uq.result.elements import flags, has_independent_samples, study_file_of
+from uq.result.elements import flags
+from uq.result.result import Result
 from uq.sampling.conditional_draws import conditional_paths
 from uq.sampling.dependence import normal_correlations
-from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import PLAIN
 from uq.study.file import Tied
 from uq.study.input_checks import laws_of
 
 
-def with_scores(sample: DesignSample, ds: xr.Dataset, unit: Floats) -> DesignSample:
+def with_scores(sample: DesignSample, result: Result, unit: Floats) -> DesignSample:
     """Return a sample of paths with the normal scores of its inputs.
 
     Parameters
     ----------
     sample : DesignSample
         Without scores.
-    ds : xarray.Dataset
+    result : Result
         The result that it is of.
     unit : ndarray, shape (R, N, k, d)
         The points of its design, independent.
@@ -43,9 +42,9 @@ def with_scores(sample: DesignSample, ds: xr.Dataset, unit: Floats) -> DesignSam
     """
     from scipy.special import ndtri
 
-    names, laws = list(sample.inputs), laws_of(ds.attrs["study"])
+    names, laws = list(sample.inputs), laws_of(result.dataset.attrs["study"])
     unit, matrix = unit.copy(), np.eye(len(names))
-    stated = study_file_of(ds).dependence
+    stated = result.study.dependence
     discrete = {name for name, law in laws.items() if law.discrete}
     if stated is not None:
         places = [names.index(name) for name in stated.parameters]
@@ -62,12 +61,12 @@ def with_scores(sample: DesignSample, ds: xr.Dataset, unit: Floats) -> DesignSam
     return replace(sample, scores=scores, matrix=matrix)
 
 
-def sample_of(ds: xr.Dataset) -> DesignSample:
+def sample_of(result: Result) -> DesignSample:
     """Find the groups of a design, in which no row has a value yet.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result, its rows in any order.
 
     Returns
@@ -79,43 +78,43 @@ def sample_of(ds: xr.Dataset) -> DesignSample:
     InputError
         When a group lacks rows, or rows are not those of the design.
     """
-    layout = DESIGNS[ds.attrs["design"]].layout
-    nothing = np.full(ds.sizes["sample"], np.nan)
-    sample = DesignSample.plain(
-        nothing, independent_inputs(ds), random=bool(ds.attrs.get("random"))
-    )
+    layout = result.design.layout
+    nothing = np.full(len(result), np.nan)
+    sample = DesignSample.plain(nothing, independent_inputs(result), random=result.is_random)
     if layout is PLAIN:
-        independent = has_independent_samples(ds)
-        return replace(sample, replicate=None if independent else ds["replicate"].values)
-    groups, blocks = _grouped_rows(ds)
+        independent = result.has_independent_samples
+        return replace(
+            sample, replicate=None if independent else result.dataset["replicate"].values
+        )
+    groups, blocks = _grouped_rows(result)
     sample = replace(
         sample,
         groups=groups.transpose(0, 2, 1) if layout.by_block else groups,
         blocks=blocks,
-        correlated=correlated_inputs(ds),
+        correlated=correlated_inputs(result),
     )
     if not layout.one_at_a_time:
         return sample
-    unit = _unit(ds, groups, len(sample.inputs))
-    sample = replace(sample, direction=_directions(ds, groups, unit))
-    return with_scores(sample, ds, unit) if layout.given_the_rest else sample
+    unit = _unit(result, groups, len(sample.inputs))
+    sample = replace(sample, direction=_directions(result, groups, unit))
+    return with_scores(sample, result, unit) if layout.given_the_rest else sample
 
 
-def _grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+def _grouped_rows(result: Result) -> tuple[NDArray[np.intp], tuple[str, ...]]:
     """Return the row of each replicate, group and block, shape (R, N, k), and the blocks' names."""
-    labels = flags(ds["block"])
-    keys = np.stack([ds[name].values for name in ("replicate", "group", "block")])
+    labels = flags(result.dataset["block"])
+    keys = np.stack([result.dataset[name].values for name in ("replicate", "group", "block")])
     order = np.lexsort(keys[::-1])
     if order.size % len(labels) == 0:
         groups = keys[:, order].reshape(3, -1, len(labels))
         whole = (np.ptp(groups[:2], axis=2) == 0).all()
         if whole and (groups[2] == [code for code, _ in labels]).all():
-            order = order.reshape(ds.attrs["replicates"], -1, len(labels))
+            order = order.reshape(result.dataset.attrs["replicates"], -1, len(labels))
             return order, tuple(label for _, label in labels)
     raise InputError("rows of the design are missing: its indices need whole groups")
 
 
-def _directions(ds: xr.Dataset, order: NDArray[np.intp], unit: Floats) -> Floats:
+def _directions(result: Result, order: NDArray[np.intp], unit: Floats) -> Floats:
     """Return the steps of a design in which one input changes at a time: `DesignSample.direction`.
 
     Raises
@@ -123,39 +122,42 @@ def _directions(ds: xr.Dataset, order: NDArray[np.intp], unit: Floats) -> Floats
     InputError
         When the rows are not those of the design.
     """
-    entries = study_file_of(ds).uncertain
+    entries = result.study.uncertain
     scales = {name: e.times for name, e in entries.items() if not isinstance(e, Tied)}
     parameters = list(scales)
     direction = np.sign(np.diff(unit, axis=2))
     changing = direction != 0
     sound = bool((changing.sum(axis=-1) == 1).all())
     moving = changing.copy()
-    dependent = [parameters.index(name) for name in correlated_inputs(ds)]
+    dependent = [parameters.index(name) for name in correlated_inputs(result)]
     # Those that have changed are drawn again when another one does.
     among = changing[..., dependent]
     moving[..., dependent] = among.any(axis=-1, keepdims=True) & (among.cumsum(axis=2) > 0)
     for own, (name, times) in enumerate(scales.items()):
-        values = ds[name].values[order]
+        values = result.dataset[name].values[order]
         still = ~(moving[..., own] | moving[..., parameters.index(times or name)])
         sound &= bool((values[..., 1:] == values[..., :-1])[still].all())
     if not sound:
         raise InputError(
-            f"the rows differ from those of a '{ds.attrs['design']}' design as it is drawn now, so"
+            f"the rows differ from those of a '{result.design_name}' design as it is drawn now, so"
             " the effect of an input cannot be determined: run the study again"
         )
     return np.asarray(direction)
 
 
-def _unit(ds: xr.Dataset, order: NDArray[np.intp], d: int) -> Floats:
+def _unit(result: Result, order: NDArray[np.intp], d: int) -> Floats:
     """Draw the points of the unit cube that the rows come from, shape (*order.shape, d)."""
     first = order[..., 0]
-    group, replicate = ds["group"].values[first], ds["replicate"].values[first]
+    group, replicate = (
+        result.dataset["group"].values[first],
+        result.dataset["replicate"].values[first],
+    )
     start, stop = int(group.min()), int(group.max()) + 1
     sizes: dict[str, Any] = {
-        name: int(ds.attrs[name]) for name in ("seed", "replicates", "samples")
+        name: int(result.dataset.attrs[name]) for name in ("seed", "replicates", "samples")
     }
-    second_order = bool(ds.attrs["second_order"])
-    points = DESIGNS[ds.attrs["design"]].unit_rows(
+    second_order = bool(result.dataset.attrs["second_order"])
+    points = result.design.unit_rows(
         d=d, second_order=second_order, start=start, stop=stop, **sizes
     )
     return points[group - start, replicate]

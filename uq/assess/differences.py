@@ -59,31 +59,38 @@ class ComparedOutput:
         return tuple(chain.from_iterable(self.parts.values()))
 
 
-def compared_shares(pair: Pair, found: list[Summary]) -> dict[str, dict[str, ComparedStatistic]]:
+def compared_shares(
+    pair: Pair, summaries: list[Summary]
+) -> dict[str, dict[str, ComparedStatistic]]:
     """Return category -> label -> what is compared: all regimes, else what occurs."""
-    names = [name for name in found[0].shares if name in found[1].shares]
-    return {name: dict(_shares(pair, [one.shares[name] for one in found], name)) for name in names}
+    names = [name for name in summaries[0].shares if name in summaries[1].shares]
+    return {
+        name: dict(_shares(pair, [summary.shares[name] for summary in summaries], name))
+        for name in names
+    }
 
 
 def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, ComparedStatistic]]:
     members = [estimators.in_categories(rows, name) for rows in pair.rows]
     for label in shares[0]:
-        both = [one[label] for one in shares if label in one]
-        occurs = name == REGIME or any(one.facts["count"] for one in both)
+        both = [of_labels[label] for of_labels in shares if label in of_labels]
+        occurs = name == REGIME or any(statistic.facts["count"] for statistic in both)
         if len(both) > 1 and occurs:
-            samples = [one[label] for one in members]
+            samples = [members_of_side[label] for members_of_side in members]
             yield label, _compared(pair, both, samples, pair.have_equal_outputs)
 
 
-def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:
+def compared_output(
+    pair: Pair, elements: list[Element], summaries: list[Summary]
+) -> ComparedOutput:
     """Compare all statistics of the same element of two results."""
-    described = [one.outputs[elements[0].name] for one in found]
+    described = [summary.outputs[elements[0].name] for summary in summaries]
     parts = {
         name: tuple(
-            _of_elements(pair, elements, [one, other])
-            for one in statistics
-            if one.is_read_by(Reader.COMPARED)
-            and (other := described[1].find(*one.key)) is not None
+            _of_elements(pair, elements, [statistic, other])
+            for statistic in statistics
+            if statistic.is_read_by(Reader.COMPARED)
+            and (other := described[1].find(*statistic.key)) is not None
         )
         for name, statistics in described[0].parts.items()
     }
@@ -94,9 +101,9 @@ def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> 
     """Compare a statistic of the same element of two results."""
     estimator = both[0].estimator
     samples = [] if estimator is None else [estimator.sample(element) for element in elements]
-    known = [one for one in samples if one is not None]
+    present = [sample for sample in samples if sample is not None]
     are_equal = pair.are_equal([estimators.whole(element) for element in elements])
-    return _compared(pair, [one.best for one in both], known, are_equal)
+    return _compared(pair, [statistic.best for statistic in both], present, are_equal)
 
 
 def _compared(
@@ -105,8 +112,8 @@ def _compared(
     """Compare two statistics of paired rows that are equal in both results, or of others."""
     estimator = both[0].estimator
     is_scale = estimator is not None and estimator.is_scale
-    known = [one.estimate.finite for one in both]
-    if any(isnan(one.value) for one in known):
+    estimates = [statistic.estimate.finite for statistic in both]
+    if any(isnan(estimate.value) for estimate in estimates):
         return ComparedStatistic(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
     if are_equal:
         ratio = Estimate(1.0) if is_scale else None
@@ -115,11 +122,13 @@ def _compared(
         most = pair.most_that_change_sides(samples[0])
         apart = Estimate(0.0, -most, most)
         return ComparedStatistic(both[0], both[1], apart, no_row_changes_sides=True)
-    if estimator is None or any(one.estimate.assumes for one in both):
-        apart = two_samples.difference(known[0], known[1], pair.unpaired)
+    if estimator is None or any(statistic.estimate.assumes for statistic in both):
+        apart = two_samples.difference(estimates[0], estimates[1], pair.unpaired)
     else:
-        apart = pair.difference(estimator, samples, known)
-    times = pair.ratio(samples, known) if is_scale else None
-    if any(one.reason for one in known):  # without an interval its difference has none
+        apart = pair.difference(estimator, samples, estimates)
+    times = pair.ratio(samples, estimates) if is_scale else None
+    if any(
+        estimate.reason for estimate in estimates
+    ):  # without an interval its difference has none
         apart, times = Estimate(apart.value), times and Estimate(times.value)
     return ComparedStatistic(both[0], both[1], apart.finite, ratio=times and times.finite)

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.assess.independent_inputs import independent_inputs
 from uq.contract import Floats
 from uq.result.elements import Element, flags
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (
     CONFIDENCE,
@@ -100,7 +100,7 @@ def earliest_rows(element: Element) -> Places:
 
 
 def inputs_apart(
-    ds: xr.Dataset,
+    result: Result,
     first: Places,
     ranked: Mapping[str, Floats],
     replicate: Replicates = None,
@@ -109,7 +109,7 @@ def inputs_apart(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         Independent rows of a result.
     first : ndarray of int, shape (k,)
         Places of the rows.
@@ -130,13 +130,13 @@ def inputs_apart(
        behaviour of interest are compared with the others, input by input: R. C. Spear, G. M.
        Hornberger, "Eutrophication in Peel Inlet - II", Water Res. 14, 43-49 (1980).
     """
-    mask = np.zeros(ds.sizes["sample"], dtype=bool)
+    mask = np.zeros(len(result), dtype=bool)
     mask[first] = True
     part = replicates_of_some(replicate, mask)
     if isinstance(part, EvenReplicates):  # a rank follows its input without a jump
         part = part.view(np.ndarray)
     sure = 1 - (1 - CONFIDENCE) / (2 * max(len(ranked), 1))
-    columns = independent_inputs(ds)
+    columns = independent_inputs(result)
     found, has_intervals = [], False
     for name, rank in ranked.items():
         away = np.abs(rank - 0.5)
@@ -165,27 +165,27 @@ def inputs_apart(
 
 
 def regimes_of_first(
-    ds: xr.Dataset, first: Places, replicate: Replicates = None
+    result: Result, first: Places, replicate: Replicates = None
 ) -> list[RegimeOfFirst]:
     """Return the regimes that some rows are in more often than all, the most frequent first.
 
     If there are none, that in which most of them are; nothing where all rows are in one regime.
     """
-    found = sorted(_regimes(ds, first, replicate), key=lambda one: -one.share.value)
+    found = sorted(_regimes(result, first, replicate), key=lambda one: -one.share.value)
     more = [one for one in found if one.is_more_frequent]
     return more or [one for one in found[:1] if one.overall < 1]
 
 
-def _regimes(ds: xr.Dataset, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
-    if "regime" not in ds:
+def _regimes(result: Result, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
+    if "regime" not in result.dataset:
         return
-    mask = np.zeros(ds.sizes["sample"], dtype=bool)
+    mask = np.zeros(len(result), dtype=bool)
     mask[first] = True
     part = replicates_of_some(replicate, mask)
-    known = [(code, label) for code, label in flags(ds["regime"]) if code >= 0]
+    known = [(code, label) for code, label in flags(result.dataset["regime"]) if code >= 0]
     sure = 1 - (1 - CONFIDENCE) / max(len(known), 1)
     for code, label in known:
-        inside = ds["regime"].values == code
+        inside = result.dataset["regime"].values == code
         overall = float(inside.mean())
         low, _ = share_interval(inside[mask], part, sure)
         share = Estimate(float(inside[mask].mean()), *share_interval(inside[mask], part))

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.population import Population
 from uq.contract import Status
-from uq.result.elements import Element, Floats, Mask, category_codes, flags
+from uq.result.elements import Element, Floats, Mask, flags
+from uq.result.result import Result
 from uq.stats import order_statistics
 
 
@@ -30,16 +30,16 @@ def whole(element: Element) -> SelectedRows:
     return SelectedRows(element.present, np.column_stack([element.values, element.censored]))
 
 
-def in_categories(rows: xr.Dataset, name: str) -> dict[str, SelectedRows]:
+def in_categories(rows: Result, name: str) -> dict[str, SelectedRows]:
     """Return which rows are in each category, of those that did not fail without.
 
     The name is that of an output, or of one element of it.
     """
-    codes = category_codes(rows, name)[name]
-    kept = (codes >= 0) | (rows["status"].values == Status.OK)
+    codes = rows.codes(name)[name]
+    kept = (codes >= 0) | (rows.dataset["status"].values == Status.OK)
     return {
         label: SelectedRows(kept, (codes == code).astype(float))
-        for code, label in flags(rows[name.partition("[")[0]])
+        for code, label in flags(rows.dataset[name.partition("[")[0]])
         if code >= 0
     }
 

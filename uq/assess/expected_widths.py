@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.targets import lightened, number_of
 from uq.indices.method import SensitivityMethod
@@ -18,14 +17,9 @@ from uq.indices.sample import DesignSample
 from uq.result.elements import (
     Element,
     Floats,
-    analysis_of,
-    elements_of,
     flags,
-    has_independent_samples,
-    independent_rows,
-    shown_outputs,
 )
-from uq.sampling.designs import DESIGNS
+from uq.result.result import Result
 from uq.stats.intervals import upper_probability
 from uq.stats.order_statistics import is_within
 from uq.stats.quantile_functions import normal, student
@@ -58,12 +52,12 @@ class Widths:
     indices: Mapping[str, float | None]
 
 
-def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
+def expected_widths(pilot: Result) -> dict[str, Widths]:
     """Return the widths of the 95 % intervals that a whole study will give.
 
     Parameters
     ----------
-    pilot : xarray.Dataset
+    pilot : Result
         Some rows of the study, whole groups of its design.
 
     Returns
@@ -71,18 +65,18 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     dict of str to Widths
         Element of an output -> widths.
     """
-    analysis = analysis_of(pilot)
-    samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
-    labels = [label for _, label in flags(pilot["block"])]
+    analysis = pilot.analysis
+    samples, replicates = pilot.dataset.attrs["samples"], pilot.dataset.attrs["replicates"]
+    labels = [label for _, label in flags(pilot.dataset["block"])]
     rows = samples * replicates * (2 if "A" in labels else 1)
-    factor = _factor(has_independent_samples(pilot), replicates)
-    keys = [pilot[name].values for name in ("block", "group", "replicate")]
+    factor = _factor(pilot.has_independent_samples, replicates)
+    keys = [pilot.dataset[name].values for name in ("block", "group", "replicate")]
     groups = np.lexsort(keys).reshape(-1, len(labels))
-    method = piloted_by(DESIGNS[pilot.attrs["design"]])
+    method = piloted_by(pilot.design)
     found = {}
-    outputs = shown_outputs(pilot, analysis)
+    outputs = pilot.shown_outputs(analysis)
     for whole, element in zip(
-        elements_of(pilot, outputs), elements_of(independent_rows(pilot), outputs), strict=True
+        pilot.elements(outputs), pilot.independent.elements(outputs), strict=True
     ):
         own = factor if len(element.at_least) >= _ENOUGH_ROWS else None
         limits = analysis.thresholds.get(element.output, ())

@@ -46,16 +46,18 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
     def wrap(make: Maker) -> Maker:
         @wraps(make)
         def made(element: Element, context: Context) -> list[Statistic]:
-            found = list(make(element, context))
+            statistics = list(make(element, context))
             if not element.failed.any():
-                return found
+                return statistics
             least = 0.0 if element.is_lifetime or of_magnitude and element.is_angle else -np.inf
             ends = (make(with_failed_at(element, end), context) for end in (least, np.inf))
             return [
-                one
-                if one.kind.is_count
-                else _with_bounds(one, element.is_lifetime, *(both[::-1] if one.falls else both))
-                for one, *both in zip(found, *ends, strict=True)
+                statistic
+                if statistic.kind.is_count
+                else _with_bounds(
+                    statistic, element.is_lifetime, *(both[::-1] if statistic.falls else both)
+                )
+                for statistic, *both in zip(statistics, *ends, strict=True)
             ]
 
         return made
@@ -63,12 +65,14 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
     return wrap
 
 
-def _with_bounds(one: Statistic, is_life: bool, lowest: Statistic, highest: Statistic) -> Statistic:
-    ends = bounds(one.estimate, lowest.estimate, highest.estimate, is_life)
-    otherwise = one.otherwise
+def _with_bounds(
+    statistic: Statistic, is_life: bool, lowest: Statistic, highest: Statistic
+) -> Statistic:
+    ends = bounds(statistic.estimate, lowest.estimate, highest.estimate, is_life)
+    otherwise = statistic.otherwise
     if otherwise and lowest.otherwise and highest.otherwise:
         otherwise = _with_bounds(otherwise, is_life, lowest.otherwise, highest.otherwise)
-    return replace(one, failed=ends, otherwise=otherwise)
+    return replace(statistic, failed=ends, otherwise=otherwise)
 
 
 def bounds(plain: Estimate, lowest: Estimate, highest: Estimate, is_life: bool) -> Estimate:
@@ -84,22 +88,22 @@ def bounds(plain: Estimate, lowest: Estimate, highest: Estimate, is_life: bool) 
     """
     alone = not _has_end(plain)
 
-    def bound(which: str, one: Estimate) -> tuple[float, bool]:
+    def bound(which: str, estimate: Estimate) -> tuple[float, bool]:
         # Replicates that agree with the failed rows on one side give no interval there.
-        agreed = np.isfinite(one.value) and not _has_end(one)
+        agreed = np.isfinite(estimate.value) and not _has_end(estimate)
         end = "value" if alone or agreed else which
-        found, inner = getattr(one, end), getattr(plain, which)
-        if np.isfinite(found) and np.isfinite(inner):
-            found = float(outer(which, found, inner))
-        return found if is_life or np.isfinite(found) else np.nan, end in one.beyond
+        widest, inner = getattr(estimate, end), getattr(plain, which)
+        if np.isfinite(widest) and np.isfinite(inner):
+            widest = float(outer(which, widest, inner))
+        return widest if is_life or np.isfinite(widest) else np.nan, end in estimate.beyond
 
     (low, low_beyond), (high, high_beyond) = bound("low", lowest), bound("high", highest)
     beyond = ("low",) * low_beyond + ("high",) * high_beyond
     return Estimate(low=low, high=high, beyond=beyond)
 
 
-def _has_end(one: Estimate) -> bool:
-    return bool(np.isfinite(one.low) or np.isfinite(one.high))
+def _has_end(estimate: Estimate) -> bool:
+    return bool(np.isfinite(estimate.low) or np.isfinite(estimate.high))
 
 
 def outer(which: str, bound: ArrayLike, end: ArrayLike) -> Floats:
@@ -130,7 +134,7 @@ def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Esti
     plain = share_interval(hits[~failed], replicates_of_some(replicate, ~failed))
 
     def bound(which: str, place: int, some: Mask) -> float:
-        found = share_interval(some, replicate)[place]
-        return float(outer(which, found if np.isfinite(found) else some.mean(), plain[place]))
+        end = share_interval(some, replicate)[place]
+        return float(outer(which, end if np.isfinite(end) else some.mean(), plain[place]))
 
     return Estimate(low=bound("low", 0, hits & ~failed), high=bound("high", 1, hits | failed))

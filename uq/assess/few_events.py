@@ -1,13 +1,12 @@
 """Events that happen, or do not, in few rows: their indices are rough, or refused."""
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.targets import IndexTarget
 from uq.indices.index import RefusedError
 from uq.indices.measures import MIN_SIDE
-from uq.result.elements import independent_rows, why_no_statistics
-from uq.sampling.designs import DESIGNS
+from uq.result.elements import independent_rows
+from uq.result.result import Result
 from uq.sampling.layouts import PLAIN
 from uq.text.numbers import counted, grouped, rows_in_words
 
@@ -18,12 +17,12 @@ ENOUGH_HITS = 20
 """With fewer in each replicate the indices come with a warning."""
 
 
-def few_hits(ds: xr.Dataset, target: IndexTarget, intervals: bool = True) -> tuple[str, ...]:
+def few_hits(result: Result, target: IndexTarget, intervals: bool = True) -> tuple[str, ...]:
     """Return the warning for an event with few hits or misses; any two values make one.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         The result that the target is of.
     target : IndexTarget
     intervals : bool, optional
@@ -41,11 +40,11 @@ def few_hits(ds: xr.Dataset, target: IndexTarget, intervals: bool = True) -> tup
     """
     if target.values.ndim > 1:
         return ()
-    values, replicates = target.values, int(ds.attrs.get("replicates", 1))
+    values, replicates = target.values, int(result.dataset.attrs.get("replicates", 1))
     if not (target.event or len(np.unique(values[np.isfinite(values)])) == 2):
         return ()
-    if not why_no_statistics(ds):
-        values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values
+    if not result.why_no_statistics:
+        values = independent_rows(result.dataset.assign(hit=("row", values)))["hit"].values
     known = values[np.isfinite(values)]
     hits = known > known.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))
@@ -53,14 +52,14 @@ def few_hits(ds: xr.Dataset, target: IndexTarget, intervals: bool = True) -> tup
         return ()  # without any the method refuses
     side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
     each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
-    samples = int(ds.attrs["samples"])
+    samples = int(result.dataset.attrs["samples"])
     needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
     remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
     seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{each}"
     if rarer < FEWEST_HITS * replicates:
-        if target.event and DESIGNS[ds.attrs["design"]].layout is not PLAIN:
+        if target.event and result.design.layout is not PLAIN:
             remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"
         raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
-    widened = DESIGNS[ds.attrs["design"]].crossed
+    widened = result.design.crossed
     narrow = ", and intervals may be too narrow" if intervals and not widened else ""
     return (f"{seen}: the indices are rough{narrow}; {remedy}",)

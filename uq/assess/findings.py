@@ -5,8 +5,6 @@ from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
-import xarray as xr
-
 from uq.assess.earliest import ranks
 from uq.assess.fleet import Fleet, fleet_of
 from uq.assess.independent_inputs import independent_inputs
@@ -19,14 +17,8 @@ from uq.contract import Floats
 from uq.errors import InputError
 from uq.result.elements import (
     Element,
-    analysis_of,
-    elements_of,
-    independent_rows,
-    output_names,
-    shown_outputs,
 )
-from uq.result.nesting import nesting_of
-from uq.result.ranked_rows import ranked_rows
+from uq.result.result import Result
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,31 +29,30 @@ class Findings:
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        A result; it must not be changed while this is in use.
+    result : Result
     """
 
-    def __init__(self, ds: xr.Dataset):
-        self.ds = ds
+    def __init__(self, result: Result):
+        self.result = result
         self._sensitivities: dict[str, Sensitivities] = {}
         self._indices: dict[tuple[str, str], TargetIndices] = {}
 
     @cached_property
-    def rows(self) -> xr.Dataset:
+    def rows(self) -> Result:
         """The independent rows."""
-        return independent_rows(self.ds)
+        return self.result.independent
 
     @cached_property
     def ranked(self) -> "Findings":
         """Findings on the rows that rank inputs (`uq.result.ranked_rows.ranked_rows`)."""
-        ranked = ranked_rows(self.ds)
-        return self if ranked is self.ds else Findings(ranked)
+        ranked = self.result.ranked
+        return self if ranked is self.result else Findings(ranked)
 
     @cached_property
     def absent(self) -> frozenset[str]:
         """The outputs that no independent row has."""
-        names = output_names(self.rows)
-        there = (one.output for one in elements_of(self.rows, names) if one.present.any())
+        names = self.rows.output_names
+        there = (one.output for one in self.rows.elements(names) if one.present.any())
         return frozenset(names) - frozenset(there)
 
     @cached_property
@@ -72,12 +63,12 @@ class Findings:
     @cached_property
     def summary(self) -> Summary:
         """What `uq.assess.summary.summarise` returns."""
-        return summarise(self.ds)
+        return summarise(self.result)
 
     @cached_property
     def boundary(self) -> Statistic | None:
         """What `uq.assess.regime_boundary.boundary` returns."""
-        return boundary(self.ds)
+        return boundary(self.result)
 
     @cached_property
     def running(self) -> "pd.DataFrame":
@@ -87,7 +78,7 @@ class Findings:
         from uq.assess.convergence import COLUMNS, running_estimates
 
         try:
-            return running_estimates(self.ds)
+            return running_estimates(self.result)
         except InputError as refused:
             nothing = pd.DataFrame(columns=COLUMNS)
             nothing.attrs["refused"] = str(refused)
@@ -96,15 +87,15 @@ class Findings:
     @cached_property
     def levels(self) -> ByLevel:
         """What `uq.assess.level_shares.by_level` returns."""
-        return by_level(self.ds)
+        return by_level(self.result)
 
     @cached_property
     def fleets(self) -> list[Fleet]:
         """The fleet of each life, of as many units as a sample has; empty where that is one."""
-        units = nesting_of(self.rows).units
-        shown = shown_outputs(self.rows, analysis_of(self.rows)) if units > 1 else ()
-        lives = [one for one in elements_of(self.rows, shown) if one.is_lifetime]
-        return list(chain.from_iterable(_fleets(self.ds, units, one) for one in lives))
+        units = self.rows.nesting.units
+        shown = self.rows.shown_outputs(self.rows.analysis) if units > 1 else ()
+        lives = [one for one in self.rows.elements(shown) if one.is_lifetime]
+        return list(chain.from_iterable(_fleets(self.result, units, one) for one in lives))
 
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.assess.sensitivities.sensitivities` finds by a method.
@@ -115,7 +106,7 @@ class Findings:
             When the method does not apply to this result.
         """
         if method not in self._sensitivities:
-            self._sensitivities[method] = sensitivities(self.ds, method)
+            self._sensitivities[method] = sensitivities(self.result, method)
         return self._sensitivities[method]
 
     def indices(self, method: str, target: str) -> TargetIndices:
@@ -130,14 +121,14 @@ class Findings:
         if target in known:
             return known[target]
         if (method, target) not in self._indices:
-            found = sensitivities(self.ds, method, target).targets
+            found = sensitivities(self.result, method, target).targets
             self._indices |= {(method, name): one for name, one in found.items()}
         return self._indices[method, target]
 
 
-def _fleets(ds: xr.Dataset, units: int, life: Element) -> Iterator[Fleet]:
+def _fleets(result: Result, units: int, life: Element) -> Iterator[Fleet]:
     """Yield the fleet of a life, unless its rows are censored too early."""
     try:
-        yield fleet_of(ds, units, output=life.name)
+        yield fleet_of(result, units, output=life.name)
     except InputError:
         return

@@ -3,12 +3,10 @@
 from typing import Any
 
 import pandas as pd
-import xarray as xr
 
 from uq.assess.life_fit import Fit, fits_of
-from uq.assess.life_quantiles import B_LIVES
-from uq.result.elements import independent_rows, lifetimes, replicates_of
-from uq.result.weights import refuse_weights
+from uq.assess.statistics.quantiles import B_LIVES
+from uq.result.result import AnyResult, Result
 
 _PARAMETERS = ("shape", "scale", "median", "sigma")
 _FACTS = ("rows", "p_value", "refused", "assumes")
@@ -20,12 +18,12 @@ _COLUMNS = [
 ]
 
 
-def life_fits(ds: xr.Dataset, output: str) -> pd.DataFrame:
+def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     """Fit Weibull and lognormal laws to a lifetime.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of design ``monte-carlo``.
     output : str
         A lifetime, or one element of it.
@@ -65,12 +63,13 @@ def life_fits(ds: xr.Dataset, output: str) -> pd.DataFrame:
     >>> laws.loc["weibull", "refused"].startswith("rejected")
     True
     """
-    refuse_weights(ds, "laws fitted to lives")
-    rows = independent_rows(ds)
-    independent = replicates_of(rows) is None
+    result = Result.of(result)
+    result.refuse_weights("laws fitted to lives")
+    rows = result.independent
+    independent = rows.replicates is None
     lines = {
         (element.name, law): _line(fit)
-        for element in lifetimes(rows, output)
+        for element in rows.lifetimes(output)
         for law, fit in fits_of(element, independent).items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "law"])

@@ -6,7 +6,6 @@ from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.fleet_numbers import Banded, FleetNumbers
 from uq.assess.fleets import Units, units_of
@@ -16,16 +15,9 @@ from uq.assess.summary import why_no_intervals
 from uq.errors import InputError, choices
 from uq.result.elements import (
     Element,
-    analysis_of,
-    has_independent_samples,
-    independent_rows,
-    lifetimes,
-    replicates_of,
-    shown_outputs,
-    why_no_statistics,
 )
-from uq.result.nesting import Nesting, levels_that_vary, samples_have, size_in_words
-from uq.result.variables import outputs_of
+from uq.result.nesting import Nesting, samples_have, size_in_words
+from uq.result.result import AnyResult, Result
 from uq.sampling.designs import several
 from uq.sampling.levels import SHARED
 from uq.stats.clusters import Clusters
@@ -92,7 +84,7 @@ class Fleet:
 
 
 def fleet(
-    ds: xr.Dataset,
+    result: AnyResult,
     size: int,
     by: float | Sequence[float] = (),
     allow: int = 0,
@@ -104,7 +96,7 @@ def fleet(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result, or a posterior of `uq.update`, whose fleets are of units never inspected. Units
         of a fleet have the same shared inputs, and are those of a sample.
     size : int
@@ -143,8 +135,9 @@ def fleet(
     >>> list(table.index.unique())
     ['first', 'failed', 'at_most_allowed']
     """
+    result = Result.of(result)
     times = [float(by)] if isinstance(by, int | float) else [float(one) for one in by]
-    found = fleet_of(ds, size, times, allow, output, plain=plain)
+    found = fleet_of(result, size, times, allow, output, plain=plain)
     lines = [("first", p, one) for p, one in found.first.items()]
     for time, (failed, at_most) in found.by.items():
         lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
@@ -175,7 +168,7 @@ def reasons(one: Banded) -> list[str]:
 
 
 def fleet_of(
-    ds: xr.Dataset,
+    result: Result,
     size: int,
     by: Sequence[float] = (),
     allow: int = 0,
@@ -184,17 +177,17 @@ def fleet_of(
     plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
-    if why := why_no_statistics(ds):
-        raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
+    if why := result.why_no_statistics:
+        raise InputError(f"no fleet: the rows of a '{result.design_name}' design {why}")
     if size < 1 or allow < 0:
         raise InputError("uq fleet: the size must be at least 1, and what is allowed at least 0")
     if bad := [time for time in by if not 0 < time < inf]:
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
-    rows = independent_rows(ds)
+    rows = result.independent
     element = the_life(rows, output)
     units = units_of(rows, element, plain=plain)
     _refuse(units, size)
-    analysis = analysis_of(ds)
+    analysis = result.analysis
     times = list(by) or list(analysis.thresholds.get(element.output, ()))
     for time in times:
         if count := int(element.unknown_sides(time).sum()):
@@ -205,7 +198,7 @@ def fleet_of(
             )
     part = _part_of_samples(rows, units.place)
     idle = without_effect(inputs_of(rows), element.declared)
-    of = FleetNumbers(units, size, allow, part, SHARED in levels_that_vary(rows, idle))
+    of = FleetNumbers(units, size, allow, part, SHARED in rows.levels_that_vary(idle))
     first = {p: of.first(p) for p in analysis.quantiles}
     ended = {time: (of.failed(time), of.at_most_allowed(time)) for time in times}
     place = units.place
@@ -215,7 +208,7 @@ def fleet_of(
         notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
-    notes += filter(None, [units.why_not_more, why_no_intervals(ds)])
+    notes += filter(None, [units.why_not_more, why_no_intervals(result)])
     assumed = {one.assumes for both in of.ends for one in both if one.assumes}
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)
@@ -226,12 +219,12 @@ def fleet_of(
     return Fleet(element.name, size, allow, *numbers, notes, *of_life, weights)
 
 
-def the_life(rows: xr.Dataset, output: str | None) -> Element:
+def the_life(rows: Result, output: str | None) -> Element:
     """Return the element of a life that is meant: the only one, unless it is named."""
-    outputs = outputs_of(rows)
-    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if outputs[one].is_lifetime]
+    outputs = rows.outputs
+    shown = [one for one in rows.shown_outputs(rows.analysis) if outputs[one].is_lifetime]
     asked = [output] if output is not None else shown
-    found = [element for one in asked for element in lifetimes(rows, one)]
+    found = [element for one in asked for element in rows.lifetimes(one)]
     if not found:
         raise InputError("uq fleet: the study shows no life")
     if len(found) > 1:
@@ -251,10 +244,10 @@ def _refuse(units: Units, size: int) -> None:
         )
 
 
-def _part_of_samples(rows: xr.Dataset, place: Nesting) -> Replicates:
+def _part_of_samples(rows: Result, place: Nesting) -> Replicates:
     """Return the independent part of each sample, shape (samples,)."""
-    part = replicates_of(rows)
+    part = rows.replicates
     if isinstance(part, Clusters) and part.together is not None:
         _, first = np.unique(place.sample, return_index=True)
         return part[first]
-    return None if has_independent_samples(rows) else place.replicate
+    return None if rows.has_independent_samples else place.replicate

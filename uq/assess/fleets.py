@@ -11,7 +11,6 @@ from functools import cached_property
 from math import ceil, nan
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.population import Population
 from uq.assess.row_inputs import Inputs, inputs_of
@@ -19,8 +18,8 @@ from uq.assess.scale_laws import Scale
 from uq.assess.scaling import integrated, not_integrated, why_not_integrated, without_effect
 from uq.contract import Floats, Mask
 from uq.result.element import Element
-from uq.result.nesting import Nesting, levels_of, nesting_of
-from uq.result.weights import sample_weights
+from uq.result.nesting import Nesting
+from uq.result.result import Result
 from uq.sampling.levels import CHANCE, OWN, SHARED
 from uq.stats.counting import more_than, turns
 from uq.stats.intervals import Replicates
@@ -187,19 +186,19 @@ class _MoreThan:
         return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
 
 
-def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Units:
+def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
     """Return the units of the worlds of a result.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         Samples of a result.
     element : Element
         A life of these rows.
     plain : bool
         Whether lives are taken as computed.
     """
-    place, levels = nesting_of(rows), levels_of(rows)
+    place, levels = rows.nesting, rows.levels
     own = shared = None
     inputs, why = inputs_of(rows), ""
     scales = element.declared.scales and not plain
@@ -216,12 +215,12 @@ def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Unit
     idle = without_effect(inputs, element.declared)
     known = idle if own is None else (*own.inputs, *idle)
     varying = _unknown(levels, inputs.tied, known)
-    if rows.attrs.get("random"):
+    if rows.is_random:
         varying = (*varying, "the model's own chance")
     known = idle if shared is None else (*shared.inputs, *idle)
     repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
-    design = rows.attrs["design"]
-    weights = sample_weights(rows, place, "fleets")
+    design = rows.design_name
+    weights = rows.sample_weights("fleets")
     return Units(replace(element, law=own), place, shared, varying, why, repeats, design, weights)
 
 

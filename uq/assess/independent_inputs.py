@@ -2,21 +2,20 @@
 
 from collections import defaultdict
 
-import xarray as xr
-
-from uq.result.elements import Floats, study_file_of
+from uq.result.elements import Floats
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.truncation import factor_of
 from uq.study.file import Tied
 from uq.study.input_checks import laws_of
 
 
-def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
+def independent_inputs(result: Result) -> dict[str, Floats]:
     """Return the values of each input as its own law gives them.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
 
     Returns
@@ -26,16 +25,16 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
         With inputs that have rank correlations.
     """
     return {
-        name: ds[name].values
+        name: result.dataset[name].values
         if law.times is None
-        else factor_of(law, ds[name].values, ds[law.times].values)
-        for name, law in laws_of(ds.attrs["study"]).items()
+        else factor_of(law, result.dataset[name].values, result.dataset[law.times].values)
+        for name, law in laws_of(result.dataset.attrs["study"]).items()
     }
 
 
-def correlated_inputs(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
+def correlated_inputs(result: Result) -> dict[str, tuple[str, ...]]:
     """Return the inputs with stated rank correlations: name -> those it is correlated with."""
-    stated = study_file_of(ds).dependence
+    stated = result.study.dependence
     if stated is None:
         return {}
     names = stated.parameters
@@ -45,9 +44,9 @@ def correlated_inputs(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
     }
 
 
-def why_dependent(ds: xr.Dataset) -> str:
+def why_dependent(result: Result) -> str:
     """Return a clause on why inputs are not assumed to be independent, or ""."""
-    study = study_file_of(ds)
+    study = result.study
     if study.dependence is not None:
         return "the inputs of this study depend on each other"
     if DESIGNS[study.design.method].imported and not study.design.independent:
@@ -59,10 +58,10 @@ _DUE = "the index of an input may be due to another"
 _DIVIDED = "what correlated inputs explain in common is divided among them"
 
 
-def notes_on_inputs(ds: xr.Dataset) -> list[str]:
+def notes_on_inputs(result: Result) -> list[str]:
     """Return sentences on what the indices of tied or dependent inputs mean."""
     notes, tied = [], defaultdict[str, list[str]](list)
-    for name, entry in study_file_of(ds).uncertain.items():
+    for name, entry in result.study.uncertain.items():
         if isinstance(entry, Tied):
             tied[entry.equals].append(name)
         elif entry.times is not None:
@@ -72,7 +71,7 @@ def notes_on_inputs(ds: xr.Dataset) -> list[str]:
         notes.append(
             f"{' and '.join(others)} {equal} {name}: the index of {name} is that of {together}"
         )
-    if why := why_dependent(ds):
-        shared = DESIGNS[ds.attrs["design"]].layout.given_the_rest
+    if why := why_dependent(result):
+        shared = result.design.layout.given_the_rest
         notes.append(f"{why}: {_DIVIDED if shared else _DUE}")
     return notes

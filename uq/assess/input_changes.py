@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-import xarray as xr
-
-from uq.result.elements import Floats, independent_rows, study_file_of
+from uq.result.elements import Floats
+from uq.result.result import Result
 from uq.study.file import StudyFile, Tied
 from uq.text.literals import shown
 from uq.text.numbers import law
@@ -45,23 +44,23 @@ class OnlyChange(NamedTuple):
     second: InputMoments
 
 
-def changes(first: xr.Dataset, second: xr.Dataset) -> list[ChangedEntry]:
+def changes(first: Result, second: Result) -> list[ChangedEntry]:
     """Return all differences between two studies, apart from [analysis].
 
     Parameters
     ----------
-    first, second : xarray.Dataset
+    first, second : Result
         Results of one model.
 
     Returns
     -------
     list of ChangedEntry
     """
-    sides = [(ds, study_file_of(ds)) for ds in (first, second)]
+    sides = [(result, result.study) for result in (first, second)]
     return [*_frame(sides), *_inputs(sides)]
 
 
-Side = tuple[xr.Dataset, StudyFile]
+Side = tuple[Result, StudyFile]
 
 
 def _frame(sides: list[Side]) -> Iterator[ChangedEntry]:
@@ -79,17 +78,17 @@ def _frame(sides: list[Side]) -> Iterator[ChangedEntry]:
         yield ChangedEntry("dependence", "rank correlations", *parameters)
 
 
-def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str], Any]]:
-    yield ("model", "version"), ds.attrs["model_version"]
+def _entries(result: Result, study: StudyFile) -> Iterator[tuple[tuple[str, str], Any]]:
+    yield ("model", "version"), result.dataset.attrs["model_version"]
     for name in ("design", "samples", "replicates", "seed"):
-        value = ds.attrs[name]
+        value = result.dataset.attrs[name]
         yield ("design", name), value if isinstance(value, str) else int(value)
     for name, value in study.settings.items():
         yield ("setting", name), value
 
 
 def _inputs(sides: list[Side]) -> Iterator[ChangedEntry]:
-    first, second = (ds for ds, _ in sides)
+    first, second = (result.dataset for result, _ in sides)
     for name, variable in first.data_vars.items():
         if variable.attrs.get("role") in ("input", "fixed") and name in second:
             one, other = (_stated(*side, str(name)) for side in sides)
@@ -97,13 +96,13 @@ def _inputs(sides: list[Side]) -> Iterator[ChangedEntry]:
                 yield ChangedEntry("input", str(name), one[0], other[0])
 
 
-def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
+def _stated(result: Result, study: StudyFile, name: str) -> tuple[str, Any]:
     """Return an input in words, and all that determines its rows."""
-    unit = ds[name].attrs["units"]
+    unit = result.dataset[name].attrs["units"]
     behind = "" if unit == "1" else f" {unit}"
     entry = study.uncertain.get(name)
     if entry is None:
-        value = ds[name].values.tolist()
+        value = result.dataset[name].values.tolist()
         if isinstance(value, list):  # imported rows
             return "as imported", value
         return f"{value!r}{behind}", value
@@ -113,16 +112,14 @@ def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
     return stated, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
 
 
-def only_change(
-    first: xr.Dataset, second: xr.Dataset, found: list[ChangedEntry]
-) -> OnlyChange | None:
+def only_change(first: Result, second: Result, found: list[ChangedEntry]) -> OnlyChange | None:
     """Return the only input that differs, if nothing else but the design does."""
     decisive = [change for change in found if change.kind != "design"]
     if [change.kind for change in decisive] != ["input"]:
         return None
     name = decisive[0].name
-    spreads = (_spread(independent_rows(ds)[name].values) for ds in (first, second))
-    return OnlyChange(name, str(first[name].attrs["units"]), *spreads)
+    spreads = (_spread(result.independent.dataset[name].values) for result in (first, second))
+    return OnlyChange(name, str(first.dataset[name].attrs["units"]), *spreads)
 
 
 def _spread(values: Floats) -> InputMoments:

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
-from uq.result.elements import Element, Floats, elements_of
+from uq.result.elements import Element, Floats
+from uq.result.result import Result
 from uq.stats import order_statistics
 from uq.study.file import USUAL, AnalysisTable
 
@@ -35,12 +35,12 @@ class JointBound(NamedTuple):
     rows_needed: float
 
 
-def joint_bounds(rows: xr.Dataset, analysis: AnalysisTable) -> list[JointBound]:
+def joint_bounds(rows: Result, analysis: AnalysisTable) -> list[JointBound]:
     """Return the bounds that a study asks for.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result. Those in which one of the outputs is undefined are left
         out; those that failed lie outside.
     analysis : AnalysisTable
@@ -81,12 +81,12 @@ class Needed(NamedTuple):
     bounds: int
 
 
-def rows_needed(rows: xr.Dataset, analysis: AnalysisTable) -> dict[str, Needed]:
+def rows_needed(rows: Result, analysis: AnalysisTable) -> dict[str, Needed]:
     """Return the rows that the bounds of a study need, by key of its [analysis].
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         Some of its rows.
     analysis : AnalysisTable
     """
@@ -99,8 +99,8 @@ def rows_needed(rows: xr.Dataset, analysis: AnalysisTable) -> dict[str, Needed]:
     return found
 
 
-def _wanted(rows: xr.Dataset, asked: Mapping[str, str]) -> Iterator[tuple[Element, str]]:
-    for element in elements_of(rows, tuple(asked)):
+def _wanted(rows: Result, asked: Mapping[str, str]) -> Iterator[tuple[Element, str]]:
+    for element in rows.elements(tuple(asked)):
         for side in SIDES[asked[element.output]]:
             yield element, side
 

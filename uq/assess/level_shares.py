@@ -6,7 +6,6 @@ from math import inf
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.chosen_targets import targets_of
 from uq.assess.few_events import FEWEST_HITS, few_hits
@@ -18,17 +17,9 @@ from uq.assess.variance_by_level import SOLVER, SOURCES, LevelShares, shares_of
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.index import RefusedError
-from uq.result.elements import (
-    analysis_of,
-    has_independent_samples,
-    independent_rows,
-    output_names,
-    shown_outputs,
-    why_no_statistics,
-)
-from uq.result.nesting import Nesting, levels_of, levels_that_vary, nesting_of, size_in_words
+from uq.result.nesting import Nesting, size_in_words
+from uq.result.result import Result
 from uq.result.variables import is_error
-from uq.result.weights import sample_weights
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import Smoothed, largest_share, of_samples, too_large
 from uq.stats.tails import lacks_variance
@@ -76,12 +67,12 @@ class ByLevel:
         return [name for name, own in self.inputs.items() if own == level]
 
 
-def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> ByLevel:
+def by_level(result: Result, output: str | None = None, *, plain: bool = False) -> ByLevel:
     """Estimate the shares of the variance by level.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result, or a posterior of `uq.update`.
     output : str, optional
         Only this output, or this element of one; by default those that the study shows. Of a
@@ -98,15 +89,15 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
-    if why := why_no_statistics(ds):
-        raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
-    rows = independent_rows(ds)
-    place, varying = nesting_of(rows), levels_that_vary(rows)
-    worth = sample_weights(rows, place, "shares of levels")
+    if why := result.why_no_statistics:
+        raise InputError(f"no shares: the rows of a '{result.design_name}' design {why}")
+    rows = result.independent
+    place, varying = rows.nesting, rows.levels_that_vary()
+    worth = rows.sample_weights("shares of levels")
     weights = None if worth is None else of_samples(worth)
-    replicate = None if has_independent_samples(rows) else place.replicate
-    known = output_names(rows)
-    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not is_error(one, known)]
+    replicate = None if rows.has_independent_samples else place.replicate
+    known = rows.output_names
+    shown = [one for one in rows.shown_outputs(rows.analysis) if not is_error(one, known)]
     found = {}
     for name in shown if output is None else [output]:
         for target in targets_of(rows, name):
@@ -116,10 +107,10 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     switches = "regime" in known and output is None
     mean, each = switching(rows, place, varying, worth) if switches else (None, np.empty(0))
     size = place.samples, place.units, place.repeats
-    return ByLevel(*size, levels_of(rows), found, mean, each, weights)
+    return ByLevel(*size, rows.levels, found, mean, each, weights)
 
 
-def _scales(rows: xr.Dataset, target: IndexTarget) -> Scales:
+def _scales(rows: Result, target: IndexTarget) -> Scales:
     """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
     element = target.element
     if element is None or target.event or target.refused or not element.declared.scales:
@@ -133,7 +124,7 @@ def _scales(rows: xr.Dataset, target: IndexTarget) -> Scales:
 
 
 def _shares(
-    rows: xr.Dataset,
+    rows: Result,
     target: IndexTarget,
     place: Nesting,
     scales: Scales,
@@ -152,10 +143,10 @@ def _shares(
     errors, why_none = _errors(rows, target)
     table = place.table(np.where(np.isfinite(values), values, np.nan))
     own = None if errors is None else place.table(errors)
-    varying = levels_that_vary(rows, (*scales.inputs, *scales.idle))
+    varying = rows.levels_that_vary((*scales.inputs, *scales.idle))
     known = {level: place.table(variance) for level, variance in scales.variances.items()}
     worth = None if weights is None else weights.weights
-    found = shares_of(table, varying, own, replicate, known, rows.attrs["design"], worth)
+    found = shares_of(table, varying, own, replicate, known, rows.design_name, worth)
     if errors is None:
         found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
     notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))
@@ -169,7 +160,7 @@ def _why_not_weighted(weights: Smoothed | None) -> str:
     return weights.refusal or too_large(largest_share(weights.weights), weights.rows)
 
 
-def _few(rows: xr.Dataset, event: IndexTarget) -> tuple[str, tuple[str, ...]]:
+def _few(rows: Result, event: IndexTarget) -> tuple[str, tuple[str, ...]]:
     """Return why an event has too few hits for shares, or the warning that it has few."""
     try:
         return "", few_hits(rows, event)
@@ -191,7 +182,7 @@ def _too_few_effective(hits: Floats, place: Nesting, weights: Smoothed | None) -
     return f"the rows are worth {rarer:.2g} {side} of equal weight, and {FEWEST_HITS} are needed"
 
 
-def _errors(rows: xr.Dataset, target: IndexTarget) -> tuple[Floats | None, str]:
+def _errors(rows: Result, target: IndexTarget) -> tuple[Floats | None, str]:
     """Return the numerical error of each row, of a logarithm the relative one; or why none."""
     stated = None if target.element is None else stated_error(rows, target.element)
     if stated is None or target.element is None:

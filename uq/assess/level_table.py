@@ -7,15 +7,16 @@ import xarray as xr
 
 from uq.assess.level_shares import by_level
 from uq.assess.variance_by_level import SOURCES
+from uq.result.result import AnyResult, Result
 from uq.stats.importance_weights import quality
 
 
-def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> xr.Dataset:
+def levels(result: AnyResult, output: str | None = None, *, plain: bool = False) -> xr.Dataset:
     """Apportion the variance to what units share, what is their own, chance, and the solver.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result, or a posterior of `uq.update`, of units never inspected.
     output : str, optional
         Only this output, or this element of one; by default those that the study shows.
@@ -47,7 +48,8 @@ def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) ->
     >>> float(uq.levels(ds)["share"].sel(level="own")[0])  # every input is a unit's own
     1.0
     """
-    found = by_level(ds, output, plain=plain)
+    result = Result.of(result)
+    found = by_level(result, output, plain=plain)
     data: dict[str, Any] = {}
     for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
         data[name] = _over(found.outputs.values(), end, float)
@@ -61,7 +63,11 @@ def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) ->
         data["another_regime"] = ("sample", found.switching)
         for end, value in zip(("mean", "low", "high"), found.another_regime.numbers, strict=True):
             data["another_regime_mean" + f"_{end}" * (end != "mean")] = value
-    attrs = {name: getattr(found, name) for name in ("samples", "units", "repeats")}
+    attrs: dict[str, Any] = {
+        "samples": found.samples,
+        "units_per_sample": found.units,
+        "repeats": found.repeats,
+    }
     attrs |= quality(found.weights)
     coords = {"output": list(found.outputs), "level": list(SOURCES)}
     return xr.Dataset(data, coords, attrs)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.assess.life_quantiles import B_LIVES
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.result.elements import Element, Floats, Mask
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import CONFIDENCE, upper_probability

@@ -10,22 +10,13 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.assess.estimators import MEAN, SD, Estimator, SelectedRows
 from uq.result.elements import (
     Floats,
-    are_independent,
-    has_independent_samples,
-    independent_rows,
-    replicates_of,
-    study_file_of,
 )
-from uq.result.nesting import is_nested
-from uq.result.variables import outputs_of
-from uq.result.weights import has_weights
-from uq.sampling.designs import DESIGNS
+from uq.result.result import Result
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate
 from uq.stats.exact_shares import exact_interval
@@ -57,12 +48,12 @@ class Kinship(Enum):
     )
 
 
-def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
+def kinship(first: Result, second: Result) -> Kinship:
     """Return how the rows of two results are related.
 
     Parameters
     ----------
-    first, second : xarray.Dataset
+    first, second : Result
         Results of one model.
 
     Returns
@@ -70,50 +61,56 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
     Kinship
     """
     both = (first, second)
-    if any(has_weights(ds) for ds in both):
+    if any(result.has_weights for result in both):
         return Kinship.WEIGHTED
-    if any(DESIGNS[ds.attrs["design"]].imported for ds in both):
+    if any(result.design.imported for result in both):
         return _kinship_of_imported(first, second)
-    if first.attrs["seed"] != second.attrs["seed"]:
+    if first.dataset.attrs["seed"] != second.dataset.attrs["seed"]:
         return Kinship.STRANGERS
-    independent = [has_independent_samples(ds) for ds in both]
-    if any(independent) and any(is_nested(ds) for ds in both):
+    independent = [result.has_independent_samples for result in both]
+    if any(independent) and any(result.is_nested for result in both):
         return Kinship.ROWS_SAME if _same_rows(first, second) else Kinship.UNKNOWN
     if all(independent):
         same = _columns(first) == _columns(second)
         return Kinship.ROWS if same else Kinship.UNKNOWN
-    if not any(independent) and first.attrs["replicates"] == second.attrs["replicates"]:
+    if (
+        not any(independent)
+        and first.dataset.attrs["replicates"] == second.dataset.attrs["replicates"]
+    ):
         return Kinship.REPLICATES
     return Kinship.UNKNOWN
 
 
-def _same_rows(first: xr.Dataset, second: xr.Dataset) -> bool:
+def _same_rows(first: Result, second: Result) -> bool:
     """Whether two results are of one study, with the same number in every place."""
-    if first.attrs["study_identity"] != second.attrs["study_identity"]:
+    if first.dataset.attrs["study_identity"] != second.dataset.attrs["study_identity"]:
         return False
-    return first.drop_attrs().equals(second.drop_attrs())
+    return first.dataset.drop_attrs().equals(second.dataset.drop_attrs())
 
 
-def _kinship_of_imported(first: xr.Dataset, second: xr.Dataset) -> Kinship:
+def _kinship_of_imported(first: Result, second: Result) -> Kinship:
     """Return how two results are related if one is imported, so that seeds do not matter."""
-    files = [study_file_of(ds) for ds in (first, second)]
+    files = [result.study for result in (first, second)]
     same = files[0].data == files[1].data and files[0].design.method == files[1].design.method
-    if same and all(are_independent(ds) for ds in (first, second)):
+    if same and all(result.has_independent_rows for result in (first, second)):
         return Kinship.ROWS_IMPORTED
     return Kinship.UNKNOWN_IMPORTED
 
 
-def _columns(ds: xr.Dataset) -> int:
-    return sum(not isinstance(entry, Tied) for entry in study_file_of(ds).uncertain.values())
+def _columns(result: Result) -> int:
+    return sum(not isinstance(entry, Tied) for entry in result.study.uncertain.values())
 
 
 Places = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
-def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
+def shared_rows(first: Result, second: Result) -> Places:
     """Return the positions in each result of the rows that both have."""
-    most = max(ds.attrs["replicates"] for ds in (first, second))
-    mine, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
+    most = max(result.dataset.attrs["replicates"] for result in (first, second))
+    mine, other = (
+        result.dataset["group"].values * most + result.dataset["replicate"].values
+        for result in (first, second)
+    )
     _, here, there = np.intersect1d(mine, other, assume_unique=True, return_indices=True)
     return here, there
 
@@ -152,44 +149,52 @@ class Pair:
 
     Parameters
     ----------
-    first, second : xarray.Dataset
+    first, second : Result
     """
 
-    def __init__(self, first: xr.Dataset, second: xr.Dataset) -> None:
-        self.rows = (independent_rows(first), independent_rows(second))
+    def __init__(self, first: Result, second: Result) -> None:
+        self.rows = (first.independent, second.independent)
         self.kinship = kinship(first, second)
-        self._replicate = [replicates_of(rows) for rows in self.rows]
+        self._replicate = [rows.replicates for rows in self.rows]
         rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
         self._shared = shared_rows(*self.rows) if rows else None
         self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
 
     def difference(
-        self, estimator: Estimator, samples: list[SelectedRows], known: list[Estimate]
+        self, estimator: Estimator, samples: list[SelectedRows], estimates: list[Estimate]
     ) -> Estimate:
         """Return an estimate from the second result less that from the first."""
         if self.kinship is Kinship.REPLICATES and not estimator.is_share:
-            value = known[1].value - known[0].value
-            own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
-            if not np.isfinite(own).all():
+            value = estimates[1].value - estimates[0].value
+            by_replicate = [
+                self._by_replicate(estimator, i, rows) for i, rows in enumerate(samples)
+            ]
+            if not np.isfinite(by_replicate).all():
                 return Estimate(value)
-            apart = own[1] - own[0]
-            if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
+            apart = by_replicate[1] - by_replicate[0]
+            if intervals.is_constant(
+                apart + np.abs(by_replicate).max()
+            ):  # they differ only by rounding
                 return Estimate(value)
             ends = intervals.scatter_interval(value, apart)
             return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
         if self.kinship is Kinship.WEIGHTED:
-            return two_samples.difference(known[0], known[1], self.unpaired)
-        if estimator.counts_hits and all(one is None for one in self._replicate):
-            known = [_newcombe(sample) for sample in samples]
+            return two_samples.difference(estimates[0], estimates[1], self.unpaired)
+        if estimator.counts_hits and all(replicate is None for replicate in self._replicate):
+            estimates = [_newcombe(sample) for sample in samples]
         elif estimator.averages:
-            known = [self._averaged(i, sample) for i, sample in enumerate(samples)]
+            estimates = [self._averaged(i, sample) for i, sample in enumerate(samples)]
         elif self._shared is not None and not estimator.is_share:
-            known = [_students(estimator, *pair) for pair in zip(samples, known, strict=True)]
-        found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
-        wide = sum(one.high - one.low for one in known)
-        if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
-            return Estimate(found.value)  # equal in each pair, but for rounding
-        return found
+            estimates = [
+                _students(estimator, *pair) for pair in zip(samples, estimates, strict=True)
+            ]
+        between = two_samples.difference(
+            estimates[0], estimates[1], self._correlation(estimator, samples)
+        )
+        wide = sum(estimate.high - estimate.low for estimate in estimates)
+        if self._paired and between.high - between.low <= _ROUNDING * wide < np.inf:
+            return Estimate(between.value)  # equal in each pair, but for rounding
+        return between
 
     def are_equal(self, samples: list[SelectedRows]) -> bool:
         """Whether the rows are paired and both rows of each pair have the same numbers."""
@@ -204,8 +209,10 @@ class Pair:
     def have_equal_outputs(self) -> bool:
         """Whether the rows are paired and both rows of each pair agree in all outputs."""
         first, second = self.rows
-        names = [name for name in outputs_of(first) if name in second]
-        return self._paired and first[names].drop_attrs().equals(second[names].drop_attrs())
+        names = [name for name in first.outputs if name in second.dataset]
+        return self._paired and first.dataset[names].drop_attrs().equals(
+            second.dataset[names].drop_attrs()
+        )
 
     def most_that_change_sides(self, sample: SelectedRows) -> float:
         """Return the largest share of rows that change sides where no row of a sample does.
@@ -221,14 +228,16 @@ class Pair:
         rows = int(np.count_nonzero(sample.kept))
         return float(exact_interval(0.0, rows, intervals.CONFIDENCE)[1])
 
-    def ratio(self, samples: list[SelectedRows], known: list[Estimate]) -> Estimate:
+    def ratio(self, samples: list[SelectedRows], estimates: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
-        if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
-            found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
-            return _factor(known[1].value / known[0].value, found[1], found[0])
+        if self.kinship is Kinship.REPLICATES and all(estimate.value > 0 for estimate in estimates):
+            by_replicate = [self._by_replicate(SD, i, sample) for i, sample in enumerate(samples)]
+            return _factor(
+                estimates[1].value / estimates[0].value, by_replicate[1], by_replicate[0]
+            )
         if self._shared is not None:
-            known = [_students(SD, *pair) for pair in zip(samples, known, strict=True)]
-        return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
+            estimates = [_students(SD, *pair) for pair in zip(samples, estimates, strict=True)]
+        return two_samples.ratio(estimates[0], estimates[1], self._correlation(SD, samples))
 
     @property
     def unpaired(self) -> float:
@@ -249,7 +258,7 @@ class Pair:
             first, second = (pull.numbers for pull in pulls)
             return correlation(first, second, self._shared, is_share=estimator.is_share)
         means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
-        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
+        if not all(np.isfinite(mean).all() and not intervals.is_constant(mean) for mean in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
 
@@ -264,7 +273,7 @@ class Pair:
         influence = [estimator.influence(sample.numbers[sample.kept]) for sample in samples]
         parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
         if np.array_equal(kept[0], kept[1]) and all(
-            np.array_equal(rows[0][name].values, rows[1][name].values)
+            np.array_equal(rows[0].dataset[name].values, rows[1].dataset[name].values)
             for name in ("replicate", "group", "block")
         ):
             influence, parts = [influence[1] - influence[0]], parts[:1]
@@ -278,14 +287,14 @@ class Pair:
         return share_to_compare(sample.numbers[sample.kept], part=part)
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: SelectedRows) -> Floats:
-        of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
+        of, count = self._replicate[i], int(self.rows[i].dataset.attrs["replicates"])
         assert of is not None, "independent rows have no replicates"
-        found = np.full(count, np.nan)
+        estimates = np.full(count, np.nan)
         for r in range(count):
             values = sample.numbers[sample.kept & (of == r)]
             if len(values):
-                found[r] = estimator.of(values)
-        return found
+                estimates[r] = estimator.of(values)
+        return estimates
 
 
 def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
@@ -296,18 +305,20 @@ def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
     return SelectedRows(sample.kept, pull)
 
 
-def _students(estimator: Estimator, sample: SelectedRows, known: Estimate) -> Estimate:
+def _students(estimator: Estimator, sample: SelectedRows, estimate: Estimate) -> Estimate:
     """Return a moment with Student's interval, from which the difference of paired rows is built.
 
     The interval of a single moment allows for outliers that its rows do not show; most of them
     cancel in the difference.
     """
-    if not known.has_interval:
-        return known
+    if not estimate.has_interval:
+        return estimate
     low, high = intervals.scatter_interval(0.0, estimator.influence(sample.numbers[sample.kept]))
-    if estimator.is_scale and known.value > 0:  # by the logarithm, so that both ends are positive
-        low, high = known.value * np.expm1(np.array([low, high]) / known.value)
-    return Estimate(known.value, known.value + float(low), known.value + float(high))
+    if (
+        estimator.is_scale and estimate.value > 0
+    ):  # by the logarithm, so that both ends are positive
+        low, high = estimate.value * np.expm1(np.array([low, high]) / estimate.value)
+    return Estimate(estimate.value, estimate.value + float(low), estimate.value + float(high))
 
 
 def _newcombe(sample: SelectedRows) -> Estimate:

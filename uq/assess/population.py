@@ -8,6 +8,7 @@ from math import ceil, exp, isfinite, isnan, log, nan
 import numpy as np
 
 from uq.assess.conditional_survival import learnt_terms
+from uq.assess.counted_rows import Curve, censored_before
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.clusters import Clusters
@@ -52,6 +53,16 @@ class Population:
     part: Replicates
     confidence: float = CONFIDENCE
 
+    def probability_below(self, threshold: float) -> Estimate:
+        """Estimate P(Y < threshold); unknown where rows were censored below it."""
+        unknown = self.element.unknown_sides(threshold)
+        return Estimate(reason=censored_before(unknown)) if unknown.any() else self.below(threshold)
+
+    def probability_above(self, threshold: float) -> Estimate:
+        """Estimate P(Y > threshold); unknown where rows were censored below it."""
+        unknown = self.element.unknown_sides(threshold)
+        return Estimate(reason=censored_before(unknown)) if unknown.any() else self.above(threshold)
+
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
         kept = ~self.element.failed
@@ -77,10 +88,22 @@ class Population:
         if not self.element.present.any():
             return Estimate()
         search = self._along_time if self.element.law is not None else self._along_values
-        found = search(probability)
-        if not isfinite(found.value):
-            return found
-        return self._trusted(found, self.element.present)
+        estimate = search(probability)
+        if not isfinite(estimate.value):
+            return estimate
+        return self._trusted(estimate, self.element.present)
+
+    def life_quantile(self, probability: float) -> Estimate:
+        """Estimate the time by which a share has ended: no Kaplan-Meier curve has weights."""
+        return self.quantile(probability)
+
+    def survival(self, time: Floats) -> Curve:
+        """Estimate P(T > t) at times that ascend, with pointwise intervals."""
+        return Curve(*np.array([self.outliving(at).numbers for at in time]).reshape(-1, 3).T)
+
+    def rows_needed(self, probability: float) -> int | None:
+        """Return None: effective rows are counted with each quantile."""
+        return None
 
     def times_the_rows(self, threshold: float) -> float:
         """Return the variance of P(Y < threshold) from lives as computed over that of this one.
@@ -92,18 +115,18 @@ class Population:
             return nan
         part = replicates_of_some(self.part, kept)
         worth = np.ones(int(kept.sum()))
-        own, plain = (
-            pulls(one.below(threshold)[kept], worth, part)
-            for one in (self.element, self.element.plain)
+        integrated, plain = (
+            pulls(rows.below(threshold)[kept], worth, part)
+            for rows in (self.element, self.element.plain)
         )
-        if len(own) < _SHOW_VARIANCE or is_constant(own):
+        if len(integrated) < _SHOW_VARIANCE or is_constant(integrated):
             return nan
-        return float(plain.var() / own.var())
+        return float(plain.var() / integrated.var())
 
     def _share(self, numbers: Floats, kept: Mask, part: Replicates) -> Estimate:
         """Estimate a probability, or say why the weights do not allow it."""
-        found = weighted_share(numbers[kept], self._weights(kept), part, None, self.confidence)
-        return self._trusted(found, kept)
+        estimate = weighted_share(numbers[kept], self._weights(kept), part, None, self.confidence)
+        return self._trusted(estimate, kept)
 
     def _weights(self, kept: Mask) -> Floats | None:
         """Return the weights of some rows."""
@@ -119,15 +142,15 @@ class Population:
         part, weights = replicates_of_some(self.part, kept), self._weights(kept)
         if not isinstance(part, Clusters) or part.together is None or weights is None:
             return part
-        known = learnt_terms(self.element.law, self.element.values, time)
-        if known is None:
+        terms = learnt_terms(self.element.law, self.element.values, time)
+        if terms is None:
             return part
-        follows, by = (one[kept] for one in known)
+        follows, by = (of_rows[kept] for of_rows in terms)
         worth = weights / weights.sum()
         joint = worth @ by - (worth @ self._below(time)[kept]) * (worth @ follows)
         return part.with_together(part.together.going_with(side * joint))
 
-    def _trusted(self, found: Estimate, kept: Mask) -> Estimate:
+    def _trusted(self, estimate: Estimate, kept: Mask) -> Estimate:
         """Return an estimate, or why the weights of the rows behind it do not allow one.
 
         Numbers up to 1 have no tail of their own: where few rows carry them, their interval says
@@ -135,9 +158,9 @@ class Population:
         """
         weights = self.element.weights
         if weights is None or not kept.any():
-            return found
+            return estimate
         part = replicates_of_some(self.part, kept)
-        return trusted(found, weights[kept], part, self.element.most)
+        return trusted(estimate, weights[kept], part, self.element.most)
 
     def _near(self, value: float) -> tuple[Callable[[float], Estimate], float]:
         """Return a function that estimates P(Y < y) among the rows that have a value.
@@ -228,9 +251,9 @@ class Population:
 
         def end(start: float, unit: float, name: str) -> float:
             def excess(x: float) -> float:
-                found = share(exp(x))
-                exact = found.reason == EXACT  # its interval is a point
-                return float(found.value if exact else getattr(found, name)) - probability
+                estimate = share(exp(x))
+                exact = estimate.reason == EXACT  # its interval is a point
+                return float(estimate.value if exact else getattr(estimate, name)) - probability
 
             below = excess(start) < 0
             step = unit if below else -unit

@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from numpy.polynomial.legendre import legvander
 from scipy import special
 
 from uq.assess.row_inputs import Inputs
 from uq.assess.scale_laws import share_below
 from uq.contract import Floats
+from uq.result.result import Result
 from uq.result.weights import INPUT, LAW_SCORES, SCALE_SCORES
 from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within, ppf_within
@@ -133,13 +133,13 @@ class LearntScale:
 
 
 def learnt_scale(
-    rows: xr.Dataset, inputs: Inputs, exponents: Mapping[str, float]
+    rows: Result, inputs: Inputs, exponents: Mapping[str, float]
 ) -> LearntScale | None:
     """Return the law that inspections left of the integrated input, if it scales lives.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         Those of an inspected unit; others have no such law.
     inputs : Inputs
         Of these rows.
@@ -152,22 +152,22 @@ def learnt_scale(
     from scipy.interpolate import PchipInterpolator  # late: it takes a while to import
 
     of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
-    scores = PchipInterpolator(SCORES, rows[SCALE_SCORES].values, axis=1)(_FINE)
+    scores = PchipInterpolator(SCORES, rows.dataset[SCALE_SCORES].values, axis=1)(_FINE)
     terms = None
-    if LAW_SCORES in rows:
-        terms = TermsOfLaws(rows[LAW_SCORES].values, rows[SCALE_SCORES].values)
+    if LAW_SCORES in rows.dataset:
+        terms = TermsOfLaws(rows.dataset[LAW_SCORES].values, rows.dataset[SCALE_SCORES].values)
     return LearntScale((name,), *of, scores, terms)
 
 
-def learnt_input(rows: xr.Dataset) -> str:
+def learnt_input(rows: Result) -> str:
     """Return the input whose law in each row is what inspections of a unit left, or ""."""
-    return str(rows[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows else ""
+    return str(rows.dataset[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows.dataset else ""
 
 
-def moments_of_input(rows: xr.Dataset, inputs: Inputs) -> tuple[Floats, Floats]:
+def moments_of_input(rows: Result, inputs: Inputs) -> tuple[Floats, Floats]:
     """Return mean and variance of the integrated input in each row of an inspected unit, (n,)."""
     name = learnt_input(rows)
-    below = special.ndtr(rows[SCALE_SCORES].values)
+    below = special.ndtr(rows.dataset[SCALE_SCORES].values)
     flat = ppf_within(inputs.laws[name], below.ravel(), inputs.bounds[name])
     values, worth = flat.reshape(below.shape), np.exp(-(SCORES**2) / 2)
     mean = values @ worth / worth.sum()

@@ -3,16 +3,12 @@
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.independent_inputs import independent_inputs
 from uq.assess.row_inputs import EVERYWHERE
 from uq.assess.statistic import Statistic, entry
 from uq.assess.summary import REGIME
-from uq.result.elements import has_independent_samples, independent_rows
-from uq.result.nesting import one_of_each_sample
-from uq.result.result_file import failed
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.sampling.truncation import cdf_within
 from uq.stats.estimate import Estimate
 from uq.stats.uncertainty_exponent import uncertainty_exponent
@@ -30,12 +26,12 @@ EXPONENT = "uncertainty_exponent"
 DEPENDENT = "the rows of a '{design}' design are not independent; use design 'monte-carlo'"
 
 
-def boundary(ds: xr.Dataset) -> Statistic | None:
+def boundary(result: Result) -> Statistic | None:
     """Estimate how intermingled the regimes are over the inputs.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
 
     Returns
@@ -45,34 +41,34 @@ def boundary(ds: xr.Dataset) -> Statistic | None:
         none; of one row of each sample. None where the rows do not end in several regimes, or have
         weights.
     """
-    if REGIME not in ds or has_weights(ds):
+    if REGIME not in result.dataset or result.has_weights:
         return None
-    rows = compared_rows(ds)
-    if len(np.unique(rows[REGIME])) < 2:
+    rows = compared_rows(result)
+    if len(np.unique(rows.dataset[REGIME])) < 2:
         return None
-    if has_independent_samples(ds):
+    if result.has_independent_samples:
         found = _exponent(rows)
     else:
-        found = Estimate(reason=DEPENDENT.format(design=ds.attrs["design"]))
+        found = Estimate(reason=DEPENDENT.format(design=result.design_name))
     label = EXPONENT.replace("_", " ")
     return Statistic((BOUNDARY, EXPONENT), label, found, by=(uncertainty_exponent,))
 
 
-def compared_rows(ds: xr.Dataset) -> xr.Dataset:
+def compared_rows(result: Result) -> Result:
     """Return the first `MOST_ROWS` of the independent rows, one of each sample, with a regime."""
-    rows = one_of_each_sample(independent_rows(ds)).isel(sample=slice(MOST_ROWS))
-    return rows.isel(sample=(rows[REGIME].values >= 0) & ~failed(rows))
+    rows = result.independent.first_rows.take(slice(MOST_ROWS))
+    return rows.take((rows.dataset[REGIME].values >= 0) & ~rows.failed)
 
 
-def _exponent(rows: xr.Dataset) -> Estimate:
-    laws, values = laws_of(rows.attrs["study"]), independent_inputs(rows)
+def _exponent(rows: Result) -> Estimate:
+    laws, values = laws_of(rows.dataset.attrs["study"]), independent_inputs(rows)
     shares = [cdf_within(law, values[name], EVERYWHERE) for name, law in laws.items()]
     listed = [law.discrete for law in laws.values()]
     if all(listed):
         return Estimate(reason="no input varies continuously")
     table = np.column_stack(shares)
     kinds = np.unique(table[:, listed], axis=0, return_inverse=True)[1] if any(listed) else None
-    return uncertainty_exponent(table[:, ~np.array(listed)], rows[REGIME].values, kinds)
+    return uncertainty_exponent(table[:, ~np.array(listed)], rows.dataset[REGIME].values, kinds)
 
 
 def boundary_json(one: Statistic | None) -> dict[str, Any]:

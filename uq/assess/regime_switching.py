@@ -3,12 +3,11 @@
 from collections.abc import Collection
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats
-from uq.result.elements import replicates_of
 from uq.result.nesting import Nesting
+from uq.result.result import Result
 from uq.sampling.designs import several
 from uq.sampling.levels import CHANCE, OWN
 from uq.stats.clusters import Clusters
@@ -20,13 +19,13 @@ ONE_REPEAT = "a single repeat does not show whether another ends in another regi
 
 
 def switching(
-    rows: xr.Dataset, place: Nesting, varying: Collection[str], weights: Floats | None = None
+    rows: Result, place: Nesting, varying: Collection[str], weights: Floats | None = None
 ) -> tuple[Estimate, Floats]:
     """Estimate the probability that a repeat ends in another regime.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         Rows of a result with regimes.
     place : Nesting
         Theirs.
@@ -43,14 +42,14 @@ def switching(
         Of each row: the share of the other repeats of its unit that end in another regime. NaN
         without a regime, or another repeat. Where nothing is own to a unit, units are repeats.
     """
-    codes = rows["regime"].values
+    codes = rows.dataset["regime"].values
     if CHANCE not in varying:
         return Estimate(0.0, 0.0, 0.0), np.where(codes >= 0, 0.0, np.nan)
     unit = place.sample * place.units + place.unit if OWN in varying else place.sample
     each = _elsewhere(unit, codes)
     known = np.isfinite(each)
     if not known.any():
-        return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.attrs["design"]))), each
+        return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), each
     value, of = float(each[known].mean()), _clusters(rows, place)
     if weights is not None:
         return weighted_share(each[known], weights[place.sample[known]], of[known]), each
@@ -59,8 +58,8 @@ def switching(
     return Estimate(value, float(low), float(high)), each
 
 
-def _clusters(rows: xr.Dataset, place: Nesting) -> Clusters:
-    found = replicates_of(rows)
+def _clusters(rows: Result, place: Nesting) -> Clusters:
+    found = rows.replicates
     return found if isinstance(found, Clusters) else Clusters(place.sample, place.samples)
 
 

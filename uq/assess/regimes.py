@@ -15,27 +15,21 @@ from uq.indices.methods import KS, METHODS
 from uq.indices.sample import DesignSample
 from uq.result.elements import (
     Floats,
-    analysis_of,
-    elements_of,
     flags,
-    independent_rows,
-    replicates_of,
-    shown_outputs,
 )
-from uq.result.nesting import one_of_each_sample
-from uq.result.weights import refuse_weights
+from uq.result.result import AnyResult, Result
 from uq.stats.moments import moments
 from uq.stats.order_statistics import is_within
 
 PROBABILITIES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
-def regimes(ds: xr.Dataset) -> xr.Dataset:
+def regimes(result: AnyResult) -> xr.Dataset:
     """Compare the regimes of a result.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of a model with regimes.
 
     Returns
@@ -58,33 +52,34 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     InputError
         When the result has no regimes.
     """
-    if "regime" not in ds:
+    result = Result.of(result)
+    if "regime" not in result.dataset:
         raise InputError("this result has no regimes to compare")
-    refuse_weights(ds, "a comparison of regimes")
-    rows = independent_rows(ds)
+    result.refuse_weights("a comparison of regimes")
+    rows = result.independent
     shares = {
         name: one for name, one in category_shares(rows, REGIME).items() if one.facts["count"]
     }
-    codes = {name: code for code, name in flags(rows["regime"]) if name in shares}
-    members = [rows["regime"].values == code for code in codes.values()]
+    codes = {name: code for code, name in flags(rows.dataset["regime"]) if name in shares}
+    members = [rows.dataset["regime"].values == code for code in codes.values()]
     inputs = {
         str(name): variable.values
-        for name, variable in rows.data_vars.items()
+        for name, variable in rows.dataset.data_vars.items()
         if variable.attrs.get("role") == "input"
     }
-    plain = one_of_each_sample(rows)
-    own = {name: plain[name].values for name in inputs}
+    plain = rows.first_rows
+    own = {name: plain.dataset[name].values for name in inputs}
     quantiles = [[_quantiles(x[hits]) for x in inputs.values()] for hits in members]
     far = {target.name: _distances(own, target) for target in category_targets(plain, "regime")}
     unknown = [np.nan] * (len(inputs) + 1)
     distances = [far.get(f"P(regime={name})", unknown) for name in codes]
     found = [
         target
-        for element in elements_of(rows, shown_outputs(rows, analysis_of(rows)))
+        for element in rows.elements(rows.shown_outputs(rows.analysis))
         if not (target := number_of(element)).refused
     ]
     moments = [[_moments(target.values[hits]) for hits in members] for target in found]
-    split = [between_share(t.values, rows["regime"].values, replicates_of(rows)) for t in found]
+    split = [between_share(t.values, rows.dataset["regime"].values, rows.replicates) for t in found]
 
     sizes = (len(found), len(members), len(inputs))
     distance = np.reshape(distances, (sizes[1], sizes[2] + 1))
@@ -105,7 +100,7 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     data["count"] = ("regime", np.array([one.facts["count"] for one in shares.values()], float))
     for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
         data[name] = ("regime", np.array([getattr(one, end) for one in estimates]))
-    between = boundary(ds)
+    between = boundary(result)
     if between is not None:
         for end, value in zip(("", "_low", "_high"), between.estimate.numbers, strict=True):
             data[f"{EXPONENT}{end}"] = ((), value, {"reason": between.estimate.reason})

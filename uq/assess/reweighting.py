@@ -5,13 +5,12 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.densities import changed_laws, log_ratio, share_without_rows
 from uq.assess.row_inputs import Inputs
 from uq.assess.scaling import integrated
 from uq.result.element import Element
-from uq.result.elements import elements_of
+from uq.result.result import Result
 from uq.stats.importance_weights import Smoothed, no_weights, smoothed
 from uq.stats.intervals import Replicates
 
@@ -37,7 +36,7 @@ class Weighting:
         values where no row can be.
     """
 
-    def __init__(self, rows: xr.Dataset, old: Inputs, new: Inputs, part: Replicates):
+    def __init__(self, rows: Result, old: Inputs, new: Inputs, part: Replicates):
         self._rows, self._old, self._new, self._part = rows, old, new, part
         self.used: dict[str, Smoothed] = {}
         self.refused: dict[str, Smoothed] = {}
@@ -50,7 +49,7 @@ class Weighting:
 
     def elements(self, outputs: Sequence[str]) -> Iterator[Element]:
         """Yield the elements of some outputs whose weights can be trusted."""
-        for element in elements_of(self._rows, outputs):
+        for element in self._rows.elements(outputs):
             law = None
             if element.declared.scales and not element.censored.any():
                 law = integrated(self._rows, element.declared, self._new).law

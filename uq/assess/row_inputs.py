@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
-import xarray as xr
 from scipy import special
 
 from uq.contract import Floats
-from uq.result.elements import study_file_of
+from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within, factor_of
 from uq.study.file import DependenceTable, StudyFile, Tied
@@ -57,20 +56,20 @@ class Inputs:
         return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
 
 
-def inputs_of(rows: xr.Dataset, study: StudyFile | None = None, text: str = "") -> Inputs:
+def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> Inputs:
     """Return the inputs of some rows of a result.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
     study : StudyFile, optional
         Another study of the same inputs, with its `text`.
     """
-    study, text = (study_file_of(rows), rows.attrs["study"]) if study is None else (study, text)
+    study, text = (rows.study, rows.dataset.attrs["study"]) if study is None else (study, text)
     laws = laws_of(text)
     tied = {name: one.equals for name, one in study.uncertain.items() if isinstance(one, Tied)}
     admissible = {
-        name: tuple(map(float, rows[name].attrs.get("admissible", EVERYWHERE)))
+        name: tuple(map(float, rows.dataset[name].attrs.get("admissible", EVERYWHERE)))
         for name in study.uncertain
     }
     bounds = {}
@@ -83,7 +82,7 @@ def inputs_of(rows: xr.Dataset, study: StudyFile | None = None, text: str = "") 
 class _Columns(Mapping[str, Floats]):
     """Columns of a result, each read when it is first needed."""
 
-    def __init__(self, rows: xr.Dataset, names: Iterable[str]):
+    def __init__(self, rows: Result, names: Iterable[str]):
         self._rows, self._names = rows, tuple(names)
         self._read: dict[str, Floats] = {}
 
@@ -91,7 +90,7 @@ class _Columns(Mapping[str, Floats]):
         if name not in self._names:
             raise KeyError(name)
         if name not in self._read:
-            self._read[name] = self._rows[name].values
+            self._read[name] = self._rows.dataset[name].values
         return self._read[name]
 
     def __iter__(self) -> Iterator[str]:

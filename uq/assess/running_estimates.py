@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import pandas as pd
-import xarray as xr
 
 from uq.assess.convergence import enough, running_estimates
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 
 Sizes = list[tuple[int, Estimate]]
@@ -28,16 +28,16 @@ class Converging(NamedTuple):
     errors: Mapping[Any, Any] | None
 
 
-def converging(ds: xr.Dataset, output: str | None = None) -> dict[str, Converging]:
+def converging(result: Result, output: str | None = None) -> dict[str, Converging]:
     """Return the running estimates of a result by output and label.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
     output : str, optional
         As for `uq.running_estimates`.
     """
-    running, errors = running_estimates(ds, output), enough(ds, output).to_dict("index")
+    running, errors = running_estimates(result, output), enough(result, output).to_dict("index")
     return {
         str(name): Converging(
             {str(label): _sizes(own) for label, own in lines.groupby("estimate", sort=False)},

@@ -5,12 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy  # which imports scipy.stats when it is first used
-import xarray as xr
 
 from uq.assess.independent_inputs import independent_inputs
-from uq.result.elements import Floats, independent_rows
-from uq.result.nesting import one_of_each_sample
-from uq.result.weights import row_weights
+from uq.result.elements import Floats
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within, factor_of, ppf_within
@@ -120,12 +118,12 @@ def compare(law: Law, values: Floats, weights: Floats | None = None) -> SampledI
     )
 
 
-def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
+def laws_and_values(result: Result) -> dict[str, tuple[Law, Floats]]:
     """Return the law of each input of a result and the values of its rows, where they follow it.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
 
     Returns
@@ -133,17 +131,19 @@ def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
     dict of str to tuple of Law and ndarray
         For a parameter that is another times a factor, those of the factor.
     """
-    plain = _one_row_of_each(ds)
-    if plain.sizes["sample"] == 0:
+    plain = _one_row_of_each(result)
+    if len(plain) == 0:
         return {}
     values = independent_inputs(plain)
-    return {name: (law, values[name]) for name, law in laws_of(ds.attrs["study"]).items()}
+    return {
+        name: (law, values[name]) for name, law in laws_of(result.dataset.attrs["study"]).items()
+    }
 
 
-def weights_of_samples(ds: xr.Dataset) -> Floats | None:
+def weights_of_samples(result: Result) -> Floats | None:
     """Return the weights of the rows of `laws_and_values`, None where they have none."""
-    return row_weights(_one_row_of_each(ds))
+    return _one_row_of_each(result).row_weights
 
 
-def _one_row_of_each(ds: xr.Dataset) -> xr.Dataset:
-    return one_of_each_sample(independent_rows(ds))
+def _one_row_of_each(result: Result) -> Result:
+    return result.independent.first_rows

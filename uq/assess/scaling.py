@@ -6,17 +6,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.posterior_scale import learnt_input, learnt_scale
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.contract import Output
 from uq.result.element import Element
-from uq.result.elements import elements_of
-from uq.result.weights import has_weights, stand_for_any_unit
+from uq.result.result import Result
 from uq.sampling.dependence import normal_correlations
-from uq.sampling.designs import DESIGNS
 from uq.sampling.law import Law
 from uq.sampling.levels import SHARED
 from uq.sampling.log_sums import LogTerm, law_of_sum
@@ -42,13 +39,13 @@ class Integrated:
 
 
 def integrated(
-    rows: xr.Dataset, output: Output, inputs: Inputs, levels: Collection[str] | None = None
+    rows: Result, output: Output, inputs: Inputs, levels: Collection[str] | None = None
 ) -> Integrated:
     """Return the law of what scales the lives of an output, given all that does not.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     output : Output
     inputs : Inputs
@@ -67,10 +64,10 @@ def integrated(
         level = {name: law.level for name, law in inputs.laws.items()}
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
         kept = {name: why for name, why in kept.items() if level[name] in levels}
-    if DESIGNS[rows.attrs["design"]].imported:
+    if rows.design.imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
-    if has_weights(rows):
-        own = stand_for_any_unit(rows)
+    if rows.has_weights:
+        own = rows.stands_for_any_unit
         learnt = {name for name in exponents if not own or inputs.laws[name].level == SHARED}
         kept |= dict.fromkeys(learnt, "inspections have changed its law")
     for name in exponents:
@@ -219,14 +216,12 @@ def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
     return dict(zip([names[i] for i in rest], slope.tolist(), strict=True)), deviation
 
 
-def population(
-    rows: xr.Dataset, outputs: Sequence[str], *, plain: bool = False
-) -> Iterator[Element]:
+def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> Iterator[Element]:
     """Yield the elements of some outputs, with the laws of their lives where these are known.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     outputs : sequence of str
     plain : bool
@@ -237,7 +232,7 @@ def population(
     Element
     """
     inputs = None
-    for element in elements_of(rows, outputs):
+    for element in rows.elements(outputs):
         if not plain and element.declared.scales and not element.censored.any():
             inputs = inputs or inputs_of(rows)
             learnt = learnt_scale(rows, inputs, scalers(inputs, element.declared))
@@ -246,7 +241,7 @@ def population(
         yield element
 
 
-def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
+def why_not_integrated(rows: Result, element: Element) -> str:
     """Return a sentence on what scales the lives of an element but is not integrated, or ""."""
     inputs = inputs_of(rows)
     exponents, _, _ = _exponents(inputs, element.declared.scales)

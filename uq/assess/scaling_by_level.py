@@ -7,13 +7,12 @@ With the terms at their means, the variances of the terms are added to those of 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import xarray as xr
-
 from uq.assess.row_inputs import inputs_of
 from uq.assess.scale_laws import Scale
 from uq.assess.scaling import integrated, not_integrated, without_effect
 from uq.contract import Floats
 from uq.result.element import Element
+from uq.result.result import Result
 from uq.sampling.levels import LEVELS
 
 
@@ -50,12 +49,12 @@ class Scales:
         return {level: law.moments[1] for level, law in self.laws.items()}
 
 
-def scales_by_level(rows: xr.Dataset, element: Element) -> Scales:
+def scales_by_level(rows: Result, element: Element) -> Scales:
     """Return what only scales the lives of an element, on each level.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     element : Element
         A life of these rows, none censored.

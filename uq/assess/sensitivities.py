@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.chosen_targets import chosen
 from uq.assess.design_sample import sample_of
@@ -18,12 +17,7 @@ from uq.indices.index import IndexKind, Indices, RefusedError
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.indices.sample import DesignSample
-from uq.result.elements import analysis_of
-from uq.result.nesting import is_nested, one_of_each_sample
-from uq.result.ranked_rows import ranked_in_words, ranked_rows
-from uq.result.regimes import within_regime
-from uq.result.result_file import refuse_empty
-from uq.result.weights import refuse_weights
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import PLAIN
 from uq.stats.estimate import Estimate
@@ -85,19 +79,19 @@ class Sensitivities:
     targets: Mapping[str, TargetIndices]
 
 
-def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
+def methods(result: Result, dependent: bool | None = None) -> tuple[str, ...]:
     """Return the methods that the study asks for, or else the default of its design.
 
     For dependent inputs, one that does not assume independence.
     """
-    dependent = bool(why_dependent(ds)) if dependent is None else dependent
-    feeds = fed_by(DESIGNS[ds.attrs["design"]], dependent)
-    asked = analysis_of(ds).sensitivity
+    dependent = bool(why_dependent(result)) if dependent is None else dependent
+    feeds = fed_by(result.design, dependent)
+    asked = result.analysis.sensitivity
     return tuple(name for name in asked if name in feeds) or feeds[:1] or asked
 
 
 def sensitivities(
-    ds: xr.Dataset,
+    result: Result,
     method: str | None = None,
     output: str | Sequence[str] | None = None,
     regime: str | None = None,
@@ -106,7 +100,7 @@ def sensitivities(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     method : str, optional
         By default the first of `methods`.
@@ -133,19 +127,19 @@ def sensitivities(
     InputError
         When the design cannot feed the method, or there is no such output.
     """
-    refuse_empty(ds)
-    refuse_weights(ds, "sensitivity indices")
+    result.refuse_empty()
+    result.refuse_weights("sensitivity indices")
     if regime is not None:
-        ds = within_regime(ds, regime)
+        result = result.within_regime(regime)
         why = "within a regime the inputs depend on each other"
     else:
-        why = why_dependent(ds)
-    ranked = ranked_rows(ds)
-    by = ranked_in_words(ranked, ds)
-    nested, ds = is_nested(ds), one_of_each_sample(ranked)
-    method = method or [*methods(ds, bool(why)), *fed_by(DESIGNS[ds.attrs["design"]])][0]
-    _check_method(ds.attrs["design"], method, why, regime is not None)
-    sample, notes = sample_of(ds), tuple(filter(None, (by, *notes_on_inputs(ds))))
+        why = why_dependent(result)
+    ranked = result.ranked
+    by = result.ranked_in_words
+    nested, result = result.is_nested, ranked.first_rows
+    method = method or [*methods(result, bool(why)), *fed_by(result.design)][0]
+    _check_method(result.design_name, method, why, regime is not None)
+    sample, notes = sample_of(result), tuple(filter(None, (by, *notes_on_inputs(result))))
     if nested:
         notes = (*notes, ONE_ROW)
     if sample.random and METHODS[method].noise:
@@ -153,10 +147,10 @@ def sensitivities(
     found: dict[str, TargetIndices] = {}
     whole: list[Mask] = []
     used: list[Mask] = []
-    for target in chosen(ds, method, output):
-        quantiles = _quantiles(target, analysis_of(ds).quantiles)
+    for target in chosen(result, method, output):
+        quantiles = _quantiles(target, result.analysis.quantiles)
         own = replace(sample, values=target.values, quantiles=quantiles)
-        found[target.name] = one = indices_of_target(ds, METHODS[method], target, own, notes)
+        found[target.name] = one = indices_of_target(result, METHODS[method], target, own, notes)
         (whole if one.refused else used).append(own.whole)
     if nested:
         found = {name: _with_reason(one) for name, one in found.items()}
@@ -169,7 +163,7 @@ def _with_reason(one: TargetIndices) -> TargetIndices:
 
 
 def indices_of_target(
-    ds: xr.Dataset,
+    result: Result,
     method: SensitivityMethod,
     target: IndexTarget,
     sample: DesignSample,
@@ -179,7 +173,7 @@ def indices_of_target(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         The result that the target is of.
     method : SensitivityMethod
     target : IndexTarget
@@ -192,7 +186,7 @@ def indices_of_target(
     -------
     TargetIndices
     """
-    caution = DESIGNS[ds.attrs["design"]].caution
+    caution = result.design.caution
     counts = _counts(sample.whole, rows=len(sample.values))
     try:
         if target.refused:
@@ -202,7 +196,7 @@ def indices_of_target(
         asked = _conditioned(target, sample) if method.conditional else sample
         method.refuse_few_groups(asked)  # in them even a continuous output may have two values
         # Of those in which it happens there is no other side.
-        few = () if method.conditional else few_hits(ds, target, bool(method.intervals))
+        few = () if method.conditional else few_hits(result, target, bool(method.intervals))
         found = method.indices(asked)
     except RefusedError as refusal:
         factor = refusal.rows_factor

@@ -7,15 +7,16 @@ import xarray as xr
 
 from uq.assess.sensitivities import sensitivities
 from uq.indices.index import Null
+from uq.result.result import AnyResult, Result
 from uq.stats.estimate import NOTHING
 
 
-def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
+def sensitivity(result: AnyResult, method: str | None = None) -> xr.Dataset:
     """Estimate sensitivity indices as arrays.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     method : str, optional
         By default the first of `methods`.
@@ -40,7 +41,8 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     >>> found["ST"].sel(output="y").to_series().round(2).to_dict()  # 0.558, 0.442, 0.244
     {'x1': 0.56, 'x2': 0.45, 'x3': 0.25}
     """
-    found = sensitivities(ds, method)
+    result = Result.of(result)
+    found = sensitivities(result, method)
     targets = list(found.targets.values())
     data: dict[str, Any] = {
         name: ("output", [getattr(one, name) for one in targets])

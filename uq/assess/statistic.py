@@ -7,11 +7,11 @@ from functools import cached_property
 from math import isfinite, isinf, isnan
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.estimators import Estimator
 from uq.assess.joint_bounds import JointBound, joint_bounds
+from uq.assess.sample import Sample, as_sample
 from uq.result.elements import Element
+from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
@@ -48,7 +48,7 @@ class Context:
         Of the rows with nothing integrated, where they stand for another study.
     """
 
-    rows: xr.Dataset
+    rows: Result
     analysis: AnalysisTable
     replicate: Replicates
     weights: Smoothed | None = None
@@ -57,6 +57,10 @@ class Context:
     def joint_bounds(self) -> list[JointBound]:
         """The bounds of all elements that hold at once."""
         return joint_bounds(self.rows, self.analysis)
+
+    def sample(self, element: Element) -> Sample:
+        """Return the rows of an element as a sample."""
+        return as_sample(element, self.replicate)
 
     def present(self, element: Element) -> Replicates:
         """Return the replicate of each row in which the element has a value."""
@@ -85,32 +89,32 @@ class Listing:
     keeps_empty: bool = False
 
 
-def entry(one: "Statistic") -> dict[str, Any]:
+def entry(statistic: "Statistic") -> dict[str, Any]:
     """Return a statistic as JSON."""
-    found = estimate_json.whole(one.estimate)
-    if one.rows_needed is not None:
-        found["rows_needed"] = one.rows_needed
-    if one.of:
-        found["of"] = one.of
-    if one.otherwise is not None:
-        found["kaplan_meier"] = entry(one.otherwise)
-    return found | estimate_json.failed(one.failed)
+    document = estimate_json.whole(statistic.estimate)
+    if statistic.rows_needed is not None:
+        document["rows_needed"] = statistic.rows_needed
+    if statistic.of:
+        document["of"] = statistic.of
+    if statistic.otherwise is not None:
+        document["kaplan_meier"] = entry(statistic.otherwise)
+    return document | estimate_json.failed(statistic.failed)
 
 
 def entries(group: Sequence["Statistic"]) -> dict[str, Any]:
     """Return each statistic under the last part of its key."""
-    return {one.key[-1]: one.kind.entry(one) for one in group}
+    return {statistic.key[-1]: statistic.kind.entry(statistic) for statistic in group}
 
 
 def counts(group: Sequence["Statistic"]) -> dict[str, int | None]:
     """Return numbers of rows; None where no number will do."""
-    numbers = {one.key[-1]: one.estimate.value for one in group}
+    numbers = {statistic.key[-1]: statistic.estimate.value for statistic in group}
     return {name: int(count) if isfinite(count) else None for name, count in numbers.items()}
 
 
 def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
     """Return the facts of the statistics."""
-    return {name: fact for one in group for name, fact in one.facts.items()}
+    return {name: fact for statistic in group for name, fact in statistic.facts.items()}
 
 
 def count_in_words(value: float) -> str:

@@ -11,19 +11,17 @@ from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.design_sample import sample_of
 from uq.assess.joint_targets import wholes
-from uq.assess.life_quantiles import life_quantiles, quantile_estimate
-from uq.assess.population import Population
+from uq.assess.sample import as_sample
 from uq.assess.scaling import population
 from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
 from uq.contract import Floats
 from uq.indices.methods import METHODS, kinds_with_intervals
-from uq.result.elements import Element, independent_rows, named_elements, replicates_of
-from uq.result.nesting import first_samples
+from uq.result.elements import Element
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import PATHS
 from uq.stats import group_sequential, intervals
@@ -109,14 +107,14 @@ def _rests_on_replicates(design: "DesignTable") -> bool:
     return not (design.has_independent_samples or paths)
 
 
-def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
+def interim_estimate(design: "DesignTable", result: Result) -> InterimEstimate:
     """Estimate from the rows of a run so far.
 
     Parameters
     ----------
     design : DesignTable
         With `until`.
-    ds : xarray.Dataset
+    result : Result
         Its rows.
 
     Returns
@@ -126,51 +124,56 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
     """
     assert design.until is not None
     estimates = _indices if design.until.index else _statistics
-    widest = max(estimates(design, ds), key=lambda one: one.half_width)
+    widest = max(estimates(design, result), key=lambda estimate: estimate.half_width)
     return widest._replace(estimate=_explained(widest.estimate, design))
 
 
-def _explained(found: Estimate, design: "DesignTable") -> Estimate:
+def _explained(estimate: Estimate, design: "DesignTable") -> Estimate:
     """Return an estimate with the reason if it has no interval because nothing scatters."""
-    if found.reason or not (isfinite(found.value) and isnan(found.low) and isnan(found.high)):
-        return found
+    if estimate.reason or not (
+        isfinite(estimate.value) and isnan(estimate.low) and isnan(estimate.high)
+    ):
+        return estimate
     if _rests_on_replicates(design):
         part = "replicate"
     else:
         part = "path" if DESIGNS[design.method].layout is PATHS else "row"
-    return replace(found, reason=f"the same in each {part}")
+    return replace(estimate, reason=f"the same in each {part}")
 
 
-def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
+def ended(design: "DesignTable", result: Result) -> bool:
     """Whether a run ends at this result although its budget is not spent."""
-    size = _latest(design, ds)
-    return size > 0 and interim_estimate(design, first_samples(ds, size)).reached
+    size = _latest(design, result)
+    return size > 0 and interim_estimate(design, result.first_samples(size)).reached
 
 
-def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
+def _latest(design: "DesignTable", result: Result) -> int:
     """Return the size of the last interim estimate, 0 before the first or without `until`.
 
     The result may be larger, if it was extended.
     """
     if design.until is None:
         return 0
-    return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
+    return max(
+        (size for size in interim_sizes(design) if size <= result.dataset.attrs["samples"]),
+        default=0,
+    )
 
 
-def _statistics(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:
     """Yield the estimate of each element, as a summary has it."""
     until, level = design.until, confidence(design)
     assert until is not None
-    rows = independent_rows(ds)
-    replicate = replicates_of(rows)
-    names = {element.name for element in named_elements(rows, until.output)}
+    rows = result.independent
+    replicate = rows.replicates
+    names = {element.name for element in rows.named_elements(until.output)}
     for element in population(rows, [until.output.partition("[")[0]]):
         if element.name in names:
-            found = statistic(element, until, replicate, level)
+            estimate = statistic(element, until, replicate, level)
             units = "1" if until.threshold is not None else element.units
             lost = _lost(element)
             what = f"{until.estimate} of {element.name}"
-            yield InterimEstimate(what, found, until.half_width, lost, units)
+            yield InterimEstimate(what, estimate, until.half_width, lost, units)
 
 
 def _lost(element: Element) -> str:
@@ -200,13 +203,14 @@ def statistic(
     -------
     Estimate
     """
+    sample = as_sample(element, replicate, level)
     if until.threshold is not None:
-        return _probability(element, until, replicate, level)
-    if until.quantile is not None and element.is_plain:
-        within = intervals.replicates_of_some(replicate, element.present)
-        return quantile_estimate(element, until.quantile, within, level)
-    if (p := until.probability) is not None:
-        return life_quantiles(element, {"": p}, replicate, level)[""]
+        is_above = until.above is not None
+        return (sample.probability_above if is_above else sample.probability_below)(until.threshold)
+    if until.quantile is not None:
+        return sample.quantile(until.quantile)
+    if until.probability is not None:
+        return sample.life_quantile(until.probability)
     values = element.at_most
     if not len(values):
         return NOTHING
@@ -218,31 +222,14 @@ def statistic(
 
 def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
     """Estimate a mean: a few replicates show little of the skewness of their means."""
-    found = moments(values, replicate, level).mean
-    if replicate is None or intervals.parts_are_independent(replicate) or not found.has_interval:
-        return found
+    mean = moments(values, replicate, level).mean
+    if replicate is None or intervals.parts_are_independent(replicate) or not mean.has_interval:
+        return mean
     low, high = corrected_mean_interval(values, replicate, level)
-    return replace(found, low=low, high=high)
+    return replace(mean, low=low, high=high)
 
 
-def _probability(
-    element: Element, until: "Until", replicate: intervals.Replicates, level: float
-) -> Estimate:
-    threshold = until.threshold
-    assert threshold is not None
-    if not element.is_plain:
-        of = Population(element, replicate, level)
-        return of.below(threshold) if until.above is None else of.above(threshold)
-    if element.unknown_sides(threshold).any():
-        return Estimate(reason="some rows are censored before that")
-    kept, values = ~element.failed, element.for_thresholds
-    hits = (values > threshold if until.above is not None else values < threshold)[kept]
-    within = intervals.replicates_of_some(replicate, kept)
-    value = float(hits.mean()) if kept.any() else np.nan
-    return Estimate(value, *intervals.share_interval(hits, within, level))
-
-
-def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]:
+def _indices(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:
     """Yield the index of each input, or the difference between two, as `uq sensitivity` has it.
 
     An input that has no effect in any row has no interval, and does not count beside others.
@@ -250,28 +237,32 @@ def _indices(design: "DesignTable", ds: xr.Dataset) -> Iterator[InterimEstimate]
     until = design.until
     assert until is not None and until.index is not None
     kind, method = kinds_with_intervals(DESIGNS[design.method])[until.index]
-    sample = replace(sample_of(ds), confidence=confidence(design), difference=until.difference)
-    for target in _targets(ds, until.output):
-        own = replace(sample, values=target.values)
-        found = indices_of_target(ds, METHODS[method], target, own)
-        dropped = found.groups_dropped
+    sample = replace(sample_of(result), confidence=confidence(design), difference=until.difference)
+    for target in _targets(result, until.output):
+        target_sample = replace(sample, values=target.values)
+        indices = indices_of_target(result, METHODS[method], target, target_sample)
+        dropped = indices.groups_dropped
         lost = f"{counted(dropped, 'group')} with missing values" if dropped else ""
-        values = found.kinds().get(kind, {})
+        values = indices.kinds().get(kind, {})
         label = until.label
         asked = {label: values.get(label, NOTHING)} if label else dict(values)
-        alive = {name: one for name, one in asked.items() if one.value != 0 or one.has_interval}
+        alive = {
+            name: estimate
+            for name, estimate in asked.items()
+            if estimate.value != 0 or estimate.has_interval
+        }
         if not alive:
-            why = found.refused or "no row shows an effect"
-            value = next((one.value for one in asked.values()), np.nan)
+            why = indices.refused or "no row shows an effect"
+            value = next((estimate.value for estimate in asked.values()), np.nan)
             alive = {label: Estimate(value, reason=why)}
-        for name, one in alive.items():
+        for name, estimate in alive.items():
             what = " ".join(filter(None, (until.index, name, "of", target.name)))
-            yield InterimEstimate(what, one, until.half_width, lost)
+            yield InterimEstimate(what, estimate, until.half_width, lost)
 
 
-def _targets(ds: xr.Dataset, output: str) -> Iterator[IndexTarget]:
+def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
     """Yield what has an index: each element that is meant, or all of them together."""
-    elements = named_elements(ds, output)
+    elements = result.named_elements(output)
     if is_whole(output):
         yield next(wholes(elements))
     else:

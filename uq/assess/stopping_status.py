@@ -3,10 +3,8 @@
 from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING
 
-import xarray as xr
-
 from uq.assess.stopping import InterimEstimate, confidence, interim_estimate, interim_sizes
-from uq.result.nesting import first_samples
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import rounded_text
 from uq.stats.weighted_means import EXACT
@@ -21,19 +19,19 @@ HOPELESS = 4.0
 """So many times the budget is out of reach; a width is known to a factor of two."""
 
 
-def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
+def sentence(design: "DesignTable", result: Result) -> str:
     """State why a run ended, and the estimate at that point.
 
     Parameters
     ----------
     design : DesignTable
         With `until`.
-    ds : xarray.Dataset
+    result : Result
         Its result.
     """
-    until, samples = design.until, int(ds.attrs["samples"])
+    until, samples = design.until, int(result.dataset.attrs["samples"])
     assert until is not None
-    size, seen = _stop(design, ds)
+    size, seen = _stop(design, result)
     found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
     if _has_none(seen):
         return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
@@ -111,11 +109,11 @@ def _wanted(half_width: float, unit: ReadableUnit) -> str:
     return f"required half-width of {text}"
 
 
-def _stop(design: "DesignTable", ds: xr.Dataset) -> tuple[int, InterimEstimate]:
+def _stop(design: "DesignTable", result: Result) -> tuple[int, InterimEstimate]:
     """Return the size at which the run may end, the last where it may not, and the estimate."""
-    sizes = [size for size in interim_sizes(design) if size <= ds.attrs["samples"]]
+    sizes = [size for size in interim_sizes(design) if size <= result.dataset.attrs["samples"]]
     for size in sizes or [0]:
-        seen = interim_estimate(design, first_samples(ds, size))
+        seen = interim_estimate(design, result.first_samples(size))
         if seen.reached:
             break
     return size, seen

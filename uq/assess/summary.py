@@ -6,9 +6,9 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess import stopping_status
+from uq.assess.counted_rows import share_of
 from uq.assess.estimators import in_categories, share
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.life_fit import Fit, fits_of
@@ -16,27 +16,14 @@ from uq.assess.reweighting import Weighting
 from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
-from uq.assess.statistics.thresholds import share_of
 from uq.result.elements import (
     Element,
     Mask,
-    analysis_of,
-    category_codes,
     flags,
-    has_independent_samples,
-    independent_rows,
-    notes_on_places,
-    replicates_of,
-    shown_outputs,
-    study_file_of,
-    weights_of,
-    why_no_statistics,
 )
-from uq.result.nesting import is_nested, nesting_of, size_in_words
-from uq.result.regimes import within_regime
-from uq.result.variables import outputs_of
-from uq.result.weights import ONLY_INSPECTED, has_weights, refuse_weights
-from uq.sampling.designs import DESIGNS
+from uq.result.nesting import size_in_words
+from uq.result.result import Result
+from uq.result.weights import ONLY_INSPECTED
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import Smoothed
@@ -163,7 +150,7 @@ class Summary:
 
 
 def summarise(
-    ds: xr.Dataset,
+    result: Result,
     analysis: AnalysisTable | None = None,
     *,
     regime: str | None = None,
@@ -176,7 +163,7 @@ def summarise(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     analysis : AnalysisTable, optional
         What to report; by default what the study of the result asks for.
@@ -195,29 +182,29 @@ def summarise(
     -------
     Summary
     """
-    analysis = analysis or analysis_of(ds)
+    analysis = analysis or result.analysis
     if fits:
-        refuse_weights(ds, "laws fitted to lives")
-    notes = _notes(ds)
+        result.refuse_weights("laws fitted to lives")
+    notes = _notes(result)
     if regime is not None:
-        ds = within_regime(ds, regime)
-    rows = independent_rows(ds)
-    of_all = weights_of(rows) if weighting is None else weighting.all_inputs
-    context = Context(rows, analysis, replicates_of(rows), of_all)
+        result = result.within_regime(regime)
+    rows = result.independent
+    of_all = rows.weights if weighting is None else weighting.all_inputs
+    context = Context(rows, analysis, rows.replicates, of_all)
     outputs, most = dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
-    names = shown_outputs(ds, analysis)
+    names = result.shown_outputs(analysis)
     elements = population(rows, names, plain=plain) if not weighting else weighting.elements(names)
     for element in elements:  # one at a time in memory
         outputs[element.name] = _described(element, context, fits, parts)
         most = max(most, int(element.failed.sum()))
     if most:
-        notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
+        notes.append(SOME_FAILED.format(most=most, rows=len(rows)))
     return Summary(
-        samples=ds.sizes["sample"],
-        rows_used=rows.sizes["sample"],
-        status=status_counts(ds),
-        shares={name: category_shares(rows, name, of_all) for name in _categories(ds, names)},
+        samples=len(result),
+        rows_used=len(rows),
+        status=status_counts(result),
+        shares={name: category_shares(rows, name, of_all) for name in _categories(result, names)},
         outputs=outputs,
         most_failed=most,
         notes=notes,
@@ -257,31 +244,31 @@ def resolution_of(element: Element, least: float) -> float:
     return float(high - low) / 100 if high - low < least * abs(middle) else 0.0
 
 
-def status_counts(ds: xr.Dataset) -> dict[str, int]:
+def status_counts(result: Result) -> dict[str, int]:
     """Return the number of rows, of all, with each status that occurs and with ``ok``."""
-    codes = ds["status"].values
-    counts = {label: int((codes == code).sum()) for code, label in flags(ds["status"])}
+    codes = result.dataset["status"].values
+    counts = {label: int((codes == code).sum()) for code, label in flags(result.dataset["status"])}
     return {label: count for label, count in counts.items() if count or label == "ok"}
 
 
-def _categories(ds: xr.Dataset, shown: Collection[str]) -> list[str]:
+def _categories(result: Result, shown: Collection[str]) -> list[str]:
     """Return the elements of the categories that are shown, and the regime."""
     return [
         element
-        for name, output in outputs_of(ds).items()
+        for name, output in result.outputs.items()
         if output.is_category and (name in shown or name == REGIME)
-        for element in category_codes(ds, name)
+        for element in result.codes(name)
     ]
 
 
 def category_shares(
-    rows: xr.Dataset, name: str, weights: Smoothed | None = None
+    rows: Result, name: str, weights: Smoothed | None = None
 ) -> dict[str, Statistic]:
     """Return the share of each label of a category among the independent rows that did not fail.
 
     The name is that of an output, or of one element of it.
     """
-    replicate = replicates_of(rows)
+    replicate = rows.replicates
 
     def estimate(hits: Mask, kept: Mask) -> Estimate:
         part = replicates_of_some(replicate, kept)
@@ -307,24 +294,24 @@ def category_shares(
     }
 
 
-def _notes(ds: xr.Dataset) -> list[str]:
-    if why := why_no_statistics(ds):
-        return [NO_STATISTICS.format(design=ds.attrs["design"], why=why)]
-    design = study_file_of(ds).design
+def _notes(result: Result) -> list[str]:
+    if why := result.why_no_statistics:
+        return [NO_STATISTICS.format(design=result.design_name, why=why)]
+    design = result.study.design
     notes = []
-    if design.until is not None and not has_weights(ds):
-        notes.append(stopping_status.sentence(design, ds))
-    if is_nested(ds):
-        place = nesting_of(ds)
+    if design.until is not None and not result.has_weights:
+        notes.append(stopping_status.sentence(design, result))
+    if result.is_nested:
+        place = result.nesting
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
-    notes += filter(None, [ds.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(ds)])
-    return notes + notes_on_places(ds)
+    notes += filter(None, [result.dataset.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(result)])
+    return notes + result.notes_on_places
 
 
-def why_no_intervals(ds: xr.Dataset) -> str:
+def why_no_intervals(result: Result) -> str:
     """Return why the rows of a result support no intervals, or ""."""
-    if has_independent_samples(ds) or ds.attrs["replicates"] > 1:
+    if result.has_independent_samples or result.dataset.attrs["replicates"] > 1:
         return ""
-    reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
-    return reason.format(design=ds.attrs["design"])
+    reason = NOT_STATED if result.design.imported else NO_INTERVALS
+    return reason.format(design=result.design_name)

@@ -4,20 +4,20 @@ from math import inf, isfinite, nan
 from typing import Any
 
 import pandas as pd
-import xarray as xr
 
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.table import COLUMN_ORDER
 from uq.assess.summary import Described, Summary, summarise
+from uq.result.result import AnyResult, Result
 from uq.stats.estimate import Estimate
 
 
-def summary(ds: xr.Dataset, *, plain: bool = False) -> pd.DataFrame:
+def summary(result: AnyResult, *, plain: bool = False) -> pd.DataFrame:
     """Describe a result in a table, one line per element of each output.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     plain : bool
         Whether lives are taken as computed; by default what only scales them is integrated exactly.
@@ -38,7 +38,8 @@ def summary(ds: xr.Dataset, *, plain: bool = False) -> pd.DataFrame:
     >>> bool(line["mean_low"] < 3.5 < line["mean_high"])  # the mean is known
     True
     """
-    return table_of(summarise(ds, plain=plain))
+    result = Result.of(result)
+    return table_of(summarise(result, plain=plain))
 
 
 def table_of(found: Summary) -> pd.DataFrame:

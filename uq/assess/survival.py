@@ -1,34 +1,28 @@
 """Lifetimes: the probability of a longer life than each time."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from uq.assess.failed_rows import outer, with_failed_at
-from uq.assess.population import Population
+from uq.assess.sample import as_sample
 from uq.assess.scaling import population
-from uq.result.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
-from uq.stats.beta_products import BetaProducts
-from uq.stats.clusters import Clusters, dealt
+from uq.result.elements import Element, Floats
+from uq.result.result import AnyResult, Result
 from uq.stats.intervals import (
-    CONFIDENCE,
     Ends,
     Replicates,
-    scattered_share_interval,
-    upper_probability,
 )
-from uq.stats.kaplan_meier import SurvivalCurve, outliving
-from uq.stats.quantile_functions import normal
 from uq.stats.survival_band import simultaneous_band
 
 
-def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
+def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Dataset:
     """Estimate how likely a lifetime exceeds each time.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         A lifetime, or one element of it such as ``time_to_depth[site=left,depth=0.00025]``. All
@@ -72,22 +66,23 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
     >>> bool(half["low"] < 0.5 < half["high"])
     True
     """
-    rows = independent_rows(ds)
-    wanted = {element.name for element in lifetimes(rows, output)}
+    result = Result.of(result)
+    rows = result.independent
+    wanted = {element.name for element in rows.lifetimes(output)}
     whole = population(rows, [output.partition("[")[0]], plain=plain)
     chosen = [element for element in whole if element.name in wanted]
     time = _times(chosen)
-    replicate = replicates_of(rows)
+    replicate = rows.replicates
     lost = any(element.failed.any() for element in chosen)
-    found = [_variables(element, time, replicate, lost) for element in chosen]
+    curves = [_variables(element, time, replicate, lost) for element in chosen]
 
-    of = rows[chosen[0].output]
-    places = {dim: of[dim] for dim in of.dims if dim != "sample"}
+    of = rows.dataset[chosen[0].output]
+    places = {dim: of[dim] for dim in of.dims if dim != "row"}
     dims = tuple(places) if output == of.name else ()
     shape = tuple(of.sizes[dim] for dim in dims)
     data = {}
-    for name in found[0]:
-        values = np.stack([one[name] for one in found])
+    for name in curves[0]:
+        values = np.stack([curve[name] for curve in curves])
         along = ("time",) if values.ndim > 1 else ()
         attrs = {"long_name": _MEANINGS[name], "units": "1"}
         data[name] = ((*dims, *along), values.reshape(shape + values.shape[1:]), attrs)
@@ -156,63 +151,28 @@ def _weighted_times(element: Element) -> Floats:
     return np.asarray(time[np.searchsorted(share, wanted)])
 
 
-class Curve(NamedTuple):
-    """The share that outlives each time, and its pointwise 95 % interval; shapes (k,)."""
-
-    survival: Floats
-    low: Floats
-    high: Floats
-
-
 def _variables(
     element: Element, time: Floats, replicate: Replicates, with_failed: bool
 ) -> dict[str, Any]:
     """Return every variable of `survival` for one element, named and ordered as there."""
-    plain = curve(element, time, replicate)
+    plain = as_sample(element, replicate).survival(time)
     band_low, band_high = _band(element.plain, time, replicate)
     kept = element.present
     rows = int(kept.sum())
     worth = None if element.weights is None else element.weights[kept]
     never = np.average(element.never[kept], weights=worth) if rows else np.nan
-    found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
-    found |= {"never": never, "rows": rows}
-    found |= {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
+    variables = plain._asdict() | {"band_low": band_low, "band_high": band_high}
+    variables |= {"never": never, "rows": rows}
+    variables |= {
+        name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")
+    }
     if with_failed:
         for end, life in (("low", 0.0), ("high", np.inf)):
-            other = curve(with_failed_at(element, life), time, replicate)
+            other = as_sample(with_failed_at(element, life), replicate).survival(time)
             alone = np.isnan(other.low).all() and np.isnan(other.high).all()
             bound = other.survival if alone else getattr(other, end)
-            found[f"failed_{end}"] = outer(end, bound, getattr(plain, end))
-    return found
-
-
-def curve(
-    element: Element, time: Floats, replicate: Replicates, confidence: float = CONFIDENCE
-) -> Curve:
-    """Return the estimate of `survival` for one element, at times [s] that ascend."""
-    if not element.is_plain:
-        rows = Population(element, replicate, confidence)
-        return Curve(*np.array([rows.outliving(at).numbers for at in time]).reshape(-1, 3).T)
-    values, censored = element.at_least, element.censored[element.present]
-    if len(values) == 0:
-        return Curve(*np.full((3, len(time)), np.nan))
-    known_at_once = element.declared.never_known_at_once
-    found = outliving(values, censored, time, known_at_once=known_at_once)
-    if replicate is None:
-        ends = _pointwise(values, censored, time, confidence, found, known_at_once)
-        return Curve(found.share, *ends)
-    of = dealt(replicate[element.present])
-    estimates = [
-        outliving(values[of == r], censored[of == r], time, known_at_once=known_at_once).share
-        for r in np.unique(of)
-    ]
-    seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
-    at_risk = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
-    samples = replicate.samples if isinstance(replicate, Clusters) else None
-    interval = scattered_share_interval(
-        found.share, np.array(estimates), None, confidence, rows=at_risk, samples=samples
-    )
-    return Curve(found.share, *interval)
+            variables[f"failed_{end}"] = outer(end, bound, getattr(plain, end))
+    return variables
 
 
 def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
@@ -222,35 +182,3 @@ def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
     known_at_once = element.declared.never_known_at_once
     return simultaneous_band(values, censored, time, known_at_once=known_at_once)
-
-
-_FEW_ENDS = 5
-_FEW_AT_RISK = 10
-
-
-def _pointwise(
-    values: Floats,
-    censored: Mask,
-    time: Floats,
-    confidence: float,
-    estimate: SurvivalCurve,
-    known_at_once: bool,
-) -> Ends:
-    """Return the interval that is symmetric about the logarithm of -log(share).
-
-    Where few rows have ended, or are still at risk, it is that of `BetaProducts`, which is
-    conservative: there the other misses in up to 47 % of samples.
-    """
-    share, deviation = estimate.share, np.sqrt(estimate.variance)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        middle = np.log(-np.log(share))
-        half = normal(upper_probability(confidence)) * deviation / (share * -np.log(share))
-        low, high = (np.exp(-np.exp(middle + side * half)) for side in (1, -1))
-    inside = (share > 0) & (share < 1) & np.isfinite(deviation)
-    law = BetaProducts(values, censored, known_at_once=known_at_once)
-    ended, left = law.rows_ended_by(time), law.at_risk_after(time)
-    few = (ended < _FEW_ENDS) | (left < _FEW_AT_RISK)
-    upper = upper_probability(confidence)
-    low[few] = 1 - law.ended_after(time[few]).quantile(upper)
-    high[few] = 1 - law.ended_by(time[few]).quantile(1 - upper)
-    return np.where(inside, low, np.nan), np.where(inside, high, np.nan)

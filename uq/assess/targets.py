@@ -6,11 +6,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.transforms import heaviness, logarithm, rank, rate
-from uq.result.elements import Element, Floats, category_codes, flags
-from uq.result.result_file import failed
+from uq.result.elements import Element, Floats, flags
+from uq.result.result import Result
 from uq.stats.intervals import sized
 from uq.text.numbers import counted
 from uq.text.quantities import read_quantity
@@ -224,12 +223,12 @@ def _event(element: Element, threshold: float) -> IndexTarget:
     return IndexTarget(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
 
 
-def category_targets(ds: xr.Dataset, output: str) -> Iterator[IndexTarget]:
+def category_targets(result: Result, output: str) -> Iterator[IndexTarget]:
     """Yield whether a category, such as the regime, has each of the labels that occur.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result, or some rows of one.
     output : str
         An output of kind ``category``, or one element of it.
@@ -239,9 +238,9 @@ def category_targets(ds: xr.Dataset, output: str) -> Iterator[IndexTarget]:
     IndexTarget
         NaN for rows that failed before they had a category; a sound row of no category has none.
     """
-    lost = failed(ds)
-    for name, codes in category_codes(ds, output).items():
-        for code, label in flags(ds[output.partition("[")[0]]):
+    lost = result.failed
+    for name, codes in result.codes(output).items():
+        for code, label in flags(result.dataset[output.partition("[")[0]]):
             if code >= 0 and (hits := codes == code).any():
                 values = np.where((codes < 0) & lost, np.nan, hits)
                 yield IndexTarget(f"P({name}={label})", None, values, event=True)

@@ -9,16 +9,16 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from numpy.typing import NDArray
 
+from uq.assess.counted_rows import share_of
 from uq.assess.failed_rows import failed_share_bounds
-from uq.assess.statistics.thresholds import SIDES, event, share_of
+from uq.assess.statistics.thresholds import SIDES
 from uq.contract import Floats
 from uq.errors import InputError, first_fault_alone
 from uq.result.elements import Element, elements_of, shown_outputs
+from uq.result.result import AnyResult, Result
 from uq.result.result_file import build_rows
-from uq.result.weights import refuse_weights
 from uq.sampling.named_values import read_settings
 from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
@@ -86,12 +86,12 @@ class TwoFidelities:
     outputs: Mapping[str, Mapping[str, Sharpened]]
 
 
-def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
+def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
     """Estimate means and probabilities with the help of a cheap twin of the same model.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of a study with ``[analysis] twin``.
     model : str, optional
         Where a model that is not installed lives, as for `load_study`.
@@ -109,9 +109,10 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
     InputError
         When the study names no twin.
     """
+    result = Result.of(result)
     lines = {
         (name, label): (*one.estimate.numbers, *one.plain.numbers, one.reduction)
-        for name, estimates in with_twin(ds, model).outputs.items()
+        for name, estimates in with_twin(result, model).outputs.items()
         for label, one in estimates.items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "estimate"])
@@ -119,11 +120,11 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
     return pd.DataFrame(list(lines.values()), index=index, columns=columns)
 
 
-def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
+def with_twin(result: Result, model: str | None = None) -> TwoFidelities:
     """Return the estimates of `two_fidelities` as records."""
-    refuse_weights(ds, "estimates with a twin")
+    result.refuse_weights("estimates with a twin")
     with first_fault_alone():
-        study = study_from_text(ds.attrs["study"], "study of this result", model)
+        study = study_from_text(result.dataset.attrs["study"], "study of this result", model)
     twin = study.analysis.twin
     if not twin:
         cheap = ", ".join(study.model.cheap) or "none"
@@ -132,18 +133,18 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
             f" '{study.model.name}' can compute alone ({cheap}), or a table of settings that make"
             " its rows cheap"
         )
-    study = study.with_samples(int(ds.attrs["samples"]))
-    here, many = _here(study, ds), _many(study, ds.sizes["sample"])
-    outputs = [name for name in shown_outputs(ds, study.analysis) if name != twin]
+    study = study.with_samples(int(result.dataset.attrs["samples"]))
+    here, many = _here(study, result), _many(study, len(result))
+    outputs = [name for name in result.shown_outputs(study.analysis) if name != twin]
     found = {}
-    for element in elements_of(ds, outputs):
+    for element in result.elements(outputs):
         for control, others in zip(here, many, strict=True):
             same = control.name == element.name
             if same or (control.output == twin and control.place.items() <= element.place.items()):
                 found[element.name] = dict(_estimates(element, control, others, study))
     return TwoFidelities(
         twin if isinstance(twin, str) else toml(twin),
-        ds.sizes["sample"],
+        len(result),
         len(many[0].values),
         {name: estimates for name, estimates in found.items() if estimates},
     )
@@ -161,9 +162,9 @@ def _estimates(
             )
             yield "mean", Sharpened(*found, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
-        sides = event(element, threshold)
-        if sides is None or not kept.any():
+        if element.unknown_sides(threshold).any() or not kept.any():
             continue
+        sides = (element.above(threshold) > 0, element.below(threshold) > 0)
         for sign, hits in zip(SIDES.values(), sides, strict=True):
             found = controlled_share(
                 hits, kept, control=control.for_thresholds, many=many.for_thresholds
@@ -193,11 +194,13 @@ def _filled(control: Element) -> Floats:
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
 
 
-def _here(study: Study, ds: xr.Dataset) -> list[Element]:
+def _here(study: Study, result: Result) -> list[Element]:
     """Return the twin of the rows of a result."""
-    n = ds.sizes["sample"]
-    x = [np.broadcast_to(ds[name].values, n) for name in study.model.parameter_names]
-    keys = (ds[name].values.astype(np.int64) for name in ("replicate", "group", "block"))
+    n = len(result)
+    x = [np.broadcast_to(result.dataset[name].values, n) for name in study.model.parameter_names]
+    keys = (
+        result.dataset[name].values.astype(np.int64) for name in ("replicate", "group", "block")
+    )
     return _twin_of(study, np.stack(x, 1), row_seeds(study.design.seed, *keys))
 
 

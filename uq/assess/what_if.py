@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
-import xarray as xr
 
 from uq.assess.densities import changed_laws, depends_otherwise
 from uq.assess.reweighting import Weighting
@@ -16,16 +15,8 @@ from uq.assess.summary_json import summary_json
 from uq.assess.summary_table import table_of
 from uq.contract import Parameter
 from uq.errors import InputError, RunError, nearest
-from uq.result.elements import (
-    analysis_of,
-    independent_rows,
-    replicates_of,
-    shown_outputs,
-    why_no_statistics,
-)
-from uq.result.weights import refuse_weights
+from uq.result.result import AnyResult, Result
 from uq.sampling.dependence import matrix_problem
-from uq.sampling.designs import DESIGNS
 from uq.sampling.input_faults import InputFault
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
@@ -55,12 +46,12 @@ class WhatIf:
     pareto_k: float
 
 
-def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
+def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
     """Describe a result as if its inputs followed other laws, without computing a row.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     changes : dict of str to object
         Entries of the study file, such as ``{"uncertain.initial_gap.sd": 1e-5}`` or, for another
@@ -87,27 +78,28 @@ def what_if(ds: xr.Dataset, changes: Mapping[str, Any]) -> pd.DataFrame:
     .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
        sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
-    found = answer(ds, changes)
+    result = Result.of(result)
+    found = answer(result, changes)
     table = table_of(found.summary)
     table.attrs = {"effective_rows": found.effective_rows, "pareto_k": found.pareto_k}
     return table
 
 
 def answer(
-    ds: xr.Dataset,
+    result: Result,
     changes: Mapping[str, Any],
     asked: AnalysisTable | None = None,
     parts: Collection[str] = STATISTICS,
 ) -> WhatIf:
     """Return what `what_if` tabulates, or that part of it which is asked for."""
-    refuse_weights(ds, "what if")
-    if why := why_no_statistics(ds):
-        raise InputError(f"what if: the rows of a '{ds.attrs['design']}' design {why}")
-    rows = independent_rows(ds)
+    result.refuse_weights("what if")
+    if why := result.why_no_statistics:
+        raise InputError(f"what if: the rows of a '{result.design_name}' design {why}")
+    rows = result.independent
     old, new = inputs_of(rows), _changed(rows, changes)
-    _refuse(ds, old, new)
-    weighting = Weighting(rows, old, new, replicates_of(rows))
-    summary = summarise(ds, asked, weighting=weighting, parts=parts)
+    _refuse(result, old, new)
+    weighting = Weighting(rows, old, new, rows.replicates)
+    summary = summarise(result, asked, weighting=weighting, parts=parts)
     if not weighting.used and weighting.refused:
         first = next(iter(weighting.refused.values()))
         raise (InputError if first.impossible else RunError)(first.refusal)
@@ -146,9 +138,9 @@ def read_changes(texts: Sequence[str]) -> dict[str, Any]:
     return found
 
 
-def _changed(rows: xr.Dataset, changes: Mapping[str, Any]) -> Inputs:
+def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     """Return the inputs of the rows with the laws of the study as changed."""
-    data = read_toml(rows.attrs["study"])
+    data = read_toml(rows.dataset.attrs["study"])
     for place, value in changes.items():
         _put(data, place, value)
     text = "\n".join(f"{key(name)} = {toml(value)}" for name, value in data.items())
@@ -189,10 +181,10 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         known[name][argument] = value
 
 
-def _faults(rows: xr.Dataset, study: StudyFile, inputs: Inputs) -> list[InputFault]:
+def _faults(rows: Result, study: StudyFile, inputs: Inputs) -> list[InputFault]:
     faults = []
     for name, law in inputs.laws.items():
-        about = rows[name].attrs
+        about = rows.dataset[name].attrs
         declared = Parameter("", about["units"], "", inputs.bounds[name], "")
         if law.times is None and (problem := law_problem(law, declared)):
             faults.append(problem.within("uncertain", name))
@@ -203,9 +195,9 @@ def _faults(rows: xr.Dataset, study: StudyFile, inputs: Inputs) -> list[InputFau
     return faults
 
 
-def _refuse(ds: xr.Dataset, old: Inputs, new: Inputs) -> None:
+def _refuse(result: Result, old: Inputs, new: Inputs) -> None:
     """Refuse changes that weights do not show."""
-    if DESIGNS[ds.attrs["design"]].imported:
+    if result.design.imported:
         raise InputError("what if: the rows are imported, and their density is unknown")
     if new.tied != old.tied or list(new.laws) != list(old.laws):
         raise InputError(SAME)
@@ -222,5 +214,5 @@ def _refuse(ds: xr.Dataset, old: Inputs, new: Inputs) -> None:
                 f"what if: the listed values of '{listed[0]}' do not show how far it depends on"
                 f" {', '.join(changed_laws(old, new)) or 'the others'}"
             )
-    if not shown_outputs(ds, analysis_of(ds)):
+    if not result.shown_outputs(result.analysis):
         raise InputError("what if: the result has no output")

@@ -9,7 +9,7 @@ from uq.assess.comparison import Comparison, Side, comparison
 from uq.assess.differences import ComparedOutput, ComparedStatistic
 from uq.assess.summary_json import comparison_json
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, in_unit, number, percent
@@ -21,7 +21,7 @@ _MOST_OUTPUTS = 6
 
 def compare(first: Path, second: Path, json: bool) -> None:
     """Compare two results and print the comparison."""
-    differences = comparison(open_result(first), open_result(second))
+    differences = comparison(Result.open(first), Result.open(second))
     if not json:
         _show(differences, first, second)
         return

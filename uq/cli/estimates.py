@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
 
-import xarray as xr
-
 from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
@@ -13,7 +11,7 @@ from uq.assess.running_estimates import converging
 from uq.assess.summary_json import convergence_json, twin_json
 from uq.assess.two_fidelities import with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import failed_bounds_text, interval_text, value_text
 from uq.text.numbers import in_brackets
@@ -25,8 +23,8 @@ _SHOWN = 6  # sizes of each estimate on a terminal
 class _Block:
     """How the estimates of one target are shown: its name, and their unit."""
 
-    def __init__(self, ds: xr.Dataset, name: str, estimates: Mapping[str, Estimate]):
-        self._target = NumberTarget(ds, name)
+    def __init__(self, result: Result, name: str, estimates: Mapping[str, Estimate]):
+        self._target = NumberTarget(result, name)
         values = (estimate.value for label, estimate in estimates.items() if _is_value(label))
         self._unit = unit_of(self._target.units, typical(values))
 
@@ -57,8 +55,8 @@ def _is_value(label: str) -> bool:
 
 def twin(result: Path, model: str | None, json: bool) -> None:
     """Show means and probabilities sharpened with the study's twin."""
-    ds = open_result(result)
-    fidelities = with_twin(ds, model)
+    opened = Result.open(result)
+    fidelities = with_twin(opened, model)
     if json:
         print_json(twin_json(fidelities))
         return
@@ -68,7 +66,9 @@ def twin(result: Path, model: str | None, json: bool) -> None:
     )
     for name, estimates in fidelities.outputs.items():
         block = _Block(
-            ds, name, {label: twin_estimate.estimate for label, twin_estimate in estimates.items()}
+            opened,
+            name,
+            {label: twin_estimate.estimate for label, twin_estimate in estimates.items()},
         )
         block.show_heading()
         grid(
@@ -98,19 +98,19 @@ def twin(result: Path, model: str | None, json: bool) -> None:
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
     """Show running estimates, and whether sampling is still the largest error."""
-    ds = open_result(result)
-    outputs = converging(ds, output)
+    opened = Result.open(result)
+    outputs = converging(opened, output)
     if json:
         print_json(convergence_json(outputs))
         return
-    for line in verdict(Findings(ds), output):
+    for line in verdict(Findings(opened), output):
         paragraph(line, indent=0)
     for name, running in outputs.items():
         if running.errors and running.errors["warning"]:
             paragraph(f"{name}: {running.errors['warning']}.", indent=0)
     for name, running in outputs.items():
         block = _Block(
-            ds, name, {label: sizes[-1][1] for label, sizes in running.estimates.items()}
+            opened, name, {label: sizes[-1][1] for label, sizes in running.estimates.items()}
         )
         block.show_heading()
         for label, sizes in running.estimates.items():

@@ -7,8 +7,7 @@ from uq.assess.fleet import fleet_of, reasons, the_life
 from uq.assess.fleet_json import fleet_json
 from uq.assess.fleet_numbers import Banded
 from uq.cli.printing import grid, heading, note, paragraph, print_json
-from uq.result.elements import independent_rows
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.stats.estimate_text import failed_bounds_text, interval_text, value_text
 from uq.text.numbers import in_brackets, threshold
 from uq.text.quantities import read_threshold
@@ -25,14 +24,16 @@ def fleet(
     json: bool,
 ) -> None:
     """Show when the first of some units ends, and how many have ended by a time."""
-    ds = open_result(result)
-    units = the_life(independent_rows(ds), output).declared.unit if by else ""
+    opened = Result.open(result)
+    units = the_life(opened.independent, output).declared.unit if by else ""
     times = [read_threshold("--by", text, "a life", units) for text in by]
-    first_ends = fleet_of(ds, size, times, allow, output, plain=plain)
+    first_ends = fleet_of(opened, size, times, allow, output, plain=plain)
     if json:
         print_json(fleet_json(first_ends))
         return
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {first_ends.design}")
+    heading(
+        str(opened.dataset.attrs["title"]), f"{opened.dataset.attrs['source']}, {first_ends.design}"
+    )
     unit = unit_of(
         first_ends.units, typical(banded.estimate.value for banded in first_ends.first.values())
     )

@@ -6,8 +6,6 @@ from functools import partial
 from math import isfinite
 from pathlib import Path
 
-import xarray as xr
-
 from uq.cli import progress, say_when_interrupted
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json
 from uq.cli.run import carried_out, loaded
@@ -21,7 +19,7 @@ from uq.learning.information_gain import Taught
 from uq.learning.inspection_log import read
 from uq.learning.posterior_inputs import InputLearnt
 from uq.learning.remaining_life import ANY, Remaining, read_times
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import value_text
 from uq.text.numbers import in_brackets, number, percent
@@ -50,16 +48,17 @@ def update(
         study = loaded(str(source), model, None)
         study = study if rows is None else study.with_samples(samples_for(study, rows))
         target = output_path(study)
-        ds, _ = carried_out(target, quiet, options, partial(run_study, study, target))
+        dataset, _ = carried_out(target, quiet, options, partial(run_study, study, target))
+        result = Result(dataset)
     else:
-        ds = open_result(source)
-    times, budget = read_times("--by", by, ds), None
+        result = Result.open(source)
+    times, budget = read_times("--by", by, result), None
     say_when_interrupted("interrupted; nothing was written")
     with progress.shown(quiet) as show:
         if rows is not None and not is_study(source):
             say_when_interrupted("interrupted; the same command resumes, with the new rows so far")
             budget = Budget(rows, replace(options, progress=show), output, model)
-        posterior = learn(ds, new, output, model_error, budget)
+        posterior = Result(learn(result, new, output, model_error, budget))
     answer = learnt(posterior, times)
     if json:
         print_json(learnt_json(answer))
@@ -70,8 +69,8 @@ def update(
     return 0
 
 
-def _show(ds: xr.Dataset, answer: Learnt) -> None:
-    heading(str(ds.attrs["title"]), str(ds.attrs["source"]))
+def _show(result: Result, answer: Learnt) -> None:
+    heading(str(result.dataset.attrs["title"]), str(result.dataset.attrs["source"]))
     of_unit: dict[str, list[InputLearnt]] = {}
     for learnt_input in answer.inputs:
         of_unit.setdefault(learnt_input.unit, []).append(learnt_input)

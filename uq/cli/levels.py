@@ -10,22 +10,25 @@ from uq.assess.summary_json import levels_json
 from uq.assess.variance_by_level import SOLVER, LevelShares
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.indices.index import S1
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.sampling.levels import LEVELS
 from uq.stats.importance_weights import worth_in_words
 
 
 def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     """Show the shares of the variance by level."""
-    ds = open_result(result)
-    decomposition = by_level(ds, output, plain=plain)
+    opened = Result.open(result)
+    decomposition = by_level(opened, output, plain=plain)
     if json:
         print_json(levels_json(decomposition))
         return
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {decomposition.size}")
+    heading(
+        str(opened.dataset.attrs["title"]),
+        f"{opened.dataset.attrs['source']}, {decomposition.size}",
+    )
     grid([(level, ", ".join(decomposition.inputs_on(level)) or "-") for level in LEVELS])
     for name, shares in decomposition.outputs.items():
-        heading(f"\n{NumberTarget(ds, name).name}", "shares of the variance")
+        heading(f"\n{NumberTarget(opened, name).name}", "shares of the variance")
         grid(_lines(shares), header=("", "share", "95 % interval", ""))
         for text in shares.sentences:
             paragraph(text, indent=2)

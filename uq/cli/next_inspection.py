@@ -7,7 +7,7 @@ from typing import Any
 
 from uq.cli.printing import grid, heading, note, print_json
 from uq.learning.next_inspection import Worth, unit_of_time, worth
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.text.numbers import counted, percent, threshold
 from uq.text.quantities import read_threshold
@@ -23,13 +23,13 @@ def next_inspection(
     json: bool,
 ) -> None:
     """Show how far inspections of more units would narrow what units share."""
-    ds = open_result(result)
-    at = [read_threshold("--at", text, "a life", unit_of_time(ds, output)) for text in times]
-    expected = worth(ds, output, at, units, cv, life)
+    opened = Result.open(result)
+    at = [read_threshold("--at", text, "a life", unit_of_time(opened, output)) for text in times]
+    expected = worth(opened, output, at, units, cv, life)
     if json:
         print_json(_as_json(expected))
         return
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}")
+    heading(str(opened.dataset.attrs["title"]), f"{opened.dataset.attrs['source']}")
     heading(f"\n{expected.life}", f"expected narrowing by inspecting {expected.output}")
     grid(
         [(_when(expected, t), *(_share(expected, t, n) for n in units)) for t in at or (None,)],

@@ -9,8 +9,7 @@ from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say, say_compiling
 from uq.execution.planning import Cost, pilot
 from uq.machines.row_by_row import RowByRow
-from uq.result.elements import has_independent_samples
-from uq.result.result_file import failed
+from uq.result.result import Result
 from uq.study.definition import Study
 from uq.text.numbers import counted, in_brackets, quantity, threshold
 from uq.text.units import typical, unit_of
@@ -20,14 +19,15 @@ _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
 def plan(study: Study, workers: int | None, json: bool) -> None:
     """Run a few rows of a study; show what the whole will cost, and how wide intervals will be."""
-    cost, ds = pilot(study, workers, say_compiling, say)
-    failures, widths = int(failed(ds).sum()), expected_widths(ds)
-    needed = rows_needed(ds, study.analysis)
+    cost, dataset = pilot(study, workers, say_compiling, say)
+    rows = Result(dataset)
+    failures, widths = int(rows.failed.sum()), expected_widths(rows)
+    needed = rows_needed(rows, study.analysis)
     if json:
         print_json(as_json(cost, failures, widths, needed))
     else:
         _show(study, cost, failures, needed)
-        _show_widths(widths, has_independent_samples(ds))
+        _show_widths(widths, rows.has_independent_samples)
 
 
 def as_json(

@@ -12,7 +12,7 @@ from uq.execution.loading import load_model
 from uq.explore.row_again import RowAgain, row_again
 from uq.explore.simulation import with_trajectory
 from uq.machines.compilation import compilation
-from uq.result.result_file import open_result
+from uq.result.result import Result
 from uq.study.installed_models import find_model
 from uq.text.numbers import capitalized, quantity
 
@@ -27,18 +27,20 @@ def row(
     json: bool,
 ) -> int:
     """Show a row of a result, computed again; return the exit code."""
-    ds = open_result(result)
+    opened = Result.open(result)
     if plot:
-        check_files(load_model(model) if model else find_model(ds.attrs["model"]), None, plot)
+        check_files(
+            load_model(model) if model else find_model(opened.dataset.attrs["model"]), None, plot
+        )
     with compilation(say_compiling):
-        recomputed = row_again(ds, number, lowest, near_quantile, model, str(result))
+        recomputed = row_again(opened, number, lowest, near_quantile, model, str(result))
         if plot:
             if recomputed.again is None:
                 raise InputError(
                     f"{result}: row {recomputed.number}: no trajectory: {recomputed.reason}"
                 )
-            draw(with_trajectory(recomputed.stored, recomputed.again), plot)
-    print_json(plain(recomputed)) if json else _show(recomputed, ds.sizes["sample"])
+            draw(with_trajectory(recomputed.stored.dataset, recomputed.again), plot)
+    print_json(plain(recomputed)) if json else _show(recomputed, len(opened))
     return 1 if recomputed.differing else 0
 
 
@@ -84,8 +86,8 @@ def _show(recomputed: RowAgain, rows: int) -> None:
         [
             (name, quantity(value, unit))
             for name, value in stored.values.items()
-            if recomputed.stored[name].attrs.get("role") == "input"
-            for unit in [recomputed.stored[name].attrs["units"]]
+            if recomputed.stored.dataset[name].attrs.get("role") == "input"
+            for unit in [recomputed.stored.dataset[name].attrs["units"]]
         ]
     )
     show_outputs(stored)

@@ -18,8 +18,8 @@ from uq.execution.amending import study_of
 from uq.execution.loading import load_study
 from uq.execution.options import Progress, RunOptions
 from uq.execution.row_folder import folder_of
-from uq.result import result_file
 from uq.result.commands import with_model
+from uq.result.result import Result
 from uq.study.definition import Study
 from uq.study.hints import hints
 from uq.text.literals import plain_line
@@ -48,7 +48,7 @@ def amended(
 ) -> int:
     """Compute more rows of a result and show it; return the exit code."""
     ds, note = carried_out(path, quiet, options, action)
-    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
+    return end(study_of(path, model), Result(ds), path, quiet, note, options.mixed)
 
 
 def carried_out(
@@ -80,34 +80,35 @@ def carried_out(
     return ds, f"{target}: {counted(computed, 'row')} computed in {seconds:.1f} s{before}"
 
 
-def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixed: bool) -> int:
+def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixed: bool) -> int:
     """Show the summary of a result; return the exit code.
 
     Rows computed by other code are reported even where all else is quiet, unless they are wanted.
     """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
-    if not mixed and (line := runner.line_on_other_code(study, target, ds)):
+    if not mixed and (line := runner.line_on_other_code(study, target, result.dataset)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
         from uq.assess.findings import Findings
 
-        summary_tables.show_findings(Findings(with_model(ds, study.model_reference)))
+        with_model(result.dataset, study.model_reference)
+        summary_tables.show_findings(Findings(result))
         console.print()
         console.print(note)
         name = shlex.quote(str(target))
         console.print(f"Next: uq report {name} --open", soft_wrap=True)
         console.print(f"      uq sensitivity {name}", soft_wrap=True)
-    failed = int(np.count_nonzero(result_file.failed(ds)))
-    share = failed / ds.sizes["sample"]
+    failed = int(np.count_nonzero(result.failed))
+    share = failed / len(result)
     if share <= study.analysis.max_failed:
         return 0
     examples = [
         f"{status.label}: {text}"
         for status in Status
-        if (text := ds["status"].attrs.get(f"example_{status.name.lower()}"))
+        if (text := result.dataset["status"].attrs.get(f"example_{status.name.lower()}"))
     ]
     print(
-        f"{failed} of {ds.sizes['sample']} rows failed, more than max_failed = "
+        f"{failed} of {result.dataset.sizes['row']} rows failed, more than max_failed = "
         f"{study.analysis.max_failed:g} allows ({plain_line('; '.join(examples))})",
         file=sys.stderr,
     )

@@ -2,25 +2,24 @@
 
 from collections.abc import Iterator
 
-import xarray as xr
-
 from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.ranked_indices import Values, lines
 from uq.assess.sensitivities import Sensitivities
 from uq.cli.printing import grid, heading, paragraph
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
+from uq.result.result import Result
 from uq.text.numbers import counted, in_brackets
 from uq.text.units import typical, unit_of
 
 
-def show(ds: xr.Dataset, sensitivities: Sensitivities) -> None:
+def show(result: Result, sensitivities: Sensitivities) -> None:
     """Print the indices of each target, or why there are none."""
     dropped = sensitivities.groups_dropped
     lost = f", {counted(dropped, 'group')} dropped" if dropped else ""
     more = f"of {counted(sensitivities.rows_used, 'row')}{lost}"
     heading(f"Sensitivity by {sensitivities.method}", more)
     for name, target_indices in sensitivities.targets.items():
-        target = NumberTarget(ds, name)
+        target = NumberTarget(result, name)
         effects = [
             e.value
             for kind, estimates in target_indices.kinds().items()

@@ -5,19 +5,17 @@ from itertools import chain
 from math import isfinite, isnan
 from typing import NamedTuple
 
-import xarray as xr
-
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.facts import Answer
 from uq.assess.findings import Findings
 from uq.assess.life_fit import Fit
-from uq.assess.life_quantiles import B_LIVES
 from uq.assess.regime_boundary import in_words
 from uq.assess.statistic import Reader, Statistic
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import REGIME, Described, Summary
 from uq.assess.targets import split_name
 from uq.cli.printing import console, grid, heading, note, paragraph
-from uq.result.variables import outputs_of
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import failed_bounds_text, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
@@ -32,12 +30,12 @@ _MOST_EFFECTS = 3
 def show_findings(findings: Findings) -> None:
     """Print the answer of a study, then its summary."""
     show_answer(conclude(findings))
-    show_summary(findings.ds, findings.summary, findings.boundary)
+    show_summary(findings.result, findings.summary, findings.boundary)
 
 
-def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = None) -> None:
+def show_summary(result: Result, summary: Summary, boundary: Statistic | None = None) -> None:
     """Print a summary, and how intermingled its regimes are."""
-    design = f"{ds.attrs['design']}, {counted(summary.samples, 'row')}"
+    design = f"{result.design_name}, {counted(summary.samples, 'row')}"
     if summary.rows_used < summary.samples:
         independent = summary.rows_used
         design += (
@@ -45,19 +43,19 @@ def show_summary(ds: xr.Dataset, summary: Summary, boundary: Statistic | None = 
             if independent
             else ", none independent"
         )
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
-    grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
+    heading(str(result.dataset.attrs["title"]), f"{result.dataset.attrs['source']}, {design}")
+    grid([(label, str(count), _example(result, label)) for label, count in summary.status.items()])
     regimes = {REGIME: summary.regimes} if summary.regimes else {}
     for name, shares in (regimes | summary.categories).items():
-        heading(f"\n{name}", str(ds[name.partition("[")[0]].attrs["long_name"]))
+        heading(f"\n{name}", str(result.dataset[name.partition("[")[0]].attrs["long_name"]))
         lines = [_share(share) for share in shares.values()]
         grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
         if name == REGIME and boundary is not None and boundary.estimate.has_interval:
             stated = f"{boundary.label} {boundary.words()} ({interval_text(boundary.estimate)})"
             paragraph(f"{stated}: {in_words(boundary)}", indent=2)
     for name, output in summary.outputs.items():
-        meaning = readable(ds[name.partition("[")[0]].attrs["long_name"])
-        block = _block(ds, name, output)
+        meaning = readable(result.dataset[name.partition("[")[0]].attrs["long_name"])
+        block = _block(result, name, output)
         heading(f"\n{name}{in_brackets(block.unit)}", meaning)
         grid(_lines(output, block), header=("", "value", "95 % interval", ""))
         for text in _reasons(output, block):
@@ -128,10 +126,10 @@ class Block(NamedTuple):
         return estimated(statistic.label, self.units, self.compared, asked)
 
 
-def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
+def _block(result: Result, name: str, output: Described) -> Block:
     quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
     unit = unit_of(output.units, typical(quantiles))
-    is_angle = outputs_of(ds)[name.partition("[")[0]].is_angle
+    is_angle = result.outputs[name.partition("[")[0]].is_angle
     return Block(unit, output.units, compared(name, is_angle))
 
 
@@ -230,5 +228,5 @@ def _cells(estimate: Estimate | None, per: float) -> tuple[str, str]:
     )
 
 
-def _example(ds: xr.Dataset, status: str) -> str:
-    return str(ds["status"].attrs.get(f"example_{status.replace('-', '_')}", ""))
+def _example(result: Result, status: str) -> str:
+    return str(result.dataset["status"].attrs.get(f"example_{status.replace('-', '_')}", ""))

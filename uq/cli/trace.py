@@ -4,14 +4,14 @@ from pathlib import Path
 
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.render.trace.trace import Trace, trace_json, traced
-from uq.result.result_file import open_result
+from uq.result.result import Result
 
 _MOST = 40  # characters of a hash
 
 
 def trace(result: Path, key: str, model: str | None, json: bool) -> int:
     """Show where a number comes from; return the exit code."""
-    provenance = traced(open_result(result), key, model)
+    provenance = traced(Result.open(result), key, model)
     print_json(trace_json(provenance)) if json else _show(provenance)
     return 0 if provenance.equal else 1
 

@@ -6,17 +6,17 @@ from pathlib import Path
 from uq.assess.what_if import answer, read_changes, what_if_json
 from uq.cli.printing import note, print_json
 from uq.cli.summary_tables import show_summary
-from uq.result.result_file import open_result
+from uq.result.result import Result
 
 
 def what_if(result: Path, changes: list[str], json: bool) -> None:
     """Print the summary of a result under other laws."""
-    ds = open_result(result)
-    reweighted = answer(ds, read_changes(changes))
+    opened = Result.open(result)
+    reweighted = answer(opened, read_changes(changes))
     if json:
         print_json(what_if_json(reweighted))
         return
-    show_summary(ds, reweighted.summary)
+    show_summary(opened, reweighted.summary)
     note(
         f"What if: {'; '.join(changes)}. The same rows, weighted: worth"
         f" {reweighted.effective_rows:.0f} independent ones"

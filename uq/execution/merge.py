@@ -72,7 +72,7 @@ def _define(file: Any, ds: xr.Dataset, total: int) -> None:
     variables, attributes = xr.conventions.encode_dataset_coordinates(ds)
     file.setncatts(attributes)
     for dim, size in ds.sizes.items():
-        file.createDimension(dim, total if dim == "sample" else size)
+        file.createDimension(dim, total if dim == "row" else size)
     for name, variable in variables.items():
         kind = str if variable.dtype.kind == "U" else variable.dtype
         made = file.createVariable(
@@ -80,14 +80,14 @@ def _define(file: Any, ds: xr.Dataset, total: int) -> None:
         )
         made.setncatts(variable.attrs)
         made.set_auto_maskandscale(False)
-        if "sample" not in variable.dims:
+        if "row" not in variable.dims:
             made[...] = variable.values.astype(object) if kind is str else variable.values
 
 
 def _place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
     """Write rows to their places."""
     for name, variable in ds.variables.items():
-        if "sample" in variable.dims:
+        if "row" in variable.dims:
             done = 0
             for start, stop in blocks:
                 file[name][start:stop] = variable.values[done : done + stop - start]
@@ -121,13 +121,13 @@ def _rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.V
         "flag_meanings": " ".join(labels),
     }
     attrs |= {f"changed_{i}": toml(variants[i]) for i in range(1, len(variants))}
-    return xr.Variable("sample", np.full(count, code, np.int16), attrs)
+    return xr.Variable("row", np.full(count, code, np.int16), attrs)
 
 
 def by_settings(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], Mask]]:
     """Yield the settings of rows that differ from the study's, and which rows have them."""
     if "rerun" not in ds:
-        yield {}, np.ones(ds.sizes["sample"], np.bool_)
+        yield {}, np.ones(ds.sizes["row"], np.bool_)
         return
     codes = ds["rerun"].values
     for code in np.unique(codes):

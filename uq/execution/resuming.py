@@ -195,36 +195,34 @@ def _adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
         raise InputError(f"{path}: not a sound result: {fault}")
     here = made_here(study.model_reference)
     made = {name: str(ds.attrs[name]) for name in here if name in ds.attrs}
-    for first in range(0, ds.sizes["sample"], _ROWS):
-        block = ds.isel(sample=slice(first, first + _ROWS)).load()
-        wanted = (
-            np.ones(block.sizes["sample"], np.bool_) if all_rows else ~result_file.failed(block)
-        )
+    for first in range(0, ds.sizes["row"], _ROWS):
+        block = ds.isel(row=slice(first, first + _ROWS)).load()
+        wanted = np.ones(block.sizes["row"], np.bool_) if all_rows else ~result_file.failed(block)
         for settings, variant in by_settings(block):
             numbers = first + np.flatnonzero(wanted & variant)
             if numbers.size:
-                part = block.isel(sample=numbers - first)
+                part = block.isel(row=numbers - first)
                 rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
                 store.adopt(blocks_of(numbers), rows, chunk, (made, settings))
 
 
 def _incomplete(ds: xr.Dataset, study: Study) -> str:
     """Return what a result lacks of the rows of its study, or ""."""
-    if not np.array_equal(ds["sample"].values, np.arange(ds.sizes["sample"])):
-        return "'sample' does not number all rows from 0"
+    if not np.array_equal(ds["row"].values, np.arange(ds.sizes["row"])):
+        return "'row' does not number all rows from 0"
     for name in study.model.parameter_names:
         if name not in ds.data_vars or ds[name].attrs.get("role") not in ("input", "fixed"):
             return f"it does not hold the input '{name}'"
     for name, column in columns_of(study.model, study.settings).items():
         if name not in ds.data_vars:
             return f"it does not hold the output '{name}'"
-        if ds[name].dims[:1] != ("sample",) or ds[name].shape[1:] != column.shape:
+        if ds[name].dims[:1] != ("row",) or ds[name].shape[1:] != column.shape:
             return f"'{name}' is not of the shape that the settings give"
     return ""
 
 
 def _inputs(study: Study, part: xr.Dataset, first: int) -> Rows:
-    numbers = part["sample"].values
+    numbers = part["row"].values
     drawn = row_block(study, first, int(numbers[-1]) + 1)
     kept = Rows(*(field[numbers - first] for field in drawn))
     for i, name in enumerate(study.model.parameter_names):

@@ -22,6 +22,7 @@ from uq.execution.options import Progress, Report, RunOptions, Say, ignore
 from uq.files import whole_files
 from uq.result import result_file
 from uq.result.commands import with_model
+from uq.result.result import Result
 from uq.result.weights import has_weights
 from uq.result.workload import Workload, workload_of
 from uq.study.changes import refusal_to_extend, what_changed
@@ -92,7 +93,7 @@ def run(
     Examples
     --------
     >>> ds = uq.run("studies/ishigami.toml")  # also in results/ishigami.nc
-    >>> ds.sizes["sample"]
+    >>> ds.sizes["row"]
     10240
     """
     if not isinstance(study, Study):
@@ -145,7 +146,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: has the result of another study ({change}); {remedy}")
     samples, wanted = int(ds.attrs["samples"]), study.design.samples
-    if samples > wanted or (samples < wanted and not stopping.ended(study.design, ds)):
+    if samples > wanted or (samples < wanted and not stopping.ended(study.design, Result(ds))):
         problem = remedy if samples > wanted else refusal_to_extend(study)
         if problem:
             sizes = f"samples = {samples}, not {wanted}"
@@ -205,7 +206,7 @@ def carry_out(
             executor.finish(dispatcher)
             if not (study and kept and part):
                 break
-            seen = stopping.interim_estimate(study.design, kept.first(part))
+            seen = stopping.interim_estimate(study.design, Result(kept.first(part)))
             if seen.reached:
                 kept.cut(part)
                 dispatcher.report_progress()

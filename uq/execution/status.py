@@ -75,7 +75,7 @@ def run_status(path: Path) -> RunStatus:
 
 def _complete(path: Path, process: Holder | None) -> RunStatus:
     ds = result_file.open_result(path)
-    rows, failed = ds.sizes["sample"], int(np.count_nonzero(result_file.failed(ds)))
+    rows, failed = ds.sizes["row"], int(np.count_nonzero(result_file.failed(ds)))
     status = by_status(ds["status"].values)
     return RunStatus(
         str(path), "complete", rows, rows, failed, 0, status, None, None, process, rows

@@ -63,6 +63,6 @@ def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str
     differences = [
         f"row {row}: {', '.join(names)}"
         for row, row_settings in sorted(settings.items())
-        if (names := differing(computed_again(study, row_settings, row), ds.isel(sample=[row])))
+        if (names := differing(computed_again(study, row_settings, row), ds.isel(row=[row])))
     ]
     return sorted(settings), differences

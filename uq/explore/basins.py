@@ -146,7 +146,7 @@ def _finish(
     flat = result_file.build_rows(model, grid.settings, values, columns, status, failures)
     valid = np.flatnonzero(~result_file.failed(flat))
     labels = np.full(grid.rows, -1, np.int32)
-    numbers = list(_numbers(flat.isel(sample=valid), compared, tolerance))
+    numbers = list(_numbers(flat.isel(row=valid), compared, tolerance))
     labels[valid] = attractors(numbers, len(valid))
     about = {
         "long_name": "attractor, -1 where the row failed",
@@ -154,8 +154,8 @@ def _finish(
         "tolerance": tolerance,
         "standard_errors": STANDARD_ERRORS,
     }
-    flat["attractor"] = ("sample", labels, about)
-    ds = _folded(flat, grid).merge(_table(flat.isel(sample=valid), grid))
+    flat["attractor"] = ("row", labels, about)
+    ds = _folded(flat, grid).merge(_table(flat.isel(row=valid), grid))
     title = f"Basins of attraction of model '{model.name}'"
     ds.attrs = flat.attrs | {"title": title, "basins_identity": identity}
     for variable in ds.variables.values():
@@ -182,7 +182,7 @@ def _folded(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
     axes, variables = tuple(grid.axes), {}
     for name, rows in flat.data_vars.items():
         variables[name] = rows.variable
-        if "sample" in rows.dims:
+        if "row" in rows.dims:
             data = rows.values.reshape(*grid.shape, *rows.shape[1:])
             variables[name] = xr.Variable((*axes, *rows.dims[1:]), data, rows.attrs)
     variables |= {name: xr.Variable(name, grid.values(name), flat[name].attrs) for name in axes}
@@ -192,13 +192,13 @@ def _folded(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
 def _table(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:
     """Return the table of attractors, given the rows that did not fail."""
     _, first, count = np.unique(flat["attractor"], return_index=True, return_counts=True)
-    representatives = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)
+    representatives = flat[[*grid.axes, *grid.model.outputs]].isel(row=first)
     for name, output in grid.model.outputs.items():
         if output.is_category:
             words = np.array(["none", *output.categories])[representatives[name].values + 1]
             representatives[name] = representatives[name].dims, words, {"long_name": output.meaning}
     table = representatives.rename(
-        {"sample": "basin"} | {name: f"representative_{name}" for name in representatives}
+        {"row": "basin"} | {name: f"representative_{name}" for name in representatives}
     )
     table["share"] = ("basin", count / grid.rows, {"units": "1", "long_name": "share of all rows"})
     return table.assign_coords(basin=("basin", np.arange(len(first)), {"long_name": "attractor"}))

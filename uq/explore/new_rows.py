@@ -22,7 +22,7 @@ from uq.learning.posterior import Posterior, on_wide_grids, posterior, shared_in
 from uq.learning.posterior_result import digest
 from uq.learning.repetition import Repetition
 from uq.learning.trust import censoring, distrust
-from uq.result.nesting import nesting_of
+from uq.result.result import Result
 from uq.result.weights import IMPORTANCE, ROUND
 from uq.sampling.designs import DESIGNS
 from uq.study.definition import Study
@@ -68,13 +68,13 @@ class Enlarged(NamedTuple):
         Files of the new rows, no longer needed once the posterior is written.
     """
 
-    rows: xr.Dataset
+    rows: Result
     updated: Posterior
     kept: list[Path]
 
 
 def enlarged(
-    study_rows: xr.Dataset,
+    study_rows: Result,
     updated: Posterior,
     inspections: Sequence[Inspection],
     model_cv: float,
@@ -84,7 +84,7 @@ def enlarged(
 
     Parameters
     ----------
-    study_rows : xarray.Dataset
+    study_rows : Result
         A result.
     updated : Posterior
         What the inspections leave of it.
@@ -121,9 +121,9 @@ def enlarged(
        sampling", Scand. J. Stat. 39, 798-812 (2012).
     """
     study = _study_of(study_rows, updated, budget.model)
-    n, repetition_of = study_rows.sizes["sample"], repetitions_of(study_rows)
+    n, repetition_of = len(study_rows), repetitions_of(study_rows)
     count = len(np.unique(repetition_of))
-    step = count * nesting_of(study_rows).units
+    step = count * study_rows.nesting.units
     each = -(-max(n // _SHARE, _FEWEST) // step) * step
     if budget.rows < each:
         raise InputError(f"rows = {budget.rows}: a round of new rows takes {each}")
@@ -140,7 +140,7 @@ class _Rounds:
     def __init__(
         self,
         study: Study,
-        study_rows: xr.Dataset,
+        study_rows: Result,
         inspections: Sequence[Inspection],
         model_cv: float,
         budget: Budget,
@@ -153,8 +153,8 @@ class _Rounds:
         self.kept: list[Path] = []
 
     def until_enough(
-        self, repetitions: Sequence[Repetition], rows: xr.Dataset, updated: Posterior
-    ) -> tuple[xr.Dataset, Posterior]:
+        self, repetitions: Sequence[Repetition], rows: Result, updated: Posterior
+    ) -> tuple[Result, Posterior]:
         """Add rounds to the rows of the study until they represent what the inspections leave."""
         rounds, repetition_of, why = list[xr.Dataset](), repetitions_of(rows), distrust(updated)
         while why or min(weights.effective for weights in updated.weights) < ENOUGH:
@@ -171,7 +171,7 @@ class _Rounds:
             log_importance = np.empty(len(repetition_of))
             for r, repetition in enumerate(repetitions):
                 log_importance[repetition_of == r] = repetition.log_importance
-            rows = with_rounds(self._study_rows, rounds, log_importance, repetition_of)
+            rows = Result(with_rounds(self._study_rows, rounds, log_importance, repetition_of))
             updated = posterior(rows, self._inspections, self._cv)
             if censored := censoring(updated):
                 raise RunError(censored)
@@ -179,10 +179,10 @@ class _Rounds:
         return rows, updated
 
     def settled(
-        self, repetitions: Sequence[Repetition], rows: xr.Dataset, updated: Posterior
+        self, repetitions: Sequence[Repetition], rows: Result, updated: Posterior
     ) -> list[Repetition]:
         """Return repetitions that draw around the rows of these, and drop them."""
-        repetition_of, likelihoods = rows["replicate"].values, _log_likelihoods(updated)
+        repetition_of, likelihoods = rows.dataset["replicate"].values, _log_likelihoods(updated)
         each = [[log[repetition_of == r] for log in likelihoods] for r in range(len(repetitions))]
         return Repetition.settled(
             repetitions, each, _columns(self._study, updated), self._rng(len(repetitions))
@@ -223,34 +223,34 @@ def _short(rounds: Sequence[xr.Dataset], why: str) -> str:
     return why if rounds else "all were needed to find where to draw; allow more"
 
 
-def why_no_new_rows(study_rows: xr.Dataset, updated: Posterior) -> str:
+def why_no_new_rows(study_rows: Result, updated: Posterior) -> str:
     """Return why new rows of a result cannot be drawn, or ""."""
-    method, place = study_rows.attrs["design"], nesting_of(study_rows)
+    method, place = study_rows.design_name, study_rows.nesting
     design = DESIGNS[method]
     if not design.nests:
         able = " or ".join(f"'{name}'" for name, candidate in DESIGNS.items() if candidate.nests)
         return f"the design is '{method}', not {able}"
-    if not design.independent and int(study_rows.attrs["replicates"]) == 1:
+    if not design.independent and int(study_rows.dataset.attrs["replicates"]) == 1:
         return f"a '{method}' design shows errors only by replicates: set [design] replicates = 8"
     if place.repeats > 1:
         return f"each unit has {place.repeats} repeats, not one"
     if place.units > 1 and (shared := shared_inputs(study_rows, updated.scale)):
         return f"units share {choices(shared)}, and may share only what scales lives"
-    if taken := [name for name in (IMPORTANCE, ROUND) if name in study_rows.variables]:
+    if taken := [name for name in (IMPORTANCE, ROUND) if name in study_rows.dataset.variables]:
         return f"the model has a '{taken[0]}', which is what a variable of new rows is called"
     return ""
 
 
-def _study_of(study_rows: xr.Dataset, updated: Posterior, model: str | None) -> Study:
+def _study_of(study_rows: Result, updated: Posterior, model: str | None) -> Study:
     """Return the study of a result, if more rows can be drawn from its laws."""
     if why := why_no_new_rows(study_rows, updated):
         raise InputError(
             f"new rows cannot be drawn: {why}; run the study with more samples, or with a law that"
             " allows for what was found"
         )
-    attrs = study_rows.attrs
+    attrs = study_rows.dataset.attrs
     recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
-    samples = nesting_of(study_rows).samples // int(attrs["replicates"])
+    samples = study_rows.nesting.samples // int(attrs["replicates"])
     study, change = study_here(*recorded, samples, "result", model)
     if change:
         raise InputError(f"the result was computed with another model ({change}): run it again")
@@ -277,10 +277,10 @@ def _log_likelihoods(updated: Posterior) -> list[Floats]:
     return likelihoods
 
 
-def _digest(study_rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float) -> str:
+def _digest(study_rows: Result, inspections: Sequence[Inspection], model_cv: float) -> str:
     """Return a short digest of everything that new rows depend on."""
     asked = [digest(inspection) for inspection in inspections]
     key = repr(
-        (study_rows.attrs["study_identity"], study_rows.sizes["sample"], asked, float(model_cv))
+        (study_rows.dataset.attrs["study_identity"], len(study_rows), asked, float(model_cv))
     )
     return sha256(key.encode()).hexdigest()[:8]

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -19,10 +18,9 @@ from uq.execution.recomputed_row import (
 from uq.explore.simulation import with_trajectory
 from uq.result.elements import flags
 from uq.result.one_row import Row
-from uq.result.result_file import open_result
+from uq.result.result import AnyResult, Result
 from uq.result.row_choice import Choice, lowest_row, near_quantile_row
 from uq.result.stored_row import place_of, stored_row
-from uq.result.weights import refuse_weights
 from uq.study.installed_models import model_at
 
 PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
@@ -53,7 +51,7 @@ class RowAgain:
     """
 
     number: int
-    stored: xr.Dataset
+    stored: Result
     row: Row
     again: Row | None = None
     differing: tuple[str, ...] = ()
@@ -71,13 +69,15 @@ class RowAgain:
         """Its place in the design, by name; of the block its label."""
         stored = self.stored
         indices: dict[str, int | str] = {
-            name: int(stored[name][0]) for name in PLACES if name in stored
+            name: int(stored.dataset[name][0]) for name in PLACES if name in stored.dataset
         }
-        return indices | {"block": dict(flags(stored["block"]))[int(stored["block"][0])]}
+        return indices | {
+            "block": dict(flags(stored.dataset["block"]))[int(stored.dataset["block"][0])]
+        }
 
 
 def row(
-    result: xr.Dataset | str | Path,
+    result: AnyResult,
     number: int | None = None,
     *,
     lowest: str | None = None,
@@ -89,8 +89,7 @@ def row(
 
     Parameters
     ----------
-    result : xarray.Dataset or path-like
-        A result, or its file.
+    result : Result, xarray.Dataset or path
     number : int, optional
         Of the row, from 0. Give this, `lowest` or `near_quantile`.
     lowest : str, optional
@@ -121,18 +120,17 @@ def row(
     >>> shortest["life"].item() == ds["life"].min().item(), shortest["equal"].item()
     (True, True)
     """
-    ds = result if isinstance(result, xr.Dataset) else open_result(result)
-    recomputed = row_again(ds, number, lowest, near_quantile, model)
+    recomputed = row_again(Result.of(result), number, lowest, near_quantile, model)
     attrs = {"long_name": "whether computing the row again gave the same bits"}
     reason = {"reason": recomputed.reason} if recomputed.reason else {}
-    annotated = recomputed.stored.assign(equal=((), recomputed.equal, attrs | reason))
+    annotated = recomputed.stored.dataset.assign(equal=((), recomputed.equal, attrs | reason))
     if not trajectory or recomputed.again is None:
         return annotated
     return with_trajectory(annotated, recomputed.again)
 
 
 def row_again(
-    ds: xr.Dataset,
+    result: Result,
     number: int | None = None,
     lowest: str | None = None,
     near_quantile: tuple[float, str] | None = None,
@@ -142,23 +140,24 @@ def row_again(
     """Find a row of a result and compute it again; see `row`."""
     if sum(given is not None for given in (number, lowest, near_quantile)) != 1:
         raise InputError("give one of: the number of a row, --lowest, --near-quantile")
-    refuse_weights(ds, "a row computed again")
+    result.refuse_weights("a row computed again")
     choice = None
     if lowest is not None:
-        choice = lowest_row(ds, lowest)
+        choice = lowest_row(result, lowest)
     elif near_quantile is not None:
-        choice = near_quantile_row(ds, *near_quantile)
+        choice = near_quantile_row(result, *near_quantile)
     chosen = choice.number if choice else int(number or 0)
-    place = place_of(ds, chosen)
-    stored, plain = ds.isel(sample=[place]).load(), stored_row(ds, place)
+    place = place_of(result, chosen)
+    stored, plain = result.take([place]), stored_row(result, place)
+    stored.dataset.load()
     recomputed = RowAgain(chosen, stored, plain, choice=choice)
-    return _computed(ds, recomputed, place, model, source)
+    return _computed(result, recomputed, place, model, source)
 
 
 def _computed(
-    ds: xr.Dataset, recomputed: RowAgain, place: int, model: str | None, source: str
+    result: Result, recomputed: RowAgain, place: int, model: str | None, source: str
 ) -> RowAgain:
-    attrs, status = ds.attrs, int(recomputed.row.status[0])
+    attrs, status = result.dataset.attrs, int(recomputed.row.status[0])
     if model is not None and (other := model_at(model).name) != attrs["model"]:
         raise InputError(f"--model {model}: is '{other}'; the rows are of '{attrs['model']}'")
 
@@ -180,12 +179,12 @@ def _computed(
             return without(
                 f"'{study.model.name}' is not its model, '{attrs['model']}'; name that with --model"
             )
-        settings = settings_by_row(ds, study, np.array([place]))[place]
+        settings = settings_by_row(result.dataset, study, np.array([place]))[place]
         again = computed_again(study, settings, recomputed.number, status)
-        versions = other_versions(ds, study.model_reference)
+        versions = other_versions(result.dataset, study.model_reference)
     except InputError as error:
         return without("; ".join(error.lines))
-    names = tuple(differing(again, recomputed.stored))
+    names = tuple(differing(again, recomputed.stored.dataset))
     reason = _reason(change, versions, source) if names else ""
     if again.status == recomputed.row.status:  # the sentence of this row, not of the first such row
         recomputed = replace(recomputed, row=recomputed.row._replace(failures=again.failures))

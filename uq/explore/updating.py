@@ -19,7 +19,7 @@ from uq.learning.observables import as_named, quantities_of
 from uq.learning.posterior import posterior
 from uq.learning.posterior_result import as_result, prior_of
 from uq.learning.trust import censoring, distrust
-from uq.result.elements import independent_rows, why_no_statistics
+from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.weights import MODEL_ERROR, has_weights
 from uq.study.definition import Study
@@ -106,7 +106,7 @@ def update(
         check_target(Path(output), 0)
     options = RunOptions(workers, scheduler)
     ds, budget = prior(source, rows, options, output, model)
-    return learn(ds, new, output, model_error, budget)
+    return learn(Result(ds), new, output, model_error, budget)
 
 
 def prior(
@@ -138,23 +138,23 @@ def samples_for(study: Study, rows: int) -> int:
 
 
 def learn(
-    ds: xr.Dataset,
+    opened: Result,
     new: Sequence[Inspection],
     output: str | Path | None,
     model_error: float | None,
     budget: Budget | None = None,
 ) -> xr.Dataset:
     """Return a result as the inspections leave it, and write it."""
-    if why := why_no_statistics(ds):
-        raise InputError(f"uq update: the rows of a '{ds.attrs['design']}' design {why}")
+    if why := opened.why_no_statistics:
+        raise InputError(f"uq update: the rows of a '{opened.design_name}' design {why}")
     if output is not None and Path(output).is_file():
         _check_that_it_is_a_posterior(Path(output))
-    quantities = quantities_of(prior_of(ds))
-    inspections = all_of(ds, [as_named(quantities, inspection) for inspection in new])
-    cv = float(ds.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
+    quantities = quantities_of(prior_of(opened))
+    inspections = all_of(opened, [as_named(quantities, inspection) for inspection in new])
+    cv = float(opened.dataset.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
     if not 0 <= cv < MOST_CV:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")
-    rows = independent_rows(own_rows(prior_of(ds)))
+    rows = own_rows(prior_of(opened)).independent
     updated, kept, new_rows = posterior(rows, inspections, cv), list[Path](), 0
     if why := censoring(updated):
         raise RunError(why)

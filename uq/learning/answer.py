@@ -6,7 +6,6 @@ from typing import Any
 from unicodedata import normalize
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.summary_json import quality_json
 from uq.errors import InputError
@@ -23,8 +22,8 @@ from uq.learning.posterior_inputs import (
 from uq.learning.posterior_result import as_table, inspections_of, prior_of, unit_quality
 from uq.learning.prior_predictive import STRANGE, strangeness
 from uq.learning.remaining_life import ANY, Remaining, remaining
-from uq.result.elements import independent_rows
-from uq.result.weights import MODEL_ERROR, has_weights
+from uq.result.result import AnyResult, Result
+from uq.result.weights import MODEL_ERROR
 from uq.stats import estimate_json
 from uq.stats.importance_weights import Smoothed
 from uq.text.numbers import percent
@@ -59,12 +58,12 @@ class Learnt:
     notes: list[str]
 
 
-def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
+def learnt(result: AnyResult, by: Sequence[float] = ()) -> Learnt:
     """Return the summary of a result of `uq.update`.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
     by : sequence of float
         Times from the beginning of a life, in its unit: the probability that it has ended by each.
 
@@ -73,19 +72,20 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
     InputError
         When the result has not been updated, or a time is negative or not finite.
     """
-    if not has_weights(ds):
+    result = Result.of(result)
+    if not result.has_weights:
         raise InputError("this result has not been updated with inspections: see 'uq update'")
-    quality, inspections = unit_quality(ds), inspections_of(ds)
-    cv = float(ds.attrs[MODEL_ERROR])
-    rows = independent_rows(prior_of(ds))
+    quality, inspections = unit_quality(result), inspections_of(result)
+    cv = float(result.dataset.attrs[MODEL_ERROR])
+    rows = prior_of(result).independent
     updated = posterior(rows, inspections, cv)
-    strange = strangeness(updated, int(ds.attrs["seed"]), cv)
+    strange = strangeness(updated, int(result.dataset.attrs["seed"]), cv)
     return Learnt(
         inspections,
         min(quality, key=lambda weights: weights.effective),
-        list(inputs_learnt(ds)),
-        confounded(ds),
-        list(remaining(ds, by)),
+        list(inputs_learnt(result)),
+        confounded(result),
+        list(remaining(result, by)),
         list(taught(updated)),
         strange,
         [

@@ -3,25 +3,23 @@
 from collections.abc import Iterator
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.row_inputs import inputs_of
 from uq.assess.scaling import scalers
 from uq.learning.importance import own_rows
-from uq.result.elements import elements_of
-from uq.result.nesting import nesting_of
-from uq.result.variables import error_name, outputs_of
+from uq.result.result import Result
+from uq.result.variables import error_name
 
 _CHANCE = 1e-6
 _FEWEST = 20
 
 
-def dependent_outputs(rows: xr.Dataset, name: str) -> Iterator[str]:
+def dependent_outputs(rows: Result, name: str) -> Iterator[str]:
     """Yield the outputs that depend on an input but do not scale with it.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         Before the inspections.
     name : str
         An input.
@@ -35,15 +33,15 @@ def dependent_outputs(rows: xr.Dataset, name: str) -> Iterator[str]:
     from scipy import stats
 
     rows = own_rows(rows)
-    inputs, place = inputs_of(rows), nesting_of(rows)
+    inputs, place = inputs_of(rows), rows.nesting
     shared = len(np.unique(inputs.values[name])) <= place.samples < len(place.sample)
-    outputs = outputs_of(rows)
+    outputs = rows.outputs
     scaled = {output for output, declared in outputs.items() if name in scalers(inputs, declared)}
     scaled |= {error_name(output) for output in scaled}
     for output, declared in outputs.items():
         if declared.is_category or output in scaled:
             continue
-        for element in elements_of(rows, [output]):
+        for element in rows.elements([output]):
             input_values = inputs.values[name]
             values = np.where(element.censored, np.nan, element.values)
             if shared:

@@ -1,26 +1,25 @@
 """Epistemic band of the probability of an end: its posterior range over what units share."""
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.scaling import inputs_of
 from uq.contract import Floats
 from uq.learning.integrated_input import free_scales
 from uq.learning.posterior_inputs import quantiles
 from uq.result.element import Element
-from uq.result.nesting import levels_of
+from uq.result.result import Result
 from uq.result.weights import INTEGRATED, WEIGHT, WORLDS
 from uq.sampling.levels import SHARED
 
 ENDS = (0.025, 0.975)
 
 
-def over_shared(ds: xr.Dataset, element: Element, seen: float, time: float) -> dict[float, float]:
+def over_shared(result: Result, element: Element, seen: float, time: float) -> dict[float, float]:
     """Return the 95 % range of P(T < time) given T > `seen`, of a unit never inspected.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result of `uq.update`.
     element : Element
         A life of its rows.
@@ -34,13 +33,13 @@ def over_shared(ds: xr.Dataset, element: Element, seen: float, time: float) -> d
         that scales this life, and no row is censored too early: only then does each of its values
         give the probability without the noise of a few units.
     """
-    name = ds.attrs[INTEGRATED]
-    if not name or ds.attrs[WORLDS] > 1 or levels_of(ds)[name] != SHARED:
+    name = result.dataset.attrs[INTEGRATED]
+    if not name or result.dataset.attrs[WORLDS] > 1 or result.levels[name] != SHARED:
         return {}
-    exponent = free_scales(inputs_of(ds), element.declared).get(name)
+    exponent = free_scales(inputs_of(result), element.declared).get(name)
     if exponent is None:
         return {}
-    shared, weights = ds[name].values, ds[WEIGHT].values
+    shared, weights = result.dataset[name].values, result.dataset[WEIGHT].values
     longer = shared**exponent
     latest = time * longer / longer.min()
     if (element.censored & (element.values < latest)).any():

@@ -8,8 +8,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.result.nesting import is_nested, nesting_of
-from uq.result.weights import IMPORTANCE, OWN_SIZE, ROUND, has_rounds
+from uq.result.result import Result
+from uq.result.weights import IMPORTANCE, OWN_SIZE, ROUND
 
 REPETITIONS = 8
 """Independent repetitions of the sampler, where the design has no replicates of its own."""
@@ -34,40 +34,41 @@ class Importance(NamedTuple):
         return len(self.from_study) / int(self.from_study.sum())
 
 
-def importance_of(rows: xr.Dataset) -> Importance:
+def importance_of(rows: Result) -> Importance:
     """Return the importance weights of the rows of a result before any inspection."""
-    if not has_rounds(rows):
-        equal = np.ones(rows.sizes["sample"])
+    if not rows.has_rounds:
+        equal = np.ones(len(rows))
         return Importance(equal, equal > 0)
-    return Importance(rows[IMPORTANCE].values, rows[ROUND].values == 0)
+    return Importance(rows.dataset[IMPORTANCE].values, rows.dataset[ROUND].values == 0)
 
 
-def repetitions_of(rows: xr.Dataset) -> NDArray[np.int32]:
+def repetitions_of(rows: Result) -> NDArray[np.int32]:
     """Return the repetition of the sampler that begins with each row of a result, shape (n,).
 
     The replicate of a design that has several, else an eighth of the samples.
     """
-    if int(rows.attrs["replicates"]) > 1:
-        return np.asarray(rows["replicate"].values)
-    return np.asarray(nesting_of(rows).sample % REPETITIONS, dtype=np.int32)
+    if int(rows.dataset.attrs["replicates"]) > 1:
+        return np.asarray(rows.dataset["replicate"].values)
+    return np.asarray(rows.nesting.sample % REPETITIONS, dtype=np.int32)
 
 
-def own_rows(rows: xr.Dataset) -> xr.Dataset:
+def own_rows(rows: Result) -> Result:
     """Return the rows drawn from the laws of the study alone, as they were."""
-    if not has_rounds(rows):
+    if not rows.has_rounds:
         return rows
-    study_rows = rows.isel(sample=importance_of(rows).from_study).drop_vars([IMPORTANCE, ROUND])
+    study_rows = rows.take(importance_of(rows).from_study).dataset.drop_vars([IMPORTANCE, ROUND])
     attrs = dict(study_rows.attrs)
     samples, replicates = map(int, attrs.pop(OWN_SIZE))
     study_rows.attrs = attrs | {"samples": samples, "replicates": replicates}
     if replicates > 1:
-        return study_rows
+        return Result(study_rows)
     replicate = study_rows["replicate"]
-    return study_rows.assign_coords(replicate=replicate.copy(data=np.zeros_like(replicate.values)))
+    nothing = replicate.copy(data=np.zeros_like(replicate.values))
+    return Result(study_rows.assign_coords(replicate=nothing))
 
 
 def with_rounds(
-    study_rows: xr.Dataset,
+    study_rows: Result,
     rounds: Sequence[xr.Dataset],
     log_importance: Floats,
     repetition: NDArray[np.int32],
@@ -76,7 +77,7 @@ def with_rounds(
 
     Parameters
     ----------
-    study_rows : xarray.Dataset
+    study_rows : Result
         Rows of the study.
     rounds : sequence of xarray.Dataset
         Results of the same model; where samples have several rows, of a multiple of their number.
@@ -85,11 +86,11 @@ def with_rounds(
     repetition : ndarray of int, shape (n,)
         The independent repetition of the sampler to which each row belongs: its replicate.
     """
-    n = study_rows.sizes["sample"]
-    names = list(study_rows.data_vars)
+    n = len(study_rows)
+    names = list(study_rows.dataset.data_vars)
     new = xr.concat(
         [round_rows[names].drop_vars(("replicate", "group", "block")) for round_rows in rounds],
-        "sample",
+        "row",
         data_vars="minimal",
         coords="minimal",
         compat="override",
@@ -97,55 +98,52 @@ def with_rounds(
         combine_attrs="override",
     )
     new = new.assign_coords(
-        {
-            name: ("sample", values)
-            for name, values in _places(study_rows, new.sizes["sample"]).items()
-        }
+        {name: ("row", values) for name, values in _places(study_rows, new.sizes["row"]).items()}
     )
     combined = xr.concat(
-        [study_rows, new],
-        "sample",
+        [study_rows.dataset, new],
+        "row",
         data_vars="minimal",
         coords="minimal",
         compat="override",
         join="override",
         combine_attrs="override",
     )
-    sizes = [n, *(round_rows.sizes["sample"] for round_rows in rounds)]
+    sizes = [n, *(round_rows.sizes["row"] for round_rows in rounds)]
     about = {"role": IMPORTANCE, "units": "1"}
     meaning = "how much the row counts before the inspections"
     combined = combined.assign(
         {
-            IMPORTANCE: ("sample", np.exp(log_importance), about | {"long_name": meaning}),
+            IMPORTANCE: ("row", np.exp(log_importance), about | {"long_name": meaning}),
             ROUND: (
-                "sample",
+                "row",
                 np.repeat(np.arange(len(sizes)), sizes),
                 about | {"long_name": "0: a row of the study"},
             ),
         }
     )
-    size = int(study_rows.attrs["samples"]), int(study_rows.attrs["replicates"])
+    size = int(study_rows.dataset.attrs["samples"]), int(study_rows.dataset.attrs["replicates"])
     count = len(np.unique(repetition))
     return combined.assign_coords(
-        sample=combined["sample"].copy(data=np.arange(combined.sizes["sample"])),
+        row=combined["row"].copy(data=np.arange(combined.sizes["row"])),
         replicate=combined["replicate"].copy(data=repetition),
     ).assign_attrs({"samples": len(repetition) // count, "replicates": count, OWN_SIZE: size})
 
 
-def _places(study_rows: xr.Dataset, count: int) -> dict[str, NDArray[np.integer]]:
+def _places(study_rows: Result, count: int) -> dict[str, NDArray[np.integer]]:
     """Return the places of new rows in the design, after those of the study."""
-    place = nesting_of(study_rows)
+    place = study_rows.nesting
     number = np.arange(count)
     sample, unit = np.divmod(number, place.units)
     coordinates = {
-        "replicate": np.zeros(count, study_rows["replicate"].dtype),
-        "group": study_rows["group"].values.max() + 1 + sample,
-        "block": np.zeros(count, study_rows["block"].dtype),
+        "replicate": np.zeros(count, study_rows.dataset["replicate"].dtype),
+        "group": study_rows.dataset["group"].values.max() + 1 + sample,
+        "block": np.zeros(count, study_rows.dataset["block"].dtype),
     }
-    if is_nested(study_rows):
+    if study_rows.is_nested:
         coordinates |= {
-            "world": study_rows["world"].values.max() + 1 + sample,
-            "unit": unit.astype(study_rows["unit"].dtype),
-            "repeat": np.zeros(count, study_rows["repeat"].dtype),
+            "world": study_rows.dataset["world"].values.max() + 1 + sample,
+            "unit": unit.astype(study_rows.dataset["unit"].dtype),
+            "repeat": np.zeros(count, study_rows.dataset["repeat"].dtype),
         }
     return coordinates

@@ -4,12 +4,11 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-import xarray as xr
-
 from uq.errors import InputError
 from uq.files.paths import node
 from uq.learning.inspections import Inspection, InspectionKind, read_inspections, read_tables
 from uq.learning.posterior_result import inspections_of
+from uq.result.result import Result
 from uq.text.literals import read_toml
 
 Given = str | Path | Sequence[Mapping[str, object]]
@@ -53,7 +52,7 @@ def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
     return tables, [f"{path}: inspection {number + 1}" for number in range(len(tables))]
 
 
-def all_of(ds: xr.Dataset, new: Sequence[Inspection]) -> list[Inspection]:
+def all_of(result: Result, new: Sequence[Inspection]) -> list[Inspection]:
     """Return the inspections that a result has been updated with, and new ones.
 
     Raises
@@ -61,7 +60,7 @@ def all_of(ds: xr.Dataset, new: Sequence[Inspection]) -> list[Inspection]:
     InputError
         One line for each that has been used.
     """
-    used, faults = inspections_of(ds), []
+    used, faults = inspections_of(result), []
     count = len(used)
     for inspection in new:
         if inspection in used:

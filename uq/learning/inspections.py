@@ -26,7 +26,6 @@ class InspectionKind(StrEnum):
 MOST_CV = 10.0
 """Coefficient of variation that no error reaches: per cent, perhaps, or a mistake."""
 
-LIMITS = (InspectionKind.BELOW, InspectionKind.ABOVE)
 OUTCOMES = (InspectionKind.SURVIVED, InspectionKind.ENDED)
 
 

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.assess.row_inputs import Inputs, inputs_of
@@ -12,7 +11,7 @@ from uq.assess.scaling import scalers
 from uq.contract import Floats, Output
 from uq.learning.dependent_outputs import dependent_outputs
 from uq.learning.observables import Look
-from uq.result.nesting import levels_of
+from uq.result.result import Result
 from uq.sampling.levels import OWN, SHARED
 from uq.sampling.truncation import ppf_within
 
@@ -57,16 +56,14 @@ class IntegratedScale:
         return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
 
 
-def scale_of(
-    rows: xr.Dataset, looks: Sequence[Look]
-) -> tuple[IntegratedScale | None, tuple[str, ...]]:
+def scale_of(rows: Result, looks: Sequence[Look]) -> tuple[IntegratedScale | None, tuple[str, ...]]:
     """Return the input to integrate, and sentences on those that do too much to be integrated.
 
     A shared one first, of these the one that scatters lives most. One that scales all lives and
     depths that were inspected, and that no other output depends on: that would keep the values
     computed with the input as drawn.
     """
-    inputs, levels = inputs_of(rows), levels_of(rows)
+    inputs, levels = inputs_of(rows), rows.levels
     scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
     exponents = {look.name: free_scales(inputs, look.declared) for look in scaled}
     common = set.intersection(*map(set, exponents.values())) if exponents else set()

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from math import inf, nan
 
 import numpy as np
-import xarray as xr
 
 from uq.contract import Floats
 from uq.errors import InputError, choices
@@ -14,15 +13,9 @@ from uq.learning.observables import Look, Quantities, look_at, quantities_of
 from uq.learning.remaining_life import check_times
 from uq.result.elements import (
     Element,
-    analysis_of,
-    elements_of,
-    independent_rows,
-    lifetimes,
-    shown_outputs,
-    weights_of,
-    why_no_statistics,
 )
-from uq.result.nesting import Nesting, nesting_of
+from uq.result.nesting import Nesting
+from uq.result.result import AnyResult, Result
 from uq.result.weights import OF_UNIT
 from uq.text.numbers import number, percent
 from uq.text.units import beside
@@ -62,7 +55,7 @@ class Worth:
 
 
 def worth(
-    ds: xr.Dataset,
+    result: AnyResult,
     output: str,
     times: Sequence[float] = (),
     units: Sequence[int] = (1,),
@@ -73,7 +66,7 @@ def worth(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result, or a posterior, with several units in each sample.
     output : str
         What to inspect, as in the inspections of `uq.update`: ``depth[site=left]``, a life.
@@ -107,13 +100,14 @@ def worth(
     ----------
     .. [1] M. Goldstein, D. Wooff, "Bayes Linear Statistics" (2007).
     """
-    if why := why_no_statistics(ds):
-        raise InputError(f"uq next-inspection: the rows of a '{ds.attrs['design']}' design {why}")
-    if label := ds.attrs.get(OF_UNIT):
+    result = Result.of(result)
+    if why := result.why_no_statistics:
+        raise InputError(f"uq next-inspection: the rows of a '{result.design_name}' design {why}")
+    if label := result.dataset.attrs.get(OF_UNIT):
         raise InputError(f"uq next-inspection: the rows are those of unit {label}, not of more")
-    rows = independent_rows(ds)
-    rows = rows.isel(sample=nesting_of(rows).repeat == 0)  # a unit has one life
-    place = nesting_of(rows)
+    rows = result.independent
+    rows = rows.take(rows.nesting.repeat == 0)  # a unit has one life
+    place = rows.nesting
     if place.units < 2:
         raise InputError(
             "uq next-inspection: samples have a single unit: set [design] units = 2 or more"
@@ -124,7 +118,7 @@ def worth(
     if not 0 <= cv < inf:
         raise InputError(f"uq next-inspection: cv = {cv:g}: must be finite, and 0 or more")
     element = _the_life(rows, life)
-    weights = weights_of(rows)
+    weights = rows.weights
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
     target = _logarithm(np.where(element.censored, np.nan, element.values))
     quantities, narrowing, notes = quantities_of(rows), {}, list[str]()
@@ -145,9 +139,9 @@ def worth(
     return Worth(element.name, output, max(spread, 0.0) ** 0.5, narrowing, look.time_unit, notes)
 
 
-def unit_of_time(ds: xr.Dataset, output: str) -> str:
+def unit_of_time(result: Result, output: str) -> str:
     """Return the CF unit of the time of an inspection of what a result has, or ""."""
-    depths = quantities_of(independent_rows(ds)).depths
+    depths = quantities_of(result.independent).depths
     return depths[output].time_unit if output in depths else ""
 
 
@@ -217,9 +211,9 @@ def _logarithm(values: Floats) -> Floats:
     return np.where(np.isfinite(logarithm), logarithm, np.nan)
 
 
-def _the_life(rows: xr.Dataset, life: str | None) -> Element:
-    shown = elements_of(rows, shown_outputs(rows, analysis_of(rows)))
-    lives = lifetimes(rows, life) if life else [element for element in shown if element.is_lifetime]
+def _the_life(rows: Result, life: str | None) -> Element:
+    shown = rows.elements(rows.shown_outputs(rows.analysis))
+    lives = rows.lifetimes(life) if life else [element for element in shown if element.is_lifetime]
     if len(lives) != 1:
         names = choices([element.name for element in lives])
         raise InputError(f"uq next-inspection: name one life with --life ({names})")

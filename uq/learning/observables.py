@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Output
@@ -13,8 +12,7 @@ from uq.learning.inspections import OUTCOMES, Inspection, InspectionKind
 from uq.learning.likelihood import log_likelihood, log_outcome
 from uq.learning.worn_depth import WornDepths
 from uq.result.element import Element, places
-from uq.result.elements import elements_of
-from uq.result.variables import outputs_of
+from uq.result.result import Result
 from uq.text.element_names import same_name
 
 _REACH = 3.0  # standard errors of a measurement
@@ -146,10 +144,10 @@ class Quantities:
         )
 
 
-def quantities_of(ds: xr.Dataset) -> Quantities:
+def quantities_of(result: Result) -> Quantities:
     """Return the observables of a result, or of a selection of its rows."""
-    elements = {element.name: element for element in elements_of(ds, _numbers(ds), every=True)}
-    return Quantities(elements, dict(_depths(ds)))
+    elements = {element.name: element for element in result.elements(_numbers(result), every=True)}
+    return Quantities(elements, dict(_depths(result)))
 
 
 def as_named(quantities: Quantities, inspection: Inspection) -> Inspection:
@@ -202,8 +200,8 @@ def look_at(quantities: Quantities, inspection: Inspection) -> Look:
     )
 
 
-def _numbers(ds: xr.Dataset) -> list[str]:
-    return [name for name, output in outputs_of(ds).items() if not output.is_category]
+def _numbers(result: Result) -> list[str]:
+    return [name for name, output in result.outputs.items() if not output.is_category]
 
 
 def _check_output(element: Element, inspection: Inspection, time_units: Sequence[str]) -> None:
@@ -226,22 +224,22 @@ def _check_output(element: Element, inspection: Inspection, time_units: Sequence
         )
 
 
-def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
+def _depths(result: Result) -> Iterator[tuple[str, Look]]:
     """Yield the depths that the lives of a result are declared for, such as ``depth[site=left]``.
 
     A dimension with a unit, along which an output is a life, is a depth. Of several outputs with
     the same dimensions the first counts.
     """
     seen = set()
-    for output, declared in outputs_of(ds).items():
+    for output, declared in result.outputs.items():
         if not declared.is_lifetime or not declared.dims:
             continue
         depth = declared.dims[-1]
-        axis = ds[depth]
+        axis = result.dataset[depth]
         if "units" not in axis.attrs or not np.issubdtype(axis.dtype, np.number):
             continue
-        elements = list(elements_of(ds, [output], every=True))
-        others = {dim: ds[dim].values for dim in declared.dims[:-1]}
+        elements = list(result.elements([output], every=True))
+        others = {dim: result.dataset[dim].values for dim in declared.dims[:-1]}
         size = axis.size
         for number, (name, _, _) in enumerate(places(depth, others)):
             if name in seen:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
@@ -20,8 +19,8 @@ from uq.learning.observables import Look, look_at, quantities_of
 from uq.learning.rows_as_units import Weighted, inspected, uninspected
 from uq.learning.shared_law import SharedLaw, shared_law
 from uq.learning.unit_likelihood import UnitLikelihoods
-from uq.result.elements import replicates_of
-from uq.result.nesting import Nesting, levels_of, levels_that_vary, nesting_of
+from uq.result.nesting import Nesting
+from uq.result.result import Result
 from uq.sampling.levels import SHARED
 from uq.stats.importance_weights import Smoothed
 
@@ -87,14 +86,12 @@ class Posterior:
         return np.asarray(total - np.mean(total, axis=0))
 
 
-def posterior(
-    rows: xr.Dataset, inspections: Sequence[Inspection], model_cv: float = 0.0
-) -> Posterior:
+def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float = 0.0) -> Posterior:
     """Return the posterior of a result, given inspections [1]_.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     inspections : sequence of Inspection
     model_cv : float
@@ -115,7 +112,7 @@ def posterior(
        computations", Ann. Stat. 37, 697-725 (2009).
     """
     looks = _looks(rows, inspections)
-    place = nesting_of(rows)
+    place = rows.nesting
     labels = list(dict.fromkeys(inspection.unit for inspection in inspections))
     if len(labels) > place.units:
         raise InputError(
@@ -141,7 +138,7 @@ def posterior(
             )
         )
     law = shared_law(evidence) if scale and not scale.is_own and worlds == 1 else None
-    part = replicates_of(rows) if worlds > 1 or place.repeats > 1 else None
+    part = rows.replicates if worlds > 1 or place.repeats > 1 else None
     units = {
         label: inspected(evidence, unit, likelihoods, world, scale, part, law)
         for unit, label in enumerate(labels)
@@ -155,14 +152,14 @@ def posterior(
         why = "" if np.isfinite(apart).any() else NO_OTHERS.format(len(labels) + 1)
         logs = logs if why else apart
     runs = partial(_allowed, likelihoods, world, worlds, scale) if scale else None
-    everyone = uninspected(logs, evidence, scale, place, replicates_of(rows), runs, law)
+    everyone = uninspected(logs, evidence, scale, place, rows.replicates, runs, law)
     of_rows = likelihoods, looks, world, importance
     return Posterior(everyone, units, scale, evidence, *of_rows, law, others, why)
 
 
-def _units_differ(rows: xr.Dataset, scale: IntegratedScale | None) -> bool:
+def _units_differ(rows: Result, scale: IntegratedScale | None) -> bool:
     """Return whether units of a world differ in more than the integrated input."""
-    return bool({*levels_that_vary(rows, () if scale is None else (scale.name,))} - {SHARED})
+    return bool({*rows.levels_that_vary(() if scale is None else (scale.name,))} - {SHARED})
 
 
 def on_wide_grids(updated: Posterior) -> tuple[list[QuadratureGrid], Evidence]:
@@ -175,7 +172,7 @@ def on_wide_grids(updated: Posterior) -> tuple[list[QuadratureGrid], Evidence]:
     return grids, weigh_on(grids, each, worlds, count, is_own)[1]
 
 
-def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
+def _looks(rows: Result, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
     faults = []
     looks = {}
     quantities = quantities_of(rows)
@@ -191,7 +188,7 @@ def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspecti
     return looks
 
 
-def _worlds(rows: xr.Dataset, place: Nesting, scale: IntegratedScale | None) -> tuple[Rows, int]:
+def _worlds(rows: Result, place: Nesting, scale: IntegratedScale | None) -> tuple[Rows, int]:
     """Return the world of each row, and how many there are.
 
     All rows are of one world where nothing is shared but what is integrated.
@@ -201,9 +198,9 @@ def _worlds(rows: xr.Dataset, place: Nesting, scale: IntegratedScale | None) -> 
     return place.sample, place.samples
 
 
-def shared_inputs(rows: xr.Dataset, scale: IntegratedScale | None) -> list[str]:
+def shared_inputs(rows: Result, scale: IntegratedScale | None) -> list[str]:
     """Return the inputs that units share, without the integrated one and those equal to it."""
-    shared = [name for name, level in levels_of(rows).items() if level == SHARED]
+    shared = [name for name, level in rows.levels.items() if level == SHARED]
     if scale is None or scale.is_own:
         return shared
     tied = {a for a, b in scale.inputs.tied.items() if b == scale.name}

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.assess.posterior_scale import learnt_input, moments_of_input
@@ -12,8 +11,7 @@ from uq.assess.row_inputs import inputs_of
 from uq.contract import Floats
 from uq.learning.importance import importance_of
 from uq.learning.posterior_result import as_unit, prior_of
-from uq.result.elements import analysis_of, replicates_of
-from uq.result.nesting import levels_of
+from uq.result.result import Result
 from uq.result.weights import WEIGHT
 from uq.sampling.levels import SHARED
 from uq.stats.estimate import Estimate
@@ -86,45 +84,49 @@ class Confounded:
     before: float
 
 
-def inputs_learnt(ds: xr.Dataset) -> Iterator[InputLearnt]:
+def inputs_learnt(result: Result) -> Iterator[InputLearnt]:
     """Yield the shared inputs of a posterior, then those of each inspected unit."""
-    levels, before = levels_of(ds), prior_of(ds)
-    asked = tuple(sorted({*QUANTILES, *analysis_of(ds).quantiles}))
+    levels, before = result.levels, prior_of(result)
+    asked = tuple(sorted({*QUANTILES, *result.analysis.quantiles}))
     counted = importance_of(before).of_rows
-    prior = {name: _before(before[name].values, counted, asked) for name in levels}
+    prior = {name: _before(before.dataset[name].values, counted, asked) for name in levels}
     for name in (input_name for input_name, level in levels.items() if level == SHARED):
-        after = _after(ds, name, asked)
-        yield InputLearnt(name, str(ds[name].attrs["units"]), prior[name], after)
-    for label in map(str, ds["inspected"].values):
-        unit = as_unit(ds, label)
+        after = _after(result, name, asked)
+        yield InputLearnt(name, str(result.dataset[name].attrs["units"]), prior[name], after)
+    for label in map(str, result.dataset["inspected"].values):
+        unit = Result(as_unit(result, label))
         for name in (input_name for input_name, level in levels.items() if level != SHARED):
             after = _after(unit, name, asked)
-            units = str(ds[name].attrs["units"])
+            units = str(result.dataset[name].attrs["units"])
             yield InputLearnt(f"{name}[unit={label}]", units, prior[name], after)
 
 
-def confounded(ds: xr.Dataset) -> list[Confounded]:
+def confounded(result: Result) -> list[Confounded]:
     """Return the pairs of inputs that the inspections tie, the most correlated first.
 
     Shared inputs, and in each inspected unit those with its own.
     """
-    levels, before = levels_of(ds), prior_of(ds)
+    levels, before = result.levels, prior_of(result)
     shared = [name for name, level in levels.items() if level == SHARED]
-    pairs = _pairs(ds, before, shared, set(shared), "")
-    for label in map(str, ds["inspected"].values):
-        unit = as_unit(ds, label)
+    pairs = _pairs(result, before, shared, set(shared), "")
+    for label in map(str, result.dataset["inspected"].values):
+        unit = Result(as_unit(result, label))
         pairs += _pairs(unit, before, list(levels), set(levels) - set(shared), label)
     return sorted(pairs, key=lambda pair: -abs(pair.correlation))
 
 
 def _pairs(
-    ds: xr.Dataset, before: xr.Dataset, names: list[str], wanted: set[str], label: str
+    result: Result, before: Result, names: list[str], wanted: set[str], label: str
 ) -> list[Confounded]:
     """Return the pairs of which one at least is wanted."""
     if len(names) < 2:
         return []
-    after = _correlations([ds[name].values for name in names], ds[WEIGHT].values)
-    first = _correlations([before[name].values for name in names], importance_of(before).of_rows)
+    after = _correlations(
+        [result.dataset[name].values for name in names], result.dataset[WEIGHT].values
+    )
+    first = _correlations(
+        [before.dataset[name].values for name in names], importance_of(before).of_rows
+    )
     called = {name: f"{name}[unit={label}]" if label and name in wanted else name for name in names}
     return [
         Confounded(called[name], called[other], float(after[i, j]), float(first[i, j]))
@@ -162,11 +164,11 @@ def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Poster
     return PosteriorMoments(Estimate(mean), Estimate(sd), quantiles(values, weights, asked))
 
 
-def _after(ds: xr.Dataset, name: str, asked: tuple[float, ...]) -> PosteriorMoments:
-    values, weights = ds[name].values, ds[WEIGHT].values
-    part, of_rows, within = replicates_of(ds), values, np.zeros(len(values))
-    if name == learnt_input(ds):
-        of_rows, within = moments_of_input(ds, inputs_of(ds))
+def _after(result: Result, name: str, asked: tuple[float, ...]) -> PosteriorMoments:
+    values, weights = result.dataset[name].values, result.dataset[WEIGHT].values
+    part, of_rows, within = result.replicates, values, np.zeros(len(values))
+    if name == learnt_input(result):
+        of_rows, within = moments_of_input(result, inputs_of(result))
     mean, sd = moments_of_rows(of_rows, weights, part, within)
     mean = trusted(mean, weights * of_rows, part, hopeless=_FEW_ROWS)
     sd = trusted(sd, weights * (of_rows**2 + within), part, hopeless=_FEW_ROWS)

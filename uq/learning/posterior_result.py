@@ -17,8 +17,8 @@ from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated_input import free_scales
 from uq.learning.posterior import Posterior, Weighted
 from uq.result.elements import weights_of
-from uq.result.nesting import nesting_of
-from uq.result.variables import error_name, outputs_of
+from uq.result.result import AnyResult, Result
+from uq.result.variables import error_name
 from uq.result.weights import (
     INPUT,
     INSPECTIONS,
@@ -42,7 +42,6 @@ from uq.result.weights import (
     UNIT_WEIGHT,
     WEIGHT,
     WORLDS,
-    has_weights,
 )
 from uq.sampling.truncation import cdf_within
 from uq.stats.importance_weights import Smoothed
@@ -57,7 +56,7 @@ _COMPRESSED = {"zlib": True, "complevel": 1}
 
 
 def as_result(
-    rows: xr.Dataset,
+    rows: Result,
     posterior: Posterior,
     inspections: Sequence[Inspection],
     model_cv: float,
@@ -67,7 +66,7 @@ def as_result(
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     posterior : Posterior
         What the inspections leave of them.
@@ -89,24 +88,24 @@ def as_result(
         (score,): what the rows say together of one that all units share
         (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of each.
     """
-    if taken := [name for name in _WEIGHTS if name in rows.variables]:
+    if taken := [name for name in _WEIGHTS if name in rows.dataset.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
-    ds = rows
+    dataset = rows.dataset
     if posterior.scale is not None:
         assert posterior.any_unit.scale is not None
         replaced = _rescaled(rows, posterior.scale.name, posterior.any_unit.scale)
-        kept = {f"{PRIOR}{name}": _as_prior(rows[name]) for name in replaced}
-        ds = rows.assign(replaced | kept)
-    n = rows.sizes["sample"]
+        kept = {f"{PRIOR}{name}": _as_prior(rows.dataset[name]) for name in replaced}
+        dataset = rows.dataset.assign(replaced | kept)
+    n = len(rows)
     meaning = "how much the row counts, given the inspections"
     attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
-    both = ("inspected", "sample")
+    both = ("inspected", "row")
     most = [weighted.weights.most for weighted in _units(posterior)]
     of_units = np.stack(
         [_spread_out(weighted, weighted.weights.weights, n, 0.0) for weighted in _units(posterior)]
     )
     variables = {
-        WEIGHT: ("sample", posterior.any_unit.weights.weights, attrs),
+        WEIGHT: ("row", posterior.any_unit.weights.weights, attrs),
         UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
         UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
     }
@@ -114,7 +113,7 @@ def as_result(
         scales = [
             _spread_out(weighted, weighted.scale, n, np.nan) for weighted in _units(posterior)
         ]
-        of_scale = {"role": WEIGHT, "units": rows[posterior.scale.name].attrs["units"]}
+        of_scale = {"role": WEIGHT, "units": rows.dataset[posterior.scale.name].attrs["units"]}
         of_scale["long_name"] = f"{posterior.scale.name} of the inspected unit"
         variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
         laws = [_spread_out(weighted, weighted.scores, n, SCORES) for weighted in _units(posterior)]
@@ -123,12 +122,16 @@ def as_result(
         variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
         variables |= _of_law(posterior, attrs)
         meaning = "normal score given the inspections and the rest of the row"
-        ds = ds.assign_coords({SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})})
-    ds = ds.assign(variables).assign_coords(inspected=("inspected", list(posterior.units)))
+        dataset = dataset.assign_coords(
+            {SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})}
+        )
+    dataset = dataset.assign(variables).assign_coords(
+        inspected=("inspected", list(posterior.units))
+    )
     units, count = len(posterior.units), len(inspections)
     given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
     if posterior.only_inspected:
-        ds = ds.assign_attrs({ONLY_INSPECTED: posterior.only_inspected})
+        dataset = dataset.assign_attrs({ONLY_INSPECTED: posterior.only_inspected})
     new_attrs = {
         "title": f"{_prior_title(rows)}, {given}",
         INTEGRATED: posterior.scale.name if posterior.scale else "",
@@ -139,11 +142,11 @@ def as_result(
         WORLDS: len(posterior.evidence.log_worlds),
         "prior_title": _prior_title(rows),
     }
-    for variable in ds.variables.values():
+    for variable in dataset.variables.values():
         variable.encoding["_FillValue"] = None
-    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS} & {*ds.variables}:
-        ds[name].encoding |= _COMPRESSED
-    return ds.assign_attrs(new_attrs)
+    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS} & {*dataset.variables}:
+        dataset[name].encoding |= _COMPRESSED
+    return dataset.assign_attrs(new_attrs)
 
 
 def _of_law(posterior: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
@@ -158,27 +161,36 @@ def _of_law(posterior: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
     of_scores = attrs | {"long_name": f"normal score before, of {posterior.scale.name}"}
     units = np.stack([weighted.without_own(pulls) for weighted in _units(posterior)])
     return {
-        LAW_PULLS: (("sample", "term"), posterior.any_unit.without_own(pulls), of_pulls),
-        UNIT_PULLS: (("inspected", "sample", "term"), units, of_pulls),
-        LAW_FOLLOWS: (("sample", "term"), posterior.any_unit.terms, of_terms),
+        LAW_PULLS: (("row", "term"), posterior.any_unit.without_own(pulls), of_pulls),
+        UNIT_PULLS: (("inspected", "row", "term"), units, of_pulls),
+        LAW_FOLLOWS: (("row", "term"), posterior.any_unit.terms, of_terms),
         LAW_SCORES: (SCORE, law.scores, of_scores),
     }
 
 
-def prior_of(ds: xr.Dataset) -> xr.Dataset:
+def prior_of(result: Result) -> Result:
     """Return the rows of a posterior as they were before the inspections."""
-    if not has_weights(ds):
-        return ds
-    kept = [str(name) for name in ds.data_vars if ds[name].attrs.get("role") == "prior"]
+    if not result.has_weights:
+        return result
+    kept = [
+        str(name)
+        for name in result.dataset.data_vars
+        if result.dataset[name].attrs.get("role") == "prior"
+    ]
     back = {}
     for name in kept:
         original = name.removeprefix(PRIOR)
-        back[original] = ds[original].copy(data=ds[name].values)
-    gone = [*kept, *(variable for variable in (*_WEIGHTS, "inspected", SCORE) if variable in ds)]
-    prior = ds.assign(back).drop_vars(gone)
-    attrs = {name: value for name, value in ds.attrs.items() if name not in _OF_POSTERIOR}
-    prior.attrs = attrs | {"title": _prior_title(ds)}
-    return prior
+        back[original] = result.dataset[original].copy(data=result.dataset[name].values)
+    gone = [
+        *kept,
+        *(variable for variable in (*_WEIGHTS, "inspected", SCORE) if variable in result.dataset),
+    ]
+    prior = result.dataset.assign(back).drop_vars(gone)
+    attrs = {
+        name: value for name, value in result.dataset.attrs.items() if name not in _OF_POSTERIOR
+    }
+    prior.attrs = attrs | {"title": _prior_title(result)}
+    return Result(prior)
 
 
 _OF_POSTERIOR = (
@@ -187,12 +199,12 @@ _OF_POSTERIOR = (
 )
 
 
-def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
+def as_unit(result: AnyResult, label: str) -> xr.Dataset:
     """Return the rows of a posterior as those of one inspected unit.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of `uq.update`.
     label : str
         Of the unit, as in the inspections.
@@ -207,37 +219,44 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
     InputError
         When the rows have no weights, or no such unit was inspected.
     """
-    if not has_weights(ds):
+    result = Result.of(result)
+    if not result.has_weights:
         raise InputError("a unit can be named only of a result of 'uq update'")
-    labels = [str(inspected) for inspected in ds["inspected"].values]
+    labels = [str(inspected) for inspected in result.dataset["inspected"].values]
     if label not in labels:
         raise InputError(
             f"unit '{label}' was not inspected{nearest(label, labels)} (allowed: {choices(labels)})"
         )
     place = labels.index(label)
-    rows, name = prior_of(ds), ds.attrs[INTEGRATED]
+    prior, name = prior_of(result), result.dataset.attrs[INTEGRATED]
+    rows = prior.dataset
     if name:
-        scale, drawn = ds[UNIT_SCALE].values[place], rows[name].values
-        rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
-        if UNIT_SCORES in ds:  # posteriors of older versions have none
-            law = ds[UNIT_SCORES]
+        scale, drawn = result.dataset[UNIT_SCALE].values[place], rows[name].values
+        rows = rows.assign(_rescaled(prior, name, np.where(np.isnan(scale), drawn, scale)))
+        if UNIT_SCORES in result.dataset:  # posteriors of older versions have none
+            law = result.dataset[UNIT_SCORES]
             attrs = law.attrs | {INPUT: name}
             rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
-        if LAW_PULLS in ds:
-            rows = rows.assign(_law_of_unit(ds, rows, place))
-    if ds.attrs[WORLDS] == 1 and nesting_of(rows).repeats == 1:
+        if LAW_PULLS in result.dataset:
+            rows = rows.assign(_law_of_unit(result, Result(rows), place))
+    if result.dataset.attrs[WORLDS] == 1 and prior.nesting.repeats == 1:
         # Rows of one sample have nothing in common: each has a value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
-    weight = ds.variables[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
-    weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
-    attrs = {"title": f"{_prior_title(ds)}, unit {label}", OF_UNIT: label}
+    weight = result.dataset.variables[WEIGHT].copy(data=result.dataset[UNIT_WEIGHT].values[place])
+    weight.attrs[MOST] = float(result.dataset[UNIT_MOST].values[place])
+    attrs = {"title": f"{_prior_title(result)}, unit {label}", OF_UNIT: label}
     return rows.assign({WEIGHT: weight}).assign_attrs(attrs)
 
 
-def _law_of_unit(ds: xr.Dataset, rows: xr.Dataset, place: int) -> dict[str, Any]:
+def _law_of_unit(result: Result, rows: Result, place: int) -> dict[str, Any]:
     """Return the variables of that law for the rows of a unit."""
-    name, law, pulls, inputs = ds.attrs[INTEGRATED], ds[LAW_SCORES], ds[UNIT_PULLS], inputs_of(rows)
-    below = cdf_within(inputs.laws[name], rows[name].values, inputs.bounds[name])
+    name, law, pulls, inputs = (
+        result.dataset.attrs[INTEGRATED],
+        result.dataset[LAW_SCORES],
+        result.dataset[UNIT_PULLS],
+        inputs_of(rows),
+    )
+    below = cdf_within(inputs.laws[name], rows.dataset[name].values, inputs.bounds[name])
     follows = terms_at(law.values, ndtri(below))
     return {
         LAW_PULLS: (pulls.dims[1:], pulls.values[place], pulls.attrs),
@@ -246,10 +265,10 @@ def _law_of_unit(ds: xr.Dataset, rows: xr.Dataset, place: int) -> dict[str, Any]
     }
 
 
-def inspections_of(ds: xr.Dataset) -> list[Inspection]:
+def inspections_of(result: Result) -> list[Inspection]:
     """Return the inspections that a posterior rests on."""
     with first_fault_alone():
-        return read_tables(json.loads(ds.attrs.get(INSPECTIONS, "[]")))
+        return read_tables(json.loads(result.dataset.attrs.get(INSPECTIONS, "[]")))
 
 
 def as_table(inspection: Inspection) -> dict[str, object]:
@@ -263,8 +282,8 @@ def digest(inspection: Inspection) -> str:
     return sha256(json.dumps(as_table(inspection), sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _prior_title(ds: xr.Dataset) -> str:
-    return str(ds.attrs.get("prior_title", ds.attrs["title"]))
+def _prior_title(result: Result) -> str:
+    return str(result.dataset.attrs.get("prior_title", result.dataset.attrs["title"]))
 
 
 def _units(posterior: Posterior) -> list[Weighted]:
@@ -284,23 +303,25 @@ def _as_prior(variable: xr.DataArray) -> xr.DataArray:
     return variable.assign_attrs(variable.attrs | about)
 
 
-def _rescaled(rows: xr.Dataset, name: str, values: Floats) -> dict[str, xr.DataArray]:
+def _rescaled(rows: Result, name: str, values: Floats) -> dict[str, xr.DataArray]:
     """Return an input with other values, those equal to it, and the lives that they scale."""
-    inputs, outputs = inputs_of(rows), outputs_of(rows)
+    inputs, outputs = inputs_of(rows), rows.outputs
     members = (name, *(member for member, leader in inputs.tied.items() if leader == name))
-    rescaled = {member: rows[member].copy(data=values) for member in members}
-    ratio = values / rows[name].values
+    rescaled = {member: rows.dataset[member].copy(data=values) for member in members}
+    ratio = values / rows.dataset[name].values
     for output, declared in outputs.items():
         exponent = free_scales(inputs, declared).get(name)
         for scaled in (output, error_name(output)) if exponent else ():
             if scaled in outputs:
-                variable = rows[scaled]
+                variable = rows.dataset[scaled]
                 factor = (ratio**exponent).reshape(-1, *[1] * (variable.ndim - 1))
                 rescaled[scaled] = variable.copy(data=variable.values * factor)
     return rescaled
 
 
-def unit_quality(ds: xr.Dataset) -> list[Smoothed]:
+def unit_quality(result: Result) -> list[Smoothed]:
     """Return the weights of the rows of a posterior, as any unit and as each inspected one."""
-    units = [as_unit(ds, str(label)) for label in ds["inspected"].values]
-    return [weights for rows in (ds, *units) if (weights := weights_of(rows)) is not None]
+    units = [as_unit(result, str(label)) for label in result.dataset["inspected"].values]
+    return [
+        weights for rows in (result.dataset, *units) if (weights := weights_of(rows)) is not None
+    ]

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from math import inf
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.conditional_survival import Surviving
 from uq.assess.population import Population
@@ -16,8 +15,8 @@ from uq.learning.epistemic_band import over_shared
 from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.observables import look_at, quantities_of
 from uq.learning.posterior_result import as_unit, inspections_of, prior_of
-from uq.result.elements import Element, analysis_of, replicates_of, shown_outputs
-from uq.result.variables import outputs_of
+from uq.result.elements import Element
+from uq.result.result import Result
 from uq.result.weights import ONLY_INSPECTED, WEIGHT
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows, per_sample
@@ -25,15 +24,15 @@ from uq.stats.intervals import Replicates, replicates_of_some
 from uq.text.quantities import read_threshold
 
 
-def shown_lives(ds: xr.Dataset) -> Iterator[tuple[str, Output]]:
+def shown_lives(result: Result) -> Iterator[tuple[str, Output]]:
     """Yield the lives that a result shows and that end, not succeed."""
-    declared = outputs_of(ds)
-    for name in shown_outputs(ds, analysis_of(ds)):
+    declared = result.outputs
+    for name in result.shown_outputs(result.analysis):
         if declared[name].is_lifetime and not declared[name].success:
             yield name, declared[name]
 
 
-def read_times(option: str, texts: Sequence[str], ds: xr.Dataset) -> list[float]:
+def read_times(option: str, texts: Sequence[str], result: Result) -> list[float]:
     """Return times that an option of the command line gives, with or without a unit.
 
     Parameters
@@ -41,7 +40,7 @@ def read_times(option: str, texts: Sequence[str], ds: xr.Dataset) -> list[float]
     option : str
         Such as ``--by``.
     texts : sequence of str
-    ds : xarray.Dataset
+    result : Result
         Whose lives they are times of.
 
     Raises
@@ -51,7 +50,7 @@ def read_times(option: str, texts: Sequence[str], ds: xr.Dataset) -> list[float]
     """
     if not texts:
         return []
-    units = list({output.unit: None for _, output in shown_lives(ds)})
+    units = list({output.unit: None for _, output in shown_lives(result)})
     if len(units) != 1:
         problem = f"lives are in several units ({choices(units)})" if units else "no life is shown"
         raise InputError(f"{option} {texts[0]}: {problem}; name one life in [analysis] outputs")
@@ -111,12 +110,12 @@ class Remaining:
     over_shared: dict[float, dict[float, float]] = field(default_factory=dict)
 
 
-def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
+def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
     """Yield the remaining lives of units that no inspection has found ended.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result of `uq.update`.
     by : sequence of float
         Times from the beginning of the life, in its unit; by default the thresholds of the study.
@@ -127,16 +126,16 @@ def remaining(ds: xr.Dataset, by: Sequence[float] = ()) -> Iterator[Remaining]:
         When a time is negative or not finite.
     """
     check_times(by, "by")
-    inspections, quantities = inspections_of(ds), quantities_of(prior_of(ds))
+    inspections, quantities = inspections_of(result), quantities_of(prior_of(result))
     units = {inspection: look_at(quantities, inspection).time_unit for inspection in inspections}
-    if ONLY_INSPECTED not in ds.attrs:
-        yield from _of_unit(ds, ANY, _last_seen(units), by)
-    for label in map(str, ds["inspected"].values):
+    if ONLY_INSPECTED not in result.dataset.attrs:
+        yield from _of_unit(result, ANY, _last_seen(units), by)
+    for label in map(str, result.dataset["inspected"].values):
         inspected = {
             inspection: unit for inspection, unit in units.items() if inspection.unit == label
         }
         if not any(inspection.kind is InspectionKind.ENDED for inspection in inspected):
-            yield from _of_unit(as_unit(ds, label), label, _last_seen(inspected), by)
+            yield from _of_unit(Result(as_unit(result, label)), label, _last_seen(inspected), by)
 
 
 def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
@@ -149,12 +148,12 @@ def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
 
 
 def _of_unit(
-    rows: xr.Dataset, label: str, last_seen: Mapping[str, float], by: Sequence[float]
+    rows: Result, label: str, last_seen: Mapping[str, float], by: Sequence[float]
 ) -> Iterator[Remaining]:
-    thresholds = analysis_of(rows).thresholds
-    counted = rows[WEIGHT].values > 0
-    part = replicates_of_some(replicates_of(rows), counted)
-    rows = rows.isel(sample=counted)
+    thresholds = rows.analysis.thresholds
+    counted = rows.dataset[WEIGHT].values > 0
+    part = replicates_of_some(rows.replicates, counted)
+    rows = rows.take(counted)
     for element in population(rows, [name for name, _ in shown_lives(rows)]):
         seen = last_seen.get(element.units, 0.0)
         times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]

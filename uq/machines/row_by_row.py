@@ -21,7 +21,7 @@ SEED = "seed"
 """The name by which the seed of a row is wanted."""
 
 _TAKEN = (
-    "sample replicate group block world unit repeat status rerun".split()  # of a result itself
+    "row replicate group block world unit repeat status rerun".split()  # of a result itself
 )
 
 Fields = Mapping[str, tuple[Parameter, float]]

@@ -14,9 +14,10 @@ Reading order; each part imports only those above it:
     soundness      checks of a Dataset that may be damaged or come from an untrusted file
     result_file    the schema of a result
     elements       the elements of a result's outputs
-    stored_row     a row of a result as plain numbers, as the result describes it
     workload       rows of one model that are to be computed, by a study or any other analysis
     regimes        the rows of a result that are in one regime
-    row_choice     choice of a row
     preview        a preview of the rows of a run as they arrive
+    result         a result
+    row_choice     choice of a row
+    stored_row     a row of a result as plain numbers, as the result describes it
 """

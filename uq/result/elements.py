@@ -64,7 +64,7 @@ def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     labels = [] if why_no_statistics(ds) else flags(ds["block"])
     plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
-    return ds if chosen.all() else ds.isel(sample=chosen)
+    return ds if chosen.all() else ds.isel(row=chosen)
 
 
 def why_no_statistics(ds: xr.Dataset) -> str:
@@ -99,7 +99,7 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
 def inputs_of(rows: xr.Dataset) -> Floats:
     """Return the values of the uncertain inputs, shape (n, d)."""
     columns = [v.values for v in rows.variables.values() if v.attrs.get("role") == "input"]
-    return np.column_stack(columns) if columns else np.empty((rows.sizes["sample"], 0))
+    return np.column_stack(columns) if columns else np.empty((rows.sizes["row"], 0))
 
 
 def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> SharedInfluence:

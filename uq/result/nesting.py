@@ -80,14 +80,14 @@ def nesting_of(ds: xr.Dataset) -> Nesting:
     -------
     Nesting
     """
-    n = ds.sizes["sample"]
+    n = ds.sizes["row"]
     if not is_nested(ds):
         nothing = np.zeros(n, np.int64)
         return Nesting(n, 1, 1, np.arange(n), nothing, nothing, ds["replicate"].values)
     worlds, first, sample = np.unique(ds["world"].values, return_index=True, return_inverse=True)
     return Nesting(
         len(worlds),
-        int(ds.attrs["units"]),
+        int(ds.attrs["units_per_sample"]),
         int(ds.attrs["repeats"]),
         sample,
         ds["unit"].values,
@@ -118,14 +118,14 @@ def one_of_each_sample(ds: xr.Dataset) -> xr.Dataset:
     """Return the first repeat of the first unit of each sample: rows that follow a plain design."""
     if not is_nested(ds):
         return ds
-    return ds.isel(sample=(ds["unit"].values == 0) & (ds["repeat"].values == 0))
+    return ds.isel(row=(ds["unit"].values == 0) & (ds["repeat"].values == 0))
 
 
 def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
     """Return the rows of the first samples of each replicate."""
     chosen = ds["group"].values < samples
     count = int(chosen.sum())
-    return ds.isel(sample=slice(count) if chosen[:count].all() else chosen)
+    return ds.isel(row=slice(count) if chosen[:count].all() else chosen)
 
 
 def levels_of(ds: xr.Dataset) -> dict[str, str]:

@@ -25,22 +25,22 @@ def ranked_rows(ds: xr.Dataset) -> xr.Dataset:
         The first samples of a large plain design, and as many imported rows at random, since these
         may come in a meaningful order; else `ds` itself, also of a design that compares rows.
     """
-    samples, rows = int(ds.attrs["samples"]), ds.sizes["sample"]
+    samples, rows = int(ds.attrs["samples"]), ds.sizes["row"]
     design = DESIGNS[ds.attrs["design"]]
     if rows <= RANKED or design.layout is not PLAIN:
         return ds
     if design.imported:
         chosen = np.random.default_rng(0).choice(rows, RANKED, replace=False)
-        return ds.isel(sample=np.sort(chosen)).load()
+        return ds.isel(row=np.sort(chosen)).load()
     # Loaded: they are few, and read once for each target.
     return first_samples(ds, max(RANKED * samples // rows, 1)).load()
 
 
-def ranked_in_words(ds: xr.Dataset, ranked: xr.Dataset) -> str:
+def ranked_in_words(ranked: xr.Dataset, ds: xr.Dataset) -> str:
     """Return a phrase for the rows that are ranked: ``by the first 50 000 rows``; "" for all."""
-    if ds is ranked:
+    if ranked is ds:
         return ""
-    count = grouped(ds.sizes["sample"])
+    count = grouped(ranked.sizes["row"])
     if DESIGNS[ds.attrs["design"]].imported:
         return f"by {count} rows chosen at random"
     return f"by the first {count} rows"

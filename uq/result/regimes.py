@@ -41,4 +41,4 @@ def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
         raise InputError(
             f"no row is in the regime '{regime}' (there are rows in: {choices(occurring)})"
         )
-    return ds.isel(sample=np.flatnonzero(in_regime | ((ds["regime"].values < 0) & failed(ds))))
+    return ds.isel(row=np.flatnonzero(in_regime | ((ds["regime"].values < 0) & failed(ds))))

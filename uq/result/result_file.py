@@ -1,6 +1,6 @@
 """The schema of a result: one flat, self-describing Dataset, built and checked here.
 
-One dimension ``sample``; one variable per parameter (``role`` is ``input`` where it is uncertain,
+One dimension ``row``; one variable per parameter (``role`` is ``input`` where it is uncertain,
 ``fixed`` where it is one number), one per output (``role="output"``, plus the model's own
 dimensions), one ``<name>_censored`` beside each lifetime that can be censored, and ``status``.
 ``replicate``, ``group`` and ``block`` give the place of a row in the design. Nothing depends on the
@@ -161,7 +161,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
     try:
-        ds = _legible(_opened(path))
+        ds = upgraded(_legible(_opened(path)))
         check(ds, path)
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
@@ -218,6 +218,20 @@ def _legible(ds: xr.Dataset) -> xr.Dataset:
     return ds
 
 
+def upgraded(ds: xr.Dataset) -> xr.Dataset:
+    """Return a result in the names of this schema version.
+
+    In version 1 the dimension of rows was ``sample``, and ``units`` their number in each sample.
+    """
+    version = np.asarray(ds.attrs.get("schema_version"))
+    if version.ndim or version != 1 or "sample" not in ds.dims or "row" in ds.variables:
+        return ds
+    attrs = {"units_per_sample" if name == "units" else name: v for name, v in ds.attrs.items()}
+    upgraded_ds = ds.rename(sample="row")
+    upgraded_ds.attrs = attrs | {"schema_version": SCHEMA_VERSION}
+    return upgraded_ds
+
+
 def _others(path: Path) -> str:
     """List the results in the folder of a path that is not a result."""
     names = sorted(file.name for file in path.parent.glob("*.nc"))
@@ -256,7 +270,7 @@ def refuse_empty(ds: xr.Dataset) -> None:
     ------
     InputError
     """
-    if not ds.sizes["sample"]:
+    if not ds.sizes["row"]:
         raise InputError("this result has no rows")
 
 

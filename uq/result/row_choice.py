@@ -4,13 +4,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.errors import InputError
-from uq.result.elements import Element, independent_rows, named_elements, why_no_statistics
-from uq.result.result_file import failed
-from uq.result.weights import refuse_weights
+from uq.result.elements import Element
+from uq.result.result import Result
 from uq.stats.order_statistics import quantile, rows_to_reach
 from uq.text.numbers import counted
 
@@ -31,12 +29,12 @@ class Choice(NamedTuple):
     words: str
 
 
-def lowest_row(ds: xr.Dataset, name: str) -> Choice:
+def lowest_row(result: Result, name: str) -> Choice:
     """Return the row in which an output, or one element of it, is lowest.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     name : str
         As `uq.result.elements.named_elements` takes it.
@@ -51,7 +49,7 @@ def lowest_row(ds: xr.Dataset, name: str) -> Choice:
     InputError
         When there is no such output, or no row has a value.
     """
-    candidates = list(_ordered(ds, name))
+    candidates = list(_ordered(result, name))
     # Of several elements the lowest value; which of two equal ones does not matter.
     element, order = min(candidates, key=lambda pair: _rank(pair[0], pair[1][0]))
     place = order[0]
@@ -59,15 +57,15 @@ def lowest_row(ds: xr.Dataset, name: str) -> Choice:
     words = f"the lowest {element.name}"
     if earlier:
         words += f"; {counted(earlier, 'row was', 'rows were')} censored earlier"
-    return Choice(int(ds["sample"].values[place]), words)
+    return Choice(int(result.dataset["row"].values[place]), words)
 
 
-def lowest_rows(ds: xr.Dataset, name: str, most: int) -> list[tuple[int, float]]:
+def lowest_rows(result: Result, name: str, most: int) -> list[tuple[int, float]]:
     """Return the rows in which one element is lowest, each with its value; only rows that ended.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     name : str
         Of an element.
@@ -78,17 +76,17 @@ def lowest_rows(ds: xr.Dataset, name: str, most: int) -> list[tuple[int, float]]
     InputError
         When there is no such element, or no row has a value.
     """
-    element, order = next(_ordered(ds, name))
+    element, order = next(_ordered(result, name))
     ended = [i for i in order[:most] if not (element.censored[i] or element.never[i])]
-    return [(int(ds["sample"].values[i]), float(element.values[i])) for i in ended]
+    return [(int(result.dataset["row"].values[i]), float(element.values[i])) for i in ended]
 
 
-def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
+def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
     """Return the row that is closest to a quantile of an output or of one element.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     probability : float
     name : str
@@ -108,13 +106,13 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
         raise InputError(
             f"--near-quantile {probability:g}: must lie between 0 and 1; write 0.05 for 5 %"
         )
-    refuse_weights(ds, "--near-quantile")
-    if why := why_no_statistics(ds):
+    result.refuse_weights("--near-quantile")
+    if why := result.why_no_statistics:
         raise InputError(
-            f"no quantiles: the rows of a '{ds.attrs['design']}' design {why}; choose a row by its"
+            f"no quantiles: the rows of a '{result.design_name}' design {why}; choose a row by its"
             " number or with --lowest"
         )
-    rows = independent_rows(ds)
+    rows = result.independent
     (element, order), *others = _ordered(rows, name)
     if others:
         names = ", ".join(
@@ -132,14 +130,14 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
     else:  # it depends on censored rows, or is never
         place = order[min(max(round(probability * len(order)), len(ended)), len(order) - 1)]
     words = f"closest to the {100 * probability:g} % quantile of {element.name}"
-    return Choice(int(rows["sample"].values[place]), words)
+    return Choice(int(rows.dataset["row"].values[place]), words)
 
 
-def _ordered(ds: xr.Dataset, name: str) -> Iterator[tuple[Element, NDArray[np.intp]]]:
+def _ordered(result: Result, name: str) -> Iterator[tuple[Element, NDArray[np.intp]]]:
     """Yield elements, each with the places of its rows, lowest first: ended, censored, never."""
-    unsound = failed(ds)
+    unsound = result.failed
     has_values = False
-    for element in named_elements(ds, name):
+    for element in result.named_elements(name):
         places = np.flatnonzero(element.present & ~unsound)
         if len(places):
             has_values = True

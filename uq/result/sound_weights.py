@@ -37,17 +37,17 @@ from uq.result.weights import (
     has_weights,
 )
 
-_SAMPLE, _TERM = "sample", "term"
-_WEIGHTS = {WEIGHT: (_SAMPLE,), UNIT_WEIGHT: (INSPECTED, _SAMPLE)}
+_ROW, _TERM = "row", "term"
+_WEIGHTS = {WEIGHT: (_ROW,), UNIT_WEIGHT: (INSPECTED, _ROW)}
 _NUMBERS = {
     UNIT_MOST: (INSPECTED,),
-    UNIT_SCALE: (INSPECTED, _SAMPLE),
-    UNIT_SCORES: (INSPECTED, _SAMPLE, SCORE),
-    UNIT_PULLS: (INSPECTED, _SAMPLE, _TERM),
-    LAW_PULLS: (_SAMPLE, _TERM),
-    LAW_FOLLOWS: (_SAMPLE, _TERM),
+    UNIT_SCALE: (INSPECTED, _ROW),
+    UNIT_SCORES: (INSPECTED, _ROW, SCORE),
+    UNIT_PULLS: (INSPECTED, _ROW, _TERM),
+    LAW_PULLS: (_ROW, _TERM),
+    LAW_FOLLOWS: (_ROW, _TERM),
     LAW_SCORES: (SCORE,),
-    SCALE_SCORES: (_SAMPLE, SCORE),
+    SCALE_SCORES: (_ROW, SCORE),
 }
 _MAY_BE_ABSENT = (UNIT_SCALE,)  # in rows that do not stand for the unit
 _MAY_BE_INFINITE = (UNIT_MOST,)
@@ -125,11 +125,11 @@ def _attribute_faults(ds: xr.Dataset) -> Iterator[str]:
 
 def _round_faults(ds: xr.Dataset) -> Iterator[str]:
     """Yield the faults of rows that a sampler has added."""
-    if fault := _shape_fault(ds, IMPORTANCE, (_SAMPLE,)):
+    if fault := _shape_fault(ds, IMPORTANCE, (_ROW,)):
         yield fault
     elif not _are_weights(ds[IMPORTANCE].values):
         yield f"'{IMPORTANCE}' is negative, infinite or zero throughout"
-    if ds[ROUND].dims != (_SAMPLE,) or ds[ROUND].dtype.kind not in "iu":
+    if ds[ROUND].dims != (_ROW,) or ds[ROUND].dtype.kind not in "iu":
         yield f"'{ROUND}' is not one integer per row"
     elif not (ds[ROUND].values == 0).any() or (ds[ROUND].values < 0).any():
         yield f"'{ROUND}' is out of range"

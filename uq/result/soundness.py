@@ -50,10 +50,10 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
             yield f"the name of '{name}' has control characters"
     if ds.attrs.get("design") not in DESIGNS:
         yield "its design is unknown"
-    if not ds.sizes.get("sample", 0):
+    if not ds.sizes.get("row", 0):
         yield "it has no rows"
     for place in _PLACES:
-        if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
+        if place not in ds or ds[place].dims != ("row",) or ds[place].dtype.kind not in "iu":
             yield f"'{place}' is not one integer per row"
     yield from _place_faults(ds)
     yield from _nesting_faults(ds)
@@ -69,7 +69,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
         role = variable.attrs.get("role")
         if role not in _ROLES:
             continue
-        if role in ("input", "output", "censored") and variable.dims[:1] != ("sample",):
+        if role in ("input", "output", "censored") and variable.dims[:1] != ("row",):
             yield f"'{name}' has no row dimension"
         if (role == "input" and variable.ndim != 1) or (role == "fixed" and variable.ndim):
             yield f"'{name}' is not one number{' per row' * (role == 'input')}"
@@ -90,9 +90,9 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
 
 def _place_faults(ds: xr.Dataset) -> Iterator[str]:
     """Yield the faults of the numbers of rows and their places in the design."""
-    numbers = ds["sample"].values
+    numbers = ds["row"].values
     if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
-        yield "'sample' does not number the rows in order"
+        yield "'row' does not number the rows in order"
     samples, replicates = int(ds.attrs["samples"]), int(ds.attrs["replicates"])
     if samples * replicates > len(numbers):
         yield f"its {len(numbers)} rows are fewer than its samples"
@@ -105,7 +105,7 @@ def _repeated_places(ds: xr.Dataset) -> str:
     """Return a fault if rows share a place in the design, else ""; added rows may share one."""
     if has_rounds(ds):
         return ""
-    place = np.zeros(ds.sizes["sample"], dtype=np.int64)
+    place = np.zeros(ds.sizes["row"], dtype=np.int64)
     for name in ("group", "replicate", "block", "unit", "repeat"):
         if name in ds.variables:
             _, code = np.unique(ds[name].values, return_inverse=True)
@@ -115,7 +115,7 @@ def _repeated_places(ds: xr.Dataset) -> str:
 
 def _rerun_faults(variable: xr.DataArray) -> Iterator[str]:
     """Yield the faults of the settings of rows that were computed again."""
-    if variable.dims != ("sample",) or variable.dtype.kind not in "iu":
+    if variable.dims != ("row",) or variable.dtype.kind not in "iu":
         yield "'rerun' is not one integer per row"
     if fault := _flag_fault(variable):
         yield fault
@@ -191,8 +191,8 @@ def _nesting_faults(ds: xr.Dataset) -> Iterator[str]:
     """Yield the faults of samples of several rows."""
     if "world" not in ds.variables:
         return
-    for place, size in (("world", ""), ("unit", "units"), ("repeat", "repeats")):
-        if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
+    for place, size in (("world", ""), ("unit", "units_per_sample"), ("repeat", "repeats")):
+        if place not in ds or ds[place].dims != ("row",) or ds[place].dtype.kind not in "iu":
             yield f"'{place}' is not one integer per row"
             return
         most = ds.attrs.get(size, np.iinfo(np.int64).max if not size else 0)
@@ -200,7 +200,7 @@ def _nesting_faults(ds: xr.Dataset) -> Iterator[str]:
             yield f"attribute '{size}' is not a positive number"
         elif ((ds[place].values < 0) | (ds[place].values >= most)).any():
             yield f"'{place}' is out of range"
-        elif size and most > ds.sizes["sample"]:
+        elif size and most > ds.sizes["row"]:
             yield f"attribute '{size}' is larger than the number of rows"
 
 

@@ -4,16 +4,13 @@ from collections import namedtuple
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
-import xarray as xr
-
 from uq.contract import Model, censored_name
 from uq.errors import InputError
 from uq.result.one_row import Row
-from uq.result.result_file import refuse_empty
-from uq.result.variables import outputs_of
+from uq.result.result import Result
 
 
-def place_of(ds: xr.Dataset, number: int) -> int:
+def place_of(result: Result, number: int) -> int:
     """Return the place in a result of the row with a number.
 
     Raises
@@ -21,20 +18,20 @@ def place_of(ds: xr.Dataset, number: int) -> int:
     InputError
         When there is no such row.
     """
-    refuse_empty(ds)
-    numbers = ds["sample"].values
+    result.refuse_empty()
+    numbers = result.dataset["row"].values
     places = (numbers == number).nonzero()[0]
     if not len(places):
         raise InputError(f"no such row: {number} (allowed: {numbers.min()} to {numbers.max()})")
     return int(places[0])
 
 
-def stored_row(ds: xr.Dataset, place: int) -> Row:
+def stored_row(result: Result, place: int) -> Row:
     """Return a row of a result.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
     place : int
         As from `place_of`.
 
@@ -43,8 +40,9 @@ def stored_row(ds: xr.Dataset, place: int) -> Row:
     Row
         Its model declares what the result says, and cannot compute; its seed is 0.
     """
-    row = ds.isel(sample=[place]).load()
-    outputs = outputs_of(row)
+    stored = result.take([place])
+    row, attrs = stored.dataset.load(), stored.dataset.attrs
+    outputs = stored.outputs
     columns = {name: row[name].values for name in outputs}
     flags = [flag for name in outputs if (flag := censored_name(name)) in row]
     columns |= {flag: row[flag].values.astype(bool) for flag in flags}
@@ -55,9 +53,9 @@ def stored_row(ds: xr.Dataset, place: int) -> Row:
     }
     axes = {dim: row[dim].values.tolist() for output in outputs.values() for dim in output.dims}
     model = Model(
-        name=str(ds.attrs["model"]),
-        title=str(ds.attrs["title"]),
-        version=str(ds.attrs["model_version"]),
+        name=str(attrs["model"]),
+        title=str(attrs["title"]),
+        version=str(attrs["model_version"]),
         parameters=namedtuple("Parameters", values),
         settings=_Nothing,
         outputs=outputs,

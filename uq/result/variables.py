@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from uq.study.definition import Study
     from uq.study.row_sampling import Rows
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 Columns = Mapping[str, NDArray[Any]]
 """Columns returned by ``batch``: output name -> (n, *dims), ``<name>_censored`` -> (n, *dims)."""
@@ -41,7 +41,7 @@ def parameter_variable(
         attrs["admissible"] = np.array(declared.bounds)
     attrs |= {"initial": 1} if declared.initial else {}
     attrs |= {"level": level} if level else {}
-    return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
+    return (("row",), value, attrs) if uncertain else ((), np.float64(value), attrs)
 
 
 def input_unit(ds: xr.Dataset, name: str) -> ReadableUnit:
@@ -67,7 +67,7 @@ def output_variables(
     """Return the variables of the outputs, the flags of censored lives and the status."""
     variables: dict[str, Any] = {}
     for name, output in model.outputs.items():
-        dims = ("sample", *output.dims)
+        dims = ("row", *output.dims)
         attrs: dict[str, Any] = {
             "role": "output",
             "kind": output.kind,
@@ -94,7 +94,7 @@ def output_variables(
     attrs |= _flags([status.label for status in Status], np.int8)
     for label, message in failures.items():
         attrs[f"example_{label.replace('-', '_')}"] = message
-    return variables | {"status": (("sample",), status, attrs)}
+    return variables | {"status": (("row",), status, attrs)}
 
 
 def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
@@ -138,23 +138,23 @@ def coordinates(model: Model, settings: Any) -> dict[str, Any]:
 
 def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> dict[str, Any]:
     """Return the place of each row in the design, as coordinates."""
-    sample = ("sample",)
+    along = ("row",)
     numbers = np.arange(len(rows.x)) if numbers is None else numbers
     block = {"long_name": "block of the design"} | _flags(block_labels(study), np.int16)
     variables = {
-        "sample": (sample, numbers, {"long_name": "row"}),
-        "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
-        "group": (sample, rows.group, {"long_name": "base point of the design"}),
-        "block": (sample, rows.block, block),
+        "row": (along, numbers, {"long_name": "row"}),
+        "replicate": (along, rows.replicate, {"long_name": "independent scramble of the design"}),
+        "group": (along, rows.group, {"long_name": "base point of the design"}),
+        "block": (along, rows.block, block),
     }
     design = study.design
     if design.rows_of_a_sample > 1:
         within = numbers % design.rows_of_a_sample
         unit, repeat = np.divmod(within, design.repeats)
         world = rows.group * design.replicates + rows.replicate
-        variables["world"] = (sample, world, {"long_name": "sample, whose units share inputs"})
-        variables["unit"] = (sample, unit.astype(np.int32), {"long_name": "unit of the sample"})
-        variables["repeat"] = (sample, repeat.astype(np.int32), {"long_name": "repeat of the unit"})
+        variables["world"] = (along, world, {"long_name": "sample, whose units share inputs"})
+        variables["unit"] = (along, unit.astype(np.int32), {"long_name": "unit of the sample"})
+        variables["repeat"] = (along, repeat.astype(np.int32), {"long_name": "repeat of the unit"})
     return variables
 
 
@@ -183,7 +183,7 @@ def study_attributes(study: "Study") -> dict[str, Any]:
             "seed": design.seed,
         }
         | ({"random": 1} if study.random else {})
-        | ({"units": design.units, "repeats": design.repeats} if nested else {})
+        | ({"units_per_sample": design.units, "repeats": design.repeats} if nested else {})
         | made_here(study.model_reference)
     )
 

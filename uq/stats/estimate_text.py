@@ -3,7 +3,7 @@
 from math import floor, inf, isfinite, log10
 
 from uq.stats.estimate import Estimate
-from uq.text.numbers import TO_THESE_DIGITS, number, percent, percent_interval, percent_range
+from uq.text.numbers import TO_THESE_DIGITS, number, percent, percent_interval
 
 
 def value_text(
@@ -76,12 +76,10 @@ def _rounded(value: float, decimals: int) -> str:
     return f"{rounded:.{decimals}f}" if 0 <= decimals <= 6 else number(rounded)
 
 
-def share_text(estimate: Estimate, failed: Estimate | None = None) -> str:
-    """Return a share in per cent, with its interval and the bounds with failed rows, if any."""
+def share_text(estimate: Estimate) -> str:
+    """Return a share in per cent, with its interval."""
     text = percent(estimate.value)
     if not estimate.has_interval:
         return text
-    worst, ends = "", percent_interval(estimate.low, estimate.high)
-    if failed is not None and failed.has_interval:
-        worst = f"; with failed rows {percent_range(failed.low, failed.high)}"
-    return f"{text} ({'95 % interval ' * (ends != TO_THESE_DIGITS)}{ends}{worst})"
+    ends = percent_interval(estimate.low, estimate.high)
+    return f"{text} ({'95 % interval ' * (ends != TO_THESE_DIGITS)}{ends})"

@@ -13,10 +13,10 @@ to 4 % from twenty hits on.
 """
 
 
-def are_few(share: Floats | float, rows: Floats | float, below: int = FEW) -> Mask:
+def are_few(share: Floats | float, rows: Floats | float) -> Mask:
     """Whether there are few hits or few misses; false where the share is unknown."""
     rarer = np.minimum(share, 1 - np.asarray(share)) * rows
-    return np.asarray(np.round(rarer, 6) < below)
+    return np.asarray(np.round(rarer, 6) < FEW)
 
 
 def exact_interval(

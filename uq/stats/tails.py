@@ -29,8 +29,6 @@ MAX_TAIL = 1000
 LARGEST_SHARE = 0.4
 """Largest share of rows taken as tail if a generalised Pareto law fits them."""
 
-FEWEST_ROWS = int(MIN_TAIL / LARGEST_SHARE)
-
 DISTINCT = 10
 """Least number of distinct values in a tail; with fewer the law is discrete."""
 

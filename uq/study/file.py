@@ -231,13 +231,8 @@ class DesignTable(_Table):
     )
 
     @property
-    def has_independent_rows(self) -> bool:
-        """Whether rows are independent, by the design or because the study states it."""
-        return self.has_independent_samples and self.rows_of_a_sample == 1
-
-    @property
     def has_independent_samples(self) -> bool:
-        """Whether samples are independent, however many rows each has."""
+        """Whether samples are independent, by the design or because the study states it."""
         return self.independent or DESIGNS[self.method].independent
 
     @property

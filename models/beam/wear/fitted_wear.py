@@ -1,9 +1,12 @@
 """The wear rate of one site along the path, from noisy means at some nodes.
 
-The reciprocal of a noisy mean is biased upwards. So the logarithm of the wear rate along the path
-is fitted by a cubic such that the ratios of means to fit average to one (the quasi-likelihood of a
-gamma law). This is unbiased, and the scatter about it gives its error, including the misfit of the
-cubic, with Student's factor for so few nodes. Precise means are interpolated instead.
+The reciprocal of a noisy mean is biased upwards. So the logarithm of the wear rate is fitted by a
+cubic spline such that the ratios of means to fit average to one (the quasi-likelihood of a gamma
+law), and what its own variance adds to the mean of the reciprocal is taken off. The spline has half
+as many coefficients as there are nodes: it follows all that changes over some nodes, and as many
+degrees of freedom are left for its error. The scatter about it, misfit included, gives the size of
+the noise; the stated errors of the means say where along the path it is larger. Precise means are
+interpolated instead.
 """
 
 import numpy as np
@@ -11,14 +14,17 @@ import numpy as np
 from models.beam.response.averages import NINE_IN_TEN
 from models.beam.structure.modal import Array
 from models.numerics.batch_means import student
-from models.numerics.elementary import exp, expm1, log
+from models.numerics.elementary import exp, expm1, log, log1p
 from models.numerics.linear import inverse, product
 
 _GOOD = 0.05  # relative error up to which means are interpolated
-_CUBIC = 3
+_ORDER = 4  # of a cubic spline
 _STEEPEST = 300.0  # largest logarithm by which a fit may fall short of a rate
-_GRID = 129  # points of a quadrature
+_NEIGHBOURS = 2  # nodes on either side with which the variance of a node is averaged
 _ITERATIONS = 30
+_STILL_FALLING = -0.5  # change of the logarithm where there are no means to fall to
+_NEVER = 1e4  # minus the logarithm of a rate at which a life is infinite
+_CONVERGED = 1e-9  # largest change of a logarithm at which a fit is done
 _HALVINGS = 40
 
 
@@ -27,38 +33,45 @@ class FittedWear:
 
     def __init__(self, x: Array, rate: Array, error: Array):
         worn = rate > 0
-        relative = error[worn] / rate[worn]
+        relative = np.divide(error, rate, out=np.ones_like(rate), where=worn)
         self.x, self.interpolated = x, bool(worn.all() and np.sqrt((relative**2).mean()) < _GOOD)
         if self.interpolated:
-            self.log, self.relative = log(rate), relative
+            self.log, self.covariance = log(rate), np.diag(relative**2)
         else:
-            self.coefficient, self.covariance = fit(x / x[-1], rate)
-            freedom = max(1, len(x) - len(self.coefficient))
-            self.covariance *= (student(freedom) / NINE_IN_TEN) ** 2
+            self.log, covariance = fit(rate, relative)
+            self.log += log1p(np.diag(covariance))
+            freedom = len(x) - _coefficients(len(x))
+            self.covariance = covariance * (student(freedom) / NINE_IN_TEN) ** 2
 
     def life(self, end: float) -> tuple[float, float]:
         """Return the integral of dx/rate up to an end, and its error.
 
         This is the half-width of a 90 % interval over `NINE_IN_TEN`.
         """
-        if self.interpolated:
-            inside = np.append(self.x[self.x < end], end)
-            level = np.interp(inside, self.x, self.log)
-            piece = np.diff(inside) * exp(-level[:-1]) * _mean_exponential(-np.diff(level))
-            coarse = np.append(inside[:-1:2], end)
-            level = np.interp(coarse, self.x, self.log)
-            other = np.diff(coarse) * exp(-level[:-1]) * _mean_exponential(-np.diff(level))
-            weight = (np.append(piece, 0.0) + np.append(0.0, piece)) / 2
-            noise = weight * np.interp(inside, self.x, self.relative)
-            change = (other.sum() - piece.sum()) / 3
-            return float(piece.sum()), float(np.sqrt((noise**2).sum() + change**2))
-        grid = np.linspace(0.0, end, _GRID)
-        basis = np.vander(grid / self.x[-1], len(self.coefficient), increasing=True)
+        end = min(end, float(self.x[-1]))
+        last = int((self.x < end).sum())  # the first node at the end or beyond
+        if last == 0:
+            return 0.0, 0.0
+        inside = np.append(self.x[:last], end)
         with np.errstate(over="ignore", invalid="ignore"):
-            inverse = exp(-_values(basis, self.coefficient))
-            slope = -np.trapezoid(basis * inverse[:, None], grid, axis=0)
-            life = np.trapezoid(inverse, grid)
-            return float(life), float(np.sqrt((slope[:, None] * self.covariance * slope).sum()))
+            piece = self._integrals(inside)
+            coarse = self._integrals(np.append(inside[:-1:2], end))
+            change = (coarse.sum() - piece.sum()) / 3 if self.interpolated else 0.0
+            weight = np.zeros(len(self.x))
+            weight[:last] += piece / 2
+            weight[1 : last + 1] += piece / 2
+            # The rate at the end is interpolated between the nodes before and after.
+            before = (self.x[last] - end) / (self.x[last] - self.x[last - 1]) * piece[-1] / 2
+            weight[last - 1] += before
+            weight[last] -= before
+            variance = (weight[:, None] * self.covariance * weight).sum()
+            return float(piece.sum()), float(np.sqrt(variance + change**2))
+
+    def _integrals(self, x: Array) -> Array:
+        """Return the integrals of dx/rate between neighbouring points."""
+        level = np.interp(x, self.x, self.log)
+        lower, step = np.minimum(level[:-1], level[1:]), np.abs(np.diff(level))
+        return np.asarray(np.diff(x) * exp(-lower) * _mean_exponential(-step))
 
     def grown(self, time: float) -> float:
         """Return the end up to which the integral of dx/rate is a time: the inverse of `life`."""
@@ -69,26 +82,66 @@ class FittedWear:
         return (low + high) / 2
 
 
-def fit(t: Array, rate: Array) -> tuple[Array, Array]:
-    """Fit log rate by a polynomial in t such that rate/fit averages to one; with covariance."""
-    degree = min(_CUBIC, (len(t) - 1) // 3)
-    basis = np.vander(t, degree + 1, increasing=True)
-    coefficient = np.zeros(degree + 1)
-    coefficient[0] = log(rate.mean())
-    normal = inverse(product(basis.T[None], basis[None]))[0][0]
+def fit(rate: Array, relative: Array) -> tuple[Array, Array]:
+    """Fit the logarithm of noisy rates along the path by a spline.
+
+    Parameters
+    ----------
+    rate : ndarray, shape (n,)
+        Means at the nodes.
+    relative : ndarray, shape (n,)
+        Their relative errors, of which only the ratios matter.
+
+    Returns
+    -------
+    level : ndarray, shape (n,)
+        Logarithm of the fit at the nodes. Where there was next to no wear at several nodes in a
+        row it has no bound: lives are infinite there.
+    covariance : ndarray, shape (n, n)
+        Of `level`.
+    """
+    n = len(rate)
+    basis = _splines(n, _coefficients(n))
+    normal = inverse(_product(basis.T, basis)[None])[0][0]
+    hat = _product(_product(basis, normal), basis.T)
+    level = np.full(n, log(rate.mean()))
     for _ in range(_ITERATIONS):
-        residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
         # Steps are limited to changes of the fit by a factor e: fits of noise would diverge.
-        change = _values(normal, _values(basis.T, residual))
-        coefficient += change / max(1.0, np.abs(_values(basis, change)).max())
-    residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
-    scatter = (residual**2).sum() / max(1, len(t) - degree - 1)
-    return coefficient, scatter * normal
+        change = _product(hat, _residual(rate, level)[:, None])[:, 0]
+        largest = np.abs(change).max()
+        level += change / max(1.0, largest)
+        if largest < _CONVERGED:
+            break
+    level[change < _STILL_FALLING] = -_NEVER
+    windows = np.pad(relative**2, _NEIGHBOURS, mode="edge")
+    noise = np.lib.stride_tricks.sliding_window_view(windows, 2 * _NEIGHBOURS + 1).mean(axis=1)
+    noise *= (_residual(rate, level) ** 2).sum() / ((1 - np.diag(hat)) * noise).sum()
+    return level, _product(hat * noise, hat)
 
 
-def _values(basis: Array, coefficient: Array) -> Array:
-    """Return the product of a matrix and a vector."""
-    return product(basis[None], coefficient[None, :, None])[0, :, 0]
+def _coefficients(nodes: int) -> int:
+    """Return the number of coefficients of a spline through the noise of some nodes."""
+    return max(1, nodes // 2)
+
+
+def _residual(rate: Array, level: Array) -> Array:
+    """Return the relative deviations of rates from their fit."""
+    return np.asarray(rate * exp(np.minimum(-level, _STEEPEST)) - 1)
+
+
+def _splines(n: int, count: int) -> Array:
+    """Return cubic B-splines of equal intervals at n nodes; powers where they are too few."""
+    along = np.linspace(0.0, 1.0, n)
+    if count < _ORDER:
+        return np.vander(along, count, increasing=True)
+    away = np.abs(along[:, None] * (count - _ORDER + 1) - np.arange(-1, count - 1))
+    near = 2 / 3 - away * away * (1 - away / 2)
+    return np.asarray(np.where(away < 1, near, np.maximum(2 - away, 0.0) ** 3 / 6))
+
+
+def _product(matrix: Array, right: Array) -> Array:
+    """Return the product of two matrices."""
+    return product(matrix[None], right[None])[0]
 
 
 def _mean_exponential(a: Array) -> Array:

@@ -55,15 +55,14 @@ def _riding(tau, throw):
 
 
 @kernel
-def _contact(throw, riding):
-    """Return n_1 of one feed, of its impact only or including the force while it rides."""
+def _contact(throw):
+    """Return n_1 of one feed, of its impact and of the force while it rides."""
     if throw <= 1.0:
-        return 1j * throw if riding else 0j
+        return 1j * throw
     start, end = _landing(throw)
     impulse = throw * (math.cos(end) - math.cos(start)) + end - start
     coefficient = impulse * cmath.exp(-1j * end)
-    if riding:
-        coefficient += _riding(start, throw) - _riding(end - 2 * math.pi, throw)
+    coefficient += _riding(start, throw) - _riding(end - 2 * math.pi, throw)
     return coefficient * (1 / math.pi)
 
 
@@ -74,9 +73,9 @@ def _landings(throw, out):
 
 
 @kernel
-def _contacts(throw, riding, out):
+def _contacts(throw, out):
     for i in range(len(throw)):
-        out[i] = _contact(throw[i], riding)
+        out[i] = _contact(throw[i])
 
 
 def flight(throw_coefficient: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -102,18 +101,16 @@ def flight(throw_coefficient: Any) -> tuple[NDArray[np.float64], NDArray[np.floa
     return out[:, 0].reshape(throw.shape), out[:, 1].reshape(throw.shape)
 
 
-def contact_coefficient(throw_coefficient: Any, riding: bool = True) -> NDArray[np.complex128]:
+def contact_coefficient(throw_coefficient: Any) -> NDArray[np.complex128]:
     """Return the first Fourier coefficient of the contact force over one turn.
 
-    N_1 = (1/pi) int_0^2pi N e^(-j tau) dtau of eq. (12), divided by the weight of the feed.
+    N_1 = (1/pi) int_0^2pi N e^(-j tau) dtau of eq. (12), divided by the weight of the feed. The
+    force while the feed rides is included; the paper keeps only the impact.
 
     Parameters
     ----------
     throw_coefficient : array_like
         k_p [1].
-    riding : bool
-        Whether to include the force while the feed rides, as is correct; the paper keeps only the
-        impact.
 
     Returns
     -------
@@ -122,7 +119,7 @@ def contact_coefficient(throw_coefficient: Any, riding: bool = True) -> NDArray[
     """
     throw = np.asarray(throw_coefficient, float)
     out = np.empty(throw.size, complex)
-    _contacts(throw.ravel(), riding, out)
+    _contacts(throw.ravel(), out)
     return out.reshape(throw.shape)
 
 

@@ -98,17 +98,62 @@ def test_a_trajectory_shows_the_random_force_of_its_seed():
     assert "random_force" not in MODEL.simulate(Params(), Settings(), 3).quantities
 
 
+def lives_of_noisy_means(logarithm, noise, end):
+    """Return the bias and the scatter of 400 lives over the true one, and the share in error.
+
+    The 13 nodes are those of a path, finer at small growth; both functions are of the place in it.
+    """
+    rng = np.random.default_rng(5)
+    place = np.linspace(0.0, 1.0, 13)
+    x = np.expm1(place * np.log(9)) / 8
+    fine = np.linspace(0.0, end, 2001)
+    true = np.trapezoid(np.exp(-logarithm(np.log1p(8 * fine) / np.log(9))), fine)
+    spread = noise(place)
+    means = np.exp(logarithm(place)) * rng.gamma(spread**-2, spread**2, (400, 13))
+    life, error = np.array([FittedWear(x, mean, spread * mean).life(end) for mean in means]).T
+    within = np.abs(life - true) < NINE_IN_TEN * error
+    return life.mean() / true - 1, life.std() / true, within.mean()
+
+
 def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
     rng = np.random.default_rng(4)
     t = np.linspace(0.0, 1.0, 13)
     true = 1.0 - 2.0 * t + 0.5 * t**3
-    fitted_rates = []
+    off, error = [], []
     for _ in range(400):
-        coefficient, covariance = fit(t, np.exp(true) * rng.gamma(5.0, 0.2, 13))
-        fitted_rates.append((coefficient.sum() - true[-1], np.sqrt(covariance.sum())))
-    off, error = np.array(fitted_rates).T
-    assert abs(np.exp(off).mean() - 1) < 0.15
-    assert error.mean() == pytest.approx(off.std(), rel=0.25)
+        level, covariance = fit(np.exp(true) * rng.gamma(5.0, 0.2, 13), np.ones(13))
+        off.append(level - true)
+        error.append(np.sqrt(np.diag(covariance)))
+    assert np.abs(np.exp(off).mean(axis=0) - 1).max() < 0.05
+    assert np.mean(error, axis=0) == pytest.approx(np.std(off, axis=0), rel=0.25)
+
+
+@pytest.mark.parametrize("end", [0.25, 1.0])
+def test_a_wear_rate_that_bends_twice_along_the_path_is_followed(end):
+    """Twice as fast within a third of the path, as where a second kind of contact sets in."""
+    bias, _, within = lives_of_noisy_means(
+        lambda place: 0.3 * np.tanh((place - 0.5) / 0.1), lambda place: 0.06 + 0 * place, end
+    )
+    assert abs(bias) < 0.015
+    assert 0.87 < within < 0.96
+
+
+def test_a_life_has_the_noise_of_its_own_part_of_the_path():
+    bias, _, within = lives_of_noisy_means(
+        lambda place: 0.4 * place,
+        lambda place: np.where(np.abs(place - 0.5) < 0.2, 0.15, 0.03),
+        0.5,
+    )
+    assert abs(bias) < 0.01
+    assert 0.86 < within < 0.94
+
+
+def test_a_noisier_mean_makes_no_longer_life():
+    bias, scatter, within = lives_of_noisy_means(
+        lambda place: 0 * place, lambda place: 0.4 + 0 * place, 1.0
+    )
+    assert abs(bias) < 2 * scatter / 20
+    assert 0.86 < within < 0.94
 
 
 @pytest.mark.parametrize(("nodes", "noise"), [(7, 0.1), (14, 0.04)])
@@ -130,6 +175,22 @@ def test_a_fit_of_next_to_nothing_is_no_overflow():
     rate = np.array([1e-300, 1e-3, 1e-250, 1.0, 1e-200, 1e3, 1e-300, 1e-300, 1e-280, 1e-300])
     wear = FittedWear(np.linspace(0.0, 1.0, 10), rate, rate)
     assert np.isposinf(wear.life(1.0)[0]) or wear.life(1.0)[0] > 0
+
+
+@pytest.mark.parametrize("noise", [0.01, 0.2])
+def test_a_life_begins_and_ends_with_the_path(noise):
+    wear = FittedWear(np.arange(5.0), np.full(5, 2.0), np.full(5, 2.0 * noise))
+    assert wear.life(0.0) == (0.0, 0.0)
+    assert wear.life(4.0 + 1e-9) == wear.life(4.0)
+    assert wear.life(4.0)[0] == pytest.approx(2.0)
+    assert wear.grown(1.0) == pytest.approx(2.0)
+
+
+def test_a_life_beyond_means_of_nothing_is_not_told():
+    rate = np.array([1.0, 2.0, 0.5, 1.0, 1.0, 0.1, *np.zeros(8)])
+    wear = FittedWear(np.linspace(0.0, 1.0, 14), rate, rate)
+    assert np.isfinite(wear.life(0.2)).all()
+    assert np.isposinf(wear.life(1.0)[0])
 
 
 @pytest.mark.slow

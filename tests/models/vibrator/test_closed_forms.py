@@ -5,11 +5,11 @@ import pytest
 from machines import SYMMETRIC, UNDAMPED, net_torques
 from moments import vibratory_moments
 
-from models.vibrator.paper import closed_forms as cf
-from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.parameters import Params
 from models.vibrator.theory.averaged import disphasing, feed_gravity
 from models.vibrator.theory.feed import contact_coefficient
+from tests.support import vibrator_papers as cf
+from tests.support.vibrator_papers import combined_centre, reduced_inertia, reduced_mass
 
 
 def quantities(p, w):

@@ -5,9 +5,9 @@ from criterion import integral, minimising_angle
 from machines import SYMMETRIC, UNDAMPED, plausible
 from moments import vibratory_moments
 
-from models.vibrator.paper import closed_forms as cf
-from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.theory.averaged import disphasing
+from tests.support import vibrator_papers as cf
+from tests.support.vibrator_papers import combined_centre, reduced_inertia, reduced_mass
 
 CONSERVATIVE = {"damping_ratio": 0.0, "mount_damping_ratio": 0.0, "feed_mass": 0.0}
 

@@ -8,14 +8,14 @@ from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
 from models.vibrator.lanes.machines import prepared
 from models.vibrator.lanes.orbit import find_orbits
-from models.vibrator.paper import closed_forms
-from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import REGIMES, Params, Settings
 from models.vibrator.start import fast
 from models.vibrator.start.regimes import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, wrapped
 from models.vibrator.start.synchronous import propose, search
 from models.vibrator.theory import averaged
+from tests.support import vibrator_papers as closed_forms
+from tests.support.vibrator_papers import combined_centre, reduced_inertia, reduced_mass
 from uq.contract import Status
 
 

@@ -12,6 +12,7 @@ from scipy.stats import binomtest
 
 from uq.assess.findings import Findings
 from uq.result.elements import independent_rows, labels, named_elements, replicates_of
+from uq.result.result import Result
 from uq.result.result_file import failed
 
 
@@ -20,7 +21,7 @@ class Checker:
 
     def __init__(self, ds):
         self.ds, self.rows = ds, independent_rows(ds)
-        self.findings = Findings(ds)
+        self.findings = Findings(Result(ds))
 
     def wrong(self, conclusions):
         """Return what is wrong with an answer, in words."""
@@ -55,7 +56,7 @@ class Checker:
         yield from denied_mixing(self.ds, conclusions)
         yield from denied_levels(self.ds, conclusions)
         yield from denied_enough(self.ds, conclusions)
-        shown = [self.ds.sizes["sample"], *([conclusions.failed] if conclusions.failed else [])]
+        shown = [self.ds.sizes["row"], *([conclusions.failed] if conclusions.failed else [])]
         counts = re.sub(r"(?<=\d) (?=\d{3}\b)", "", conclusions.rows_sentence)
         if sorted(numbers_in(counts)) != sorted(shown):
             yield conclusions.rows_sentence
@@ -271,7 +272,7 @@ class Checker:
         values = self.values(quantity)
         # Rows that are not independent are named, too.
         (every,) = named_elements(self.ds, quantity.name)
-        everything, everywhere = every.values, self.ds["sample"].values
+        everything, everywhere = every.values, self.ds["row"].values
         for number, life in re.findall(r"(\d+) \(([\d.e+-]+)", earliest_rows.first):
             (row_value,) = everything[everywhere == int(number)]
             rank = (everything < row_value).sum()

@@ -80,7 +80,7 @@ def _denied_limit(event, x, hits):
 def denied_advice(ds, advice, conclusions):
     if advice.rule == "rows" and advice.rows is not None:
         wanted, now = re.match(r"\D*([\d ]+) rows .*instead of ([\d ]+):", advice.text).groups()
-        if int(now.replace(" ", "")) != ds.sizes["sample"]:
+        if int(now.replace(" ", "")) != ds.sizes["row"]:
             yield advice.text
         if not 0 <= int(wanted.replace(" ", "")) - advice.rows + 1 < 0.11 * advice.rows + 1:
             yield advice.text

@@ -3,6 +3,7 @@
 from html.parser import HTMLParser
 
 from uq.render.html.page import page
+from uq.result.result import Result
 
 
 class Page(HTMLParser):
@@ -31,4 +32,4 @@ class Page(HTMLParser):
 
 
 def read(ds):
-    return Page(page(ds, "OUT.nc"))
+    return Page(page(Result(ds), "OUT.nc"))

@@ -9,6 +9,7 @@ from uq.assess import sensitivities as estimation
 from uq.assess.sensitivity_json import sensitivity_json
 from uq.indices.methods import METHODS
 from uq.indices.sample import DesignSample
+from uq.result.result import Result
 
 INPUTS = ("x1", "x2", "x3")
 
@@ -27,9 +28,9 @@ def ishigami(method="saltelli", samples=128, replicates=8, seed=1, **more_design
     )
 
 
-def sensitivities(*asked, **more):
+def sensitivities(ds, *asked, **more):
     """Return the indices of a result as ``uq sensitivity --json`` has them."""
-    return sensitivity_json(estimation.sensitivities(*asked, **more))
+    return sensitivity_json(estimation.sensitivities(Result.of(ds), *asked, **more))
 
 
 def indices(ds, method=None, output=None):

@@ -17,6 +17,7 @@ from uq.files.whole_files import write_result
 from uq.render.figures.catalogue import drawables
 from uq.render.html.page import write_report
 from uq.render.trace.trace import traced
+from uq.result.result import Result
 from uq.result.row_choice import lowest_row
 from uq.study.installed_models import find_model
 from uq.text.keys import key_of
@@ -37,7 +38,7 @@ def with_period(samples=200, seed=0):
         "flag_values": np.arange(-1, 4, dtype=np.int8),
         "flag_meanings": " ".join(("none", *LABELS)),
     }
-    ds = ds.assign({"period": ("sample", codes.astype(np.int8), attrs)})
+    ds = ds.assign({"period": ("row", codes.astype(np.int8), attrs)})
     return asking(ds, outputs=["y", "period"]), codes
 
 
@@ -70,7 +71,7 @@ def test_failed_rows_bound_a_share():
 
 def test_each_number_has_a_key():
     ds, codes = with_period()
-    traced_number = traced(ds, "categories/period/1")
+    traced_number = traced(Result(ds), "categories/period/1")
     assert traced_number.equal and traced_number.numbers["share"] == (codes == 1).mean()
     assert traced_number.estimators[0].does
 
@@ -112,7 +113,7 @@ def test_indices_are_those_of_each_label():
 def test_a_label_may_hold_what_separates_the_parts_of_a_name(label):
     ds, codes = with_period(2000)
     ds["period"].attrs["flag_meanings"] = " ".join(("none", LABELS[0], label, *LABELS[2:]))
-    sites = ds.assign(period=(("sample", "site"), codes[:, None].astype(np.int8), ds.period.attrs))
+    sites = ds.assign(period=(("row", "site"), codes[:, None].astype(np.int8), ds.period.attrs))
     for dataset, name in (
         (ds, "period"),
         (sites.assign_coords(site=["left"]), "period[site=left]"),
@@ -125,14 +126,14 @@ def test_a_label_may_hold_what_separates_the_parts_of_a_name(label):
             key_of("outputs", target, "variance", verb="levels"),
             key_of("categories", name, label, "share"),
         ):
-            assert traced(dataset, key).equal
+            assert traced(Result(dataset), key).equal
 
 
 def with_sites(samples=200):
     """Return a result with a period at each of two sites."""
     ds, codes = with_period(samples)
     both = np.column_stack([codes, codes[::-1]]).astype(np.int8)
-    ds = ds.assign({"period": (("sample", "site"), both, ds["period"].attrs)})
+    ds = ds.assign({"period": (("row", "site"), both, ds["period"].attrs)})
     return ds.assign_coords(site=["left", "right"]), both
 
 
@@ -142,7 +143,7 @@ def test_a_category_with_dimensions_has_shares_of_each_element(uq, folder):
     assert list(categories) == ["period[site=left]", "period[site=right]"]
     for i, of in enumerate(categories.values()):
         assert of["1"]["share"] == (both[:, i] == 1).mean()
-    traced_number = traced(ds, "categories/period[site=left]/1")
+    traced_number = traced(Result(ds), "categories/period[site=left]/1")
     assert traced_number.equal and traced_number.numbers["share"] == (both[:, 0] == 1).mean()
     assert list(compared(ds, ds)["categories"]) == list(categories)
     indices = sensitivities(ds, "regional", "period[site=left]")["outputs"]
@@ -168,11 +169,12 @@ def test_a_figure_shows_the_shares_of_each_label():
     with pytest.raises(InputError, match="'y' is no category"):
         plots.shares(ds, "y")
     assert {"shares-period"} == {
-        picture.file for picture in drawables({"shares": plots.FIGURES["shares"]}, Findings(ds))
+        picture.file
+        for picture in drawables({"shares": plots.FIGURES["shares"]}, Findings(Result(ds)))
     }
 
 
 def test_it_has_no_thresholds_quantiles_or_lowest_row():
     ds, _ = with_period()
     with pytest.raises(InputError, match="'period' is a category, not a number"):
-        lowest_row(ds, "period")
+        lowest_row(Result(ds), "period")

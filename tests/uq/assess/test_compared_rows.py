@@ -7,6 +7,7 @@ from nested_studies import nested_result
 
 from uq.assess.pairing import Kinship, kinship
 from uq.contract import Status
+from uq.result.result import Result
 from uq.stats.intervals import wilson_interval
 
 ENDS = ("value", "low", "high")
@@ -33,7 +34,7 @@ def test_rows_that_failed_count_no_more_than_rows_that_are_not_there():
     failing = with_status(other, lost, Status.RAISED)
     failing["regime"][lost], failing["angle"][lost], failing["work"][lost] = -1, np.nan, np.nan
     comparison = compared(whole, failing)
-    without = compared(whole, other.isel(sample=slice(40, None)))
+    without = compared(whole, other.isel(row=slice(40, None)))
     assert comparison["b"]["status"]["raised"] == 40
     for label in ("slow", "fast"):
         expected = pytest.approx(apart(without["regime"][label]), rel=1e-9)
@@ -88,8 +89,11 @@ def test_elements_of_one_result_alone_are_named():
 
 def test_replicates_are_pairs_only_where_both_results_have_as_many():
     four, eight = (linear("sobol", samples=16, replicates=count) for count in (4, 8))
-    assert kinship(four, linear("halton", samples=32, replicates=4)) is Kinship.REPLICATES
-    assert kinship(four, eight) is Kinship.UNKNOWN
+    assert (
+        kinship(Result(four), Result(linear("halton", samples=32, replicates=4)))
+        is Kinship.REPLICATES
+    )
+    assert kinship(Result(four), Result(eight)) is Kinship.UNKNOWN
 
 
 @pytest.mark.parametrize(("method", "replicates"), [("monte-carlo", 1), ("sobol", 4)])
@@ -112,7 +116,7 @@ def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(metho
 def test_rows_that_differ_but_change_no_side_are_not_identical(method, replicates):
     ds = asking(linear(method, replicates=replicates), thresholds={"y": 5.0})
     moved = with_output(ds, "y", 5.0 + 0.99 * (ds["y"].values - 5.0))
-    both, n = kinds(method, replicates=replicates), ds.sizes["sample"]
+    both, n = kinds(method, replicates=replicates), ds.sizes["row"]
     other = with_output(both, "angle", 0.5 * both["angle"].values)
     most = 1 - 0.025 ** (1 / n)
     assert most == pytest.approx(3.7 / n, rel=0.04)
@@ -135,7 +139,7 @@ def test_a_nested_result_is_identical_to_itself_alone():
     )
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
     assert comparison["outputs"]["y"]["mean"]["difference"] == same
-    moved = with_output(ds, "y", ds["y"].values + np.arange(ds.sizes["sample"]) % 2)
+    moved = with_output(ds, "y", ds["y"].values + np.arange(ds.sizes["row"]) % 2)
     comparison = compared(ds, moved)
     assert comparison["pairing"] == "unknown"
     assert comparison["outputs"]["y"]["mean"]["difference"]["low"] < 0.5

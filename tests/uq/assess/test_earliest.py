@@ -13,6 +13,7 @@ from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
 from uq.render.html.embedded_rows import rows_inside
 from uq.result.elements import independent_rows, named_elements
+from uq.result.result import Result
 from uq.result.row_choice import lowest_row
 
 
@@ -33,20 +34,20 @@ def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
     ds = lived(lambda x1, x4: 3600 * np.exp(-x4 - 0.3 * x1))
     earliest = answer(ds).lead.earliest
     order = np.argsort(ds["life"].values)[:3]
-    assert earliest.rows == tuple(ds["sample"].values[order])
+    assert earliest.rows == tuple(ds["row"].values[order])
     named = re.findall(r"(\d+) \(([\d.e+]+)", earliest.first)
     assert [int(number) for number, _ in named] == list(earliest.rows)
     shown = [float(life) * earliest.unit.per for _, life in named]
     assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
     assert earliest.command == "uq row OUT --lowest life"
-    assert lowest_row(ds, "life").number == earliest.rows[0]
+    assert lowest_row(Result(ds), "life").number == earliest.rows[0]
 
 
 def test_commands_that_compute_rows_name_a_model_that_is_not_installed():
-    findings = Findings(kinds(analysis={"outputs": ["life"]}))
-    assert answer(findings.ds).lead.earliest.command.endswith("]' --model FILE")
+    findings = Findings(Result(kinds(analysis={"outputs": ["life"]})))
+    assert answer(findings.result).lead.earliest.command.endswith("]' --model FILE")
     assert rows_inside(findings, "a.nc")["model"] == " --model FILE"
-    assert rows_inside(Findings(lived(lambda x1, x4: x1)), "a.nc")["model"] == ""
+    assert rows_inside(Findings(Result(lived(lambda x1, x4: x1))), "a.nc")["model"] == ""
 
 
 def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():
@@ -128,7 +129,7 @@ def test_replicates_show_what_differs_and_one_design_alone_does_not():
     earliest = answer(ds).lead.earliest
     assert earliest.inputs[0].name == "x4"
     rows = independent_rows(ds)
-    assert earliest.of == rows.sizes["sample"]
+    assert earliest.of == rows.sizes["row"]
     assert answer(lived(law, 512, "sobol")).lead.earliest.sentence == ""
 
 
@@ -177,7 +178,7 @@ def test_page_terminal_and_json_say_the_same():
     html = str(fragment(conclusions))
     assert "What ends first" in html and lead_rows.command in html
     assert lead_rows.sentence in repr(conclusions) and lead_rows.first in repr(conclusions)
-    plain = answer_json(conclude(Findings(ds)))["quantities"]["life"]["earliest"]
+    plain = answer_json(conclude(Findings(Result(ds))))["quantities"]["life"]["earliest"]
     assert (
         plain["lives"] == dict(zip(map(str, lead_rows.rows), lead_rows.lives, strict=True))
         and plain["sentence"] == lead_rows.sentence

@@ -9,8 +9,9 @@ import uq
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.summary import summarise
 from uq.assess.summary_table import summary
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import failed_bounds_text, share_text
+from uq.stats.estimate_text import failed_bounds_text
 from uq.stats.intervals import share_interval
 
 ROWS = 1000
@@ -82,11 +83,16 @@ def test_values_and_angles_have_bounds_too():
     value = outputs["y"]["quantiles"]
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
-    bounds = summarise(ds).outputs["y"].find("quantiles", "0.05").failed
+    bounds = summarise(Result(ds)).outputs["y"].find("quantiles", "0.05").failed
     assert failed_bounds_text(bounds).startswith("up to")
     highest = summarised(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
     assert highest["failed_high"] is None and "failed_high_never" not in highest
-    highest = summarise(asking(ds, quantiles=[0.95])).outputs["y"].find("quantiles", "0.95").failed
+    highest = (
+        summarise(Result(asking(ds, quantiles=[0.95])))
+        .outputs["y"]
+        .find("quantiles", "0.95")
+        .failed
+    )
     assert failed_bounds_text(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
     assert len(whole) and outputs["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth
@@ -138,7 +144,7 @@ def test_regimes_count_rows_that_failed_before_they_had_one():
     }
     codes = (np.arange(400) < 100).astype(np.int8)
     codes[lost] = -1
-    ds = with_status(ds.assign(regime=("sample", codes, attrs)), lost, 2)
+    ds = with_status(ds.assign(regime=("row", codes, attrs)), lost, 2)
     high = summarised(ds)["regime"]["high"]
     assert high["share"] == pytest.approx(60 / 360)
     assert high["failed_low"] < 0.15 < 0.25 < high["failed_high"]
@@ -146,8 +152,6 @@ def test_regimes_count_rows_that_failed_before_they_had_one():
 
 def test_words_say_what_the_failed_rows_leave_open():
     bounds = Estimate(low=0.107, high=0.23)
-    text = share_text(Estimate(0.138, 0.117, 0.162), bounds)
-    assert text == "13.8 % (95 % interval 11.7 to 16.2 %; with failed rows 10.7 to 23.0 %)"
     assert failed_bounds_text(bounds) == "0.107 to 0.23"
     assert failed_bounds_text(None) == ""
     assert failed_bounds_text(Estimate()) == "no bound"

@@ -30,6 +30,7 @@ from uq.errors import InputError
 from uq.explore.rare_events import rare_event
 from uq.explore.updating import update
 from uq.learning.answer import learnt
+from uq.result.result import Result
 from uq.stats.order_statistics import rows_for_bound
 
 FAR = 1e12
@@ -105,7 +106,7 @@ def test_an_output_far_from_zero_shows_the_digits_that_tell_rows_apart():
     far = FAR + linear(samples=500)["y"].values
     ds = of_values(far, tolerance={"coverage": 0.95, "confidence": 0.95})
     assert summarised(ds)["outputs"]["z"]["sd"] == pytest.approx(np.std(far - FAR, ddof=1))
-    for statistic in summarise(ds).outputs["z"].statistics:
+    for statistic in summarise(Result(ds)).outputs["z"].statistics:
         if statistic.key[0] in ("mean", "quantiles", "tolerance"):
             assert float(statistic.words()) == pytest.approx(statistic.estimate.value, abs=0.06)
             assert len(set(statistic.interval().split(" to "))) == 2 - (

@@ -12,6 +12,7 @@ from uq.assess.expected_widths import expected_widths
 from uq.assess.findings import Findings
 from uq.assess.transforms import HEAVY, heaviness, tail_share
 from uq.render.html.indices import sensitivity_of
+from uq.result.result import Result
 
 
 def heavy(sign=1, shift=0.0, samples=64):
@@ -94,7 +95,7 @@ def test_an_output_without_a_heavy_tail_stands_as_it_is():
 
 def test_reports_say_what_the_indices_are_of():
     ds = asking(heavy(samples=128), outputs=["work"], sensitivity=["sobol"])
-    (method,) = sensitivity_of(Findings(ds))
+    (method,) = sensitivity_of(Findings(Result(ds)))
     (subject,) = method.subjects
     assert subject.words == "Logarithm of the meaning of work"
     assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.what
@@ -102,7 +103,7 @@ def test_reports_say_what_the_indices_are_of():
 
 def test_plans_and_convergence_name_and_judge_the_same_number():
     ds = heavy(samples=128)
-    work = expected_widths(asking(ds, outputs=["work", "y"]))
+    work = expected_widths(Result(asking(ds, outputs=["work", "y"])))
     assert work["work"].indices["ST"] == pytest.approx(work["y"].indices["ST"])
     table = uq.running_estimates(ds, "work")
     assert set(table[table["estimate"] == "ST x4"]["output"]) == {"log(work)"}
@@ -121,7 +122,7 @@ def test_variance_between_regimes_names_what_it_is_of():
     ds = linear(samples=256)
     attrs = {"role": "output", "kind": "category", "units": "1", "long_name": "regime"}
     attrs |= {"may_be_undefined": 0, "flag_values": [-1, 0, 1], "flag_meanings": "none low high"}
-    ds = ds.assign(regime=("sample", (ds["x4"].values > 0.5).astype(np.int8), attrs))
+    ds = ds.assign(regime=("row", (ds["x4"].values > 0.5).astype(np.int8), attrs))
     y = ds["y"].values
     ds = with_output(ds, "life", np.exp(y), "lifetime")
     ds = with_output(ds, "late", np.where(y > 9, np.inf, y), "lifetime")

@@ -12,6 +12,7 @@ import uq as api
 from uq.assess.fleet import fleet_of
 from uq.assess.level_shares import by_level
 from uq.errors import InputError
+from uq.result.result import Result
 
 
 def lognormal(sigma, **more):
@@ -53,8 +54,8 @@ def scaled_result(**options):
 
 def test_what_only_scales_a_life_has_a_known_share():
     ds = scaled_result(samples=400)
-    entry = by_level(ds).outputs["log(life)"]
-    plain = by_level(ds, plain=True).outputs["log(life)"]
+    entry = by_level(Result(ds)).outputs["log(life)"]
+    plain = by_level(Result(ds), plain=True).outputs["log(life)"]
     assert set(entry.integrated) == {"a", "b", "c"} and plain.integrated == ()
     total = sum(OF_LOG_LIFE.values())
     for level, variance in OF_LOG_LIFE.items():
@@ -72,12 +73,14 @@ def test_with_everything_integrated_shares_are_exact():
     """One row of each sample is enough: nothing that the rows cannot tell apart is left."""
     uncertain = {name: law for name, law in SCALING.items() if name != "z"}
     ds = computed(scaled(uncertain, units=1, repeats=1, samples=10))
-    entry = by_level(ds).outputs["log(life)"]
+    entry = by_level(Result(ds)).outputs["log(life)"]
     variances = {SHARED: 0.16, OWN: 0.09, CHANCE: 0.25}
     for level, variance in variances.items():
         assert entry.shares[level].numbers == pytest.approx([variance / 0.5] * 3, rel=1e-9)
     assert entry.variance == pytest.approx(0.5, rel=1e-9)
-    assert "set repeats" in by_level(ds, plain=True).outputs["log(life)"].shares[CHANCE].reason
+    assert (
+        "set repeats" in by_level(Result(ds), plain=True).outputs["log(life)"].shares[CHANCE].reason
+    )
 
 
 @pytest.mark.parametrize(
@@ -93,7 +96,7 @@ def test_with_everything_integrated_shares_are_exact():
 def test_what_is_not_integrated_on_one_level_needs_one_row_a_sample(level, units, repeats):
     uncertain = SCALING | {"z": NORMAL | {"level": level}}
     ds = computed(scaled(uncertain, units=units, repeats=repeats, samples=2000))
-    entry = by_level(ds).outputs["log(life)"]
+    entry = by_level(Result(ds)).outputs["log(life)"]
     variances = {SHARED: 0.16, OWN: 0.09, CHANCE: 0.25}
     variances[level] += 0.25
     for name, variance in variances.items():
@@ -107,13 +110,13 @@ def test_powers_that_cancel_do_not_vary():
     ds = computed(scaled(uncertain, units=1, repeats=1)).copy(deep=True)
     ds["life"].values[:] = np.exp(ds["z"].values / 2)
     ds["life"].attrs["scales"] = json.dumps({"a": 1.0, "c": -1.0})
-    entry = by_level(ds).outputs["log(life)"]
+    entry = by_level(Result(ds)).outputs["log(life)"]
     assert entry.shares[SHARED].numbers == (1.0, 1.0, 1.0)
-    first = fleet_of(ds, 1000).first[0.5]
+    first = fleet_of(Result(ds), 1000).first[0.5]
     assert first.estimate.value == pytest.approx(np.median(ds["life"]), rel=0.1)
     ds["life"].attrs["scales"] = json.dumps({"a": 1.0})
     with pytest.raises(InputError, match="a fleet of 1000 needs samples of as many units, now 1"):
-        fleet_of(ds, 1000)
+        fleet_of(Result(ds), 1000)
 
 
 @pytest.mark.parametrize(
@@ -124,15 +127,15 @@ def test_what_to_set_is_possible_in_the_design(method, change):
     design = {"method": method, "units": 1, "repeats": 1, "samples": 64, "replicates": 8}
     ds = computed(scaled(uncertain, **design))
     (reason,) = {
-        by_level(ds, plain=True).outputs["log(life)"].shares[level].reason
+        by_level(Result(ds), plain=True).outputs["log(life)"].shares[level].reason
         for level in (OWN, SHARED)
     }
     assert reason.startswith(
         f"a single unit cannot show what is shared and what is own; set units = 2{change}"
     )
     with pytest.raises(InputError, match=rf"in \[design\] set units = 9{change}"):
-        fleet_of(ds, 9, plain=True)
-    band = fleet_of(ds, 1, [1.0], plain=True).by[1.0][0].low.reason
+        fleet_of(Result(ds), 9, plain=True)
+    band = fleet_of(Result(ds), 1, [1.0], plain=True).by[1.0][0].low.reason
     assert band == reason
 
 
@@ -140,7 +143,7 @@ def test_what_the_rows_cannot_tell_apart_stays_so():
     """Two levels with something else that varies, in one row of each sample."""
     uncertain = SCALING | {"z": NORMAL, "c": LISTED | {"level": SHARED}}
     ds = computed(scaled(uncertain, units=1, repeats=1))
-    entry = by_level(ds).outputs["log(life)"]
+    entry = by_level(Result(ds)).outputs["log(life)"]
     assert "set units = 2" in entry.shares[SHARED].reason and np.isnan(entry.shares[OWN].value)
     assert entry.shares[CHANCE].numbers == (0.0, 0.0, 0.0)
     assert "c not integrated: its law is one of listed values" in entry.sentences
@@ -168,8 +171,8 @@ TRUNCATED = {"distribution": "uniform", "lower": 0.2, "upper": 3.0}
 def test_each_by_its_law_given_the_rest(uncertain, tables):
     """The plain shares of many rows lie in the intervals."""
     ds = scaled_result(uncertain=uncertain, tables=tables.items(), samples=4000)
-    entry = by_level(ds).outputs["log(life)"]
-    plain = by_level(ds, plain=True).outputs["log(life)"]
+    entry = by_level(Result(ds)).outputs["log(life)"]
+    plain = by_level(Result(ds), plain=True).outputs["log(life)"]
     assert "a" in entry.integrated
     assert entry.variance == pytest.approx(plain.variance, rel=0.03)
     for level in (SHARED, OWN, CHANCE):
@@ -180,16 +183,18 @@ def test_each_by_its_law_given_the_rest(uncertain, tables):
 
 def test_what_is_not_integrated_says_why():
     never = computed(scaled(tables={"settings": {"never_above": 1.0}}.items()))
-    (name, entry), *_ = by_level(never).outputs.items()
+    (name, entry), *_ = by_level(Result(never)).outputs.items()
     assert name == "rank(life)" and entry.integrated == ()
     assert "b and a and c not integrated: the lives are replaced by their ranks" in entry.sentences
     cut = computed(scaled(tables={"settings": {"horizon": 2.0}}.items()))
-    assert "replaced by their ranks" in " ".join(by_level(cut).outputs["rank(life)"].sentences)
+    assert "replaced by their ranks" in " ".join(
+        by_level(Result(cut)).outputs["rank(life)"].sentences
+    )
 
 
 def test_replicates_are_what_is_independent_where_inputs_are_integrated():
     ds = computed(scaled(method="sobol", samples=32, replicates=8))
-    shares = by_level(ds).outputs["log(life)"].shares
+    shares = by_level(Result(ds)).outputs["log(life)"].shares
     total = sum(OF_LOG_LIFE.values())
     for level, variance in OF_LOG_LIFE.items():
         assert shares[level].low < variance / total < shares[level].high

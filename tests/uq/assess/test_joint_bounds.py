@@ -16,6 +16,7 @@ from uq.assess.findings import Findings
 from uq.assess.joint_bounds import Needed, rows_needed
 from uq.errors import InputError
 from uq.result.elements import analysis_of
+from uq.result.result import Result
 from uq.result.result_file import failed
 from uq.stats.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
 from uq.study.definition import study_from_text
@@ -86,7 +87,7 @@ def test_a_summary_has_them_beside_each_output():
     got = [outputs[f"work[side={side}]"]["joint_bounds"]["upper"] for side in ("left", "right")]
     got += [-outputs["angle"]["joint_bounds"]["lower"], outputs["angle"]["joint_bounds"]["upper"]]
     assert got == expected
-    assert rows_needed(ds, analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
+    assert rows_needed(Result(ds), analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
 
 
 def test_lives_are_never_or_beyond_the_horizon():
@@ -117,7 +118,7 @@ def test_bounds_that_lack_rows_are_not_settled():
         "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
         "analysis": {"joint_bounds": {"y": "both"}, "max_failed": 0.2},
     }
-    few = Findings(computed(study_of(tables)))
+    few = Findings(Result(computed(study_of(tables))))
     sentence = "the joint bounds that the study asks for need 93 rows"
     assert f"Not enough rows: {sentence}; about 93 rows in all would settle it." in verdict(few)
     failing = computed(study_of(tables | {"settings": {"fail_above": 0.9}}))
@@ -125,7 +126,7 @@ def test_bounds_that_lack_rows_are_not_settled():
     joint = summarised(failing)["outputs"]["y"]["joint_bounds"]
     assert joint == {"lower": None, "upper": None, "rows_needed": None}
     assert np.isnan(uq.summary(failing)["joint_rows_needed"].item())
-    findings = Findings(failing)
+    findings = Findings(Result(failing))
     sentence = "oo many rows failed for the joint bounds that the study asks for"
     assert f"T{sentence}. More rows would not help." in verdict(findings)
     advice = {remedy.rule: remedy.text for remedy in conclude(findings).advice}
@@ -160,7 +161,7 @@ def test_mistakes_are_one_line(asked, method, words):
 
 def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
-    promises = {quantity.name: quantity.promise for quantity in quantities(Findings(ds))}
+    promises = {quantity.name: quantity.promise for quantity in quantities(Findings(Result(ds)))}
     bounds = summarised(ds)["outputs"]
     work, angle = promises["work[side=left]"], promises["angle"]
     assert work.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(work.lower)
@@ -172,14 +173,16 @@ def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     assert " and stay below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
     assert not promises["life[side=left,depth=0.5]"].joint
-    promise = answer_json(conclude(Findings(ds)))["quantities"]["work[side=left]"]["promise"]
+    promise = answer_json(conclude(Findings(Result(ds))))["quantities"]["work[side=left]"][
+        "promise"
+    ]
     assert promise["joint"] == ["work", "angle"] and promise["upper"] == work.upper
 
 
 def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
     ds = kinds(samples=80, analysis={"joint_bounds": {"work": "upper"}})
     promise = next(
-        quantity for quantity in quantities(Findings(ds)) if quantity.output == "work"
+        quantity for quantity in quantities(Findings(Result(ds))) if quantity.output == "work"
     ).promise
     assert np.isnan(promise.upper) and "With 95 % confidence" not in promise.sentence
     assert promise.basis.startswith("No joint tolerance bound: it needs 93 rows.")
@@ -192,6 +195,6 @@ def test_both_joint_bounds_of_one_output_are_one_sentence():
         "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
         "analysis": {"joint_bounds": {"y": "both"}},
     }
-    (quantity,) = quantities(Findings(computed(study_of(tables))))
+    (quantity,) = quantities(Findings(Result(computed(study_of(tables)))))
     words = r"With 95 % confidence, at least 95 % stay above \S+ and stay below \S+\."
     assert re.fullmatch(words, quantity.promise.sentence), quantity.promise.sentence

@@ -5,10 +5,11 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
-from uq.assess import life_quantiles
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.errors import InputError
+from uq.result.result import Result
 from uq.stats.location_scale import FAMILIES, anderson_darling, fit
 from uq.stats.order_statistics import rows_for_bound
 
@@ -68,7 +69,7 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
     good, bad = fits.loc[right], fits.loc[wrong]
     assert good["p_value"] > 0.05 > bad["p_value"]
     assert "rejected" in bad["refused"] and bad[["B10", "shape", "median"]].isna().all()
-    for name, p in life_quantiles.B_LIVES.items():
+    for name, p in B_LIVES.items():
         assert good[f"{name}_low"] < law.ppf(p) < good[f"{name}_high"]
         assert good[name] == pytest.approx(law.ppf(p), rel=0.25)
     for name in {"weibull": ("shape", "scale"), "lognormal": ("median", "sigma")}[right]:
@@ -78,7 +79,7 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
 def test_fits_are_a_table_and_in_json():
     life = lives(sample(LOGNORMAL))
     table = uq.life_fits(life, "life")
-    entries = summary_json(summarise(life, fits=True))["outputs"]["life"]["fits"]
+    entries = summary_json(summarise(Result(life), fits=True))["outputs"]["life"]["fits"]
     assert table.index.to_list() == [("life", "weibull"), ("life", "lognormal")]
     good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
     assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]
@@ -174,7 +175,7 @@ def test_beside_quantiles_of_censored_rows_stand_those_of_kaplan_and_meier_as_b_
     assert entry["quantiles"]["0.5"]["kaplan_meier"] == entry["b_lives"]["B50"]
     plain = entry["quantiles"]["0.05"]
     assert plain["value"] is None and plain["censored"]
-    assert summarise(ds).outputs["life"].find("quantiles", "0.05").words() == "-"
+    assert summarise(Result(ds)).outputs["life"].find("quantiles", "0.05").words() == "-"
     low = plain["kaplan_meier"]
     assert low["low"] < WEIBULL.ppf(0.05) < low["high"] and "censoring" in low["assumes"]
 

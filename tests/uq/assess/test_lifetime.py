@@ -89,7 +89,7 @@ def test_other_designs_take_the_band_from_replicates(method):
     ds = linear(method, samples=64, replicates=8)
     ds = with_output(ds, "life", ds["y"].values, "lifetime")
     curve = survival(ds, "life").sel(time=5.0, method="ffill")
-    ends = ds.isel(sample=np.isin(ds["block"], [0, 5] if method == "saltelli" else [0]))
+    ends = ds.isel(row=np.isin(ds["block"], [0, 5] if method == "saltelli" else [0]))
     shares = (ends["life"] > 5).groupby(ends["replicate"]).mean().values
     half = stats.t.ppf(0.975, 7) * stats.sem(shares)
     assert float(curve["high"] - curve["low"]) == pytest.approx(2 * half, rel=0.05)

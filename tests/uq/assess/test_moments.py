@@ -16,6 +16,7 @@ from uq.assess.summary_table import summary
 from uq.cli.summary_tables import show_summary
 from uq.files.whole_files import write
 from uq.render.html.outcomes import outcomes, result_tables
+from uq.result.result import Result
 from uq.stats.intervals import ONE_ROW
 from uq.stats.moments import moments, sd_interval, standard_deviation
 
@@ -60,12 +61,12 @@ def test_a_mean_whose_variance_is_open_comes_with_a_caution(capsys):
     assert moments(stats.expon().rvs(1000, random_state=rng)).caution is None
 
     ds = heavy(2.2)
-    summary = summarise(ds)
+    summary = summarise(Result(ds))
     entry = summarised(ds)["outputs"]["z"]
     assert entry["mean_interval"]["low"] and "too narrow" in entry["caution"]
-    (table,) = result_tables(outcomes(ds, summary))
+    (table,) = result_tables(outcomes(Result(ds), summary))
     assert any(entry["caution"] in cell.more for cell in table.rows[0])
-    show_summary(ds, summary)
+    show_summary(Result(ds), summary)
     assert "may be too narrow" in " ".join(capsys.readouterr().out.split())
 
 
@@ -95,7 +96,7 @@ def test_every_reader_reports_it():
         line["tail_k"] > 1 and np.isnan(line[["mean", "mean_low", "sd", "sd_low"]].tolist()).all()
     )
     assert enough(ds, "z").loc["z", "estimate"] == "median"
-    assert expected_widths(ds)["z"].mean is None
+    assert expected_widths(Result(ds))["z"].mean is None
     z = compared(ds, asking(light, outputs=["z"]))["outputs"]["z"]
     for estimate in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
         assert estimate["low"] is None and estimate["high"] is None
@@ -113,7 +114,7 @@ def test_every_reader_reports_it():
 )
 def test_a_variance_that_does_not_exist_is_not_apportioned(design, method):
     ds = linear(method=design, samples=1024)
-    share = stats.rankdata(ds["y"].values) / (ds.sizes["sample"] + 1)
+    share = stats.rankdata(ds["y"].values) / (ds.sizes["row"] + 1)
     ds = asking(with_output(ds, "z", stats.pareto(1.5).ppf(share)), outputs=["z"])
     entry = sensitivities(ds, method, "z")["outputs"]["z"]
     assert "log(z)" in entry["refused"] and "rank(z)" in entry["refused"]
@@ -126,7 +127,7 @@ def test_the_terminal_and_the_report_give_the_reason(uq, folder):
     write(ds, Path("z.nc").absolute())
     out = " ".join(uq("summary", "z.nc").out.split())
     assert "with k above 1 there is no mean; use quantiles" in out
-    table = next(result_tables(outcomes(ds, summarise(ds))))
+    table = next(result_tables(outcomes(Result(ds), summarise(Result(ds)))))
     cells = dict(zip(table.header, table.rows[0], strict=True))
     assert cells["mean"].text == "none" and "no mean" in cells["mean"].more
     assert "no mean" not in cells["sd"].more and "no variance" in cells["sd"].more

@@ -15,6 +15,7 @@ from uq.assess.survival import survival
 from uq.errors import InputError
 from uq.result.elements import are_independent, replicates_of
 from uq.result.nesting import one_of_each_sample
+from uq.result.result import Result
 from uq.stats.clusters import Clusters, dealt, linearised_means
 from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import sd_interval
@@ -99,10 +100,10 @@ def test_an_even_design_needs_replicates():
 
 def test_indices_come_from_one_row_of_each_sample():
     ds = nested_result(samples=300)
-    sensitivity_result = sensitivities(ds)
+    sensitivity_result = sensitivities(Result(ds))
     assert sensitivity_result.rows_used == 300
     assert ONE_ROW in sensitivity_result.targets["y"].indices.notes
-    few = sensitivities(nested_result(samples=16)).targets["y"]
+    few = sensitivities(Result(nested_result(samples=16))).targets["y"]
     assert few.refused.endswith(ONE_ROW)
 
 
@@ -141,12 +142,12 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
 
 def test_studies_with_one_seed_are_not_paired_row_by_row():
     ds, other = nested_result(), nested_result(seed=6)
-    assert kinship(ds, other) is Kinship.STRANGERS
-    assert kinship(ds, ds) is Kinship.ROWS_SAME
-    assert kinship(ds, nested_result(samples=32)) is Kinship.UNKNOWN
-    assert kinship(ds, linear(seed=5)) is Kinship.UNKNOWN
+    assert kinship(Result(ds), Result(other)) is Kinship.STRANGERS
+    assert kinship(Result(ds), Result(ds)) is Kinship.ROWS_SAME
+    assert kinship(Result(ds), Result(nested_result(samples=32))) is Kinship.UNKNOWN
+    assert kinship(Result(ds), Result(linear(seed=5))) is Kinship.UNKNOWN
     even = nested_result(method="sobol", replicates=4)
-    assert kinship(even, even) is Kinship.REPLICATES
+    assert kinship(Result(even), Result(even)) is Kinship.REPLICATES
     difference = compared(ds, other)["outputs"]["y"]["mean"]["difference"]
     assert difference["low"] < 0 < difference["high"]
 
@@ -155,14 +156,14 @@ def test_a_run_stops_by_intervals_of_samples():
     until = {"output": "y", "half_width": 0.01}
     study = nested(levels=SHARED_ALONE, samples=64, units=8, until=until)
     ds = computed(study)
-    estimate = interim_estimate(study.design, ds).estimate
+    estimate = interim_estimate(study.design, Result(ds)).estimate
     alone = mean_interval(one_of_each_sample(ds)["y"].values)  # at the only check
     assert (estimate.low, estimate.high) == pytest.approx(alone)
 
 
 def test_inputs_are_compared_with_their_laws_by_one_row_of_each_sample():
     ds = nested_result()
-    assert [len(values) for _, values in laws_and_values(ds).values()] == [16, 16, 16]
+    assert [len(values) for _, values in laws_and_values(Result(ds)).values()] == [16, 16, 16]
     assert [len(values) for values in drawn_inputs(nested()).values()] == [16, 16, 16]
 
 
@@ -178,12 +179,12 @@ def test_regimes_are_described_by_their_own_rows():
         "flag_meanings": "none calm wild",
     }
     codes = (ds["x1"].values > 0.7).astype(np.int8)
-    statistics = summarised(ds.assign(regime=("sample", codes, attrs)))
+    statistics = summarised(ds.assign(regime=("row", codes, attrs)))
     wild = statistics["regime"]["wild"]
     hits = codes[:: len(codes) // 100]
     low, high = share_interval(hits > 0)
     assert (wild["low"], wild["high"]) == pytest.approx((low, high), abs=0.01)
-    table = api.regimes(ds.assign(regime=("sample", codes, attrs)))
+    table = api.regimes(ds.assign(regime=("row", codes, attrs)))
     assert table["distance"].sel(regime="wild", parameter="x1") == 1.0
     assert table["distance_dummy"].max() > 0.1  # of 100 rows, not of 600
 
@@ -193,10 +194,10 @@ def test_a_damaged_nesting_is_refused():
 
     ds = nested_result()
     for fault in (
-        ds.assign_coords(unit=("sample", ds["unit"].values + 1)),
-        ds.assign_coords(world=("sample", -ds["world"].values)),
+        ds.assign_coords(unit=("row", ds["unit"].values + 1)),
+        ds.assign_coords(world=("row", -ds["world"].values)),
         ds.drop_vars("repeat"),
-        ds.assign_attrs(units=0),
+        ds.assign_attrs(units_per_sample=0),
         ds.assign_attrs(repeats=10**9),
     ):
         with pytest.raises(InputError, match="not a sound result"):

@@ -12,6 +12,7 @@ from uq.assess.answer.answer_json import answer_json
 from uq.assess.sensitivities import sensitivities
 from uq.assess.sensitivity_json import sensitivity_json
 from uq.render.html.page import page
+from uq.result.result import Result
 
 
 @pytest.fixture
@@ -22,7 +23,7 @@ def life(monkeypatch):
 
 
 def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
-    table = sensitivity_json(sensitivities(life))["outputs"]["log(life)"]["S1"]
+    table = sensitivity_json(sensitivities(Result(life)))["outputs"]["log(life)"]["S1"]
     ranking = answer_json(answer(life))["quantities"]["life"]["ranking"]
     shares = {
         k: v for contribution in ranking["contributions"] for k, v in contribution["inputs"].items()
@@ -31,7 +32,7 @@ def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
     percent = [round(100 * table["rate"][end]) for end in ("value", "low", "high")]
     text = "{} % ({} to {} %)".format(*percent)
     assert f"Rate contributes most: {text}" in ranking["sentence"]
-    text_of_page = re.sub(r"<[^>]+>", "", page(life, "life.nc")).replace("\xa0", " ")
+    text_of_page = re.sub(r"<[^>]+>", "", page(Result(life), "life.nc")).replace("\xa0", " ")
     assert text in text_of_page and f"{table['rate']['value']:.3f}" in text_of_page
     for other in re.findall(r"[Rr]ate[^.]{0,40}contributes most: (\d+ %[^)]*\))", text_of_page):
         assert other == text

@@ -12,7 +12,7 @@ from uq.assess.answer.answer_json import answer_json
 
 def values_that_err(size, design="monte-carlo", samples=1000, replicates=1, **asked):
     ds = asking(linear(design, samples=samples, replicates=replicates), outputs=["y"], **asked)
-    return with_output(ds, "y_error", np.full(ds.sizes["sample"], size))
+    return with_output(ds, "y_error", np.full(ds.sizes["row"], size))
 
 
 def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error():

@@ -15,6 +15,7 @@ from uq.assess.scaling import integrated, population
 from uq.assess.summary_table import summary
 from uq.assess.survival import survival
 from uq.result.elements import independent_rows
+from uq.result.result import Result
 from uq.sampling.laws import law_of
 from uq.sampling.log_sums import LogTerm, law_of_sum
 
@@ -190,10 +191,11 @@ def test_each_level_is_integrated_by_itself():
     shared = lognormal(0.3, level="shared")
     ds = computed(scaled_study(WHOLE | {"b": shared}, {"units": 4, "repeats": 1}, samples=50))
     rows = independent_rows(ds)
-    element = next(population(rows, ["life"]))
-    inputs = inputs_of(rows)
+    element = next(population(Result(rows), ["life"]))
+    inputs = inputs_of(Result(rows))
     unit_part, world = (
-        integrated(rows, element.declared, inputs, {level}).law for level in ("own", "shared")
+        integrated(Result(rows), element.declared, inputs, {level}).law
+        for level in ("own", "shared")
     )
     assert (unit_part.inputs, world.inputs) == (("a",), ("b",))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
@@ -250,7 +252,7 @@ def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
     """By quadrature of the probability that the life of each row is shorter."""
     inputs, tables, _ = CASES[case]
     ds = computed(scaled_study(inputs, samples=8, **tables))
-    law = next(population(ds, ["life"])).law
+    law = next(population(Result(ds), ["life"])).law
     mean, variance = law.moments
     logs = np.log(ds["life"].values)
     y = np.linspace(-8, 8, 16_001)

@@ -34,7 +34,7 @@ def test_inputs_of_a_regime_are_distinguished_from_those_of_the_rest():
 def test_labels_say_what_the_codes_mean():
     ds = with_status(kinds(), slice(3), Status.TIMED_OUT)
     words = uq.labels(ds["regime"])
-    assert words.dims == ("sample",)
+    assert words.dims == ("row",)
     assert list(words.values) == ["slow" if x <= 0.5 else "fast" for x in ds["x1"].values]
     assert words.attrs["long_name"] == ds["regime"].attrs["long_name"]
     assert list(uq.labels(ds["status"][2:4]).values) == ["timed-out", "ok"]
@@ -161,6 +161,6 @@ def test_regimes_that_are_not_there():
     with pytest.raises(InputError, match="has no regimes"):
         uq.regimes(linear())
     slow = kinds(samples=64)
-    slow = slow.isel(sample=slow["regime"].values == 0)
+    slow = slow.isel(row=slow["regime"].values == 0)
     with pytest.raises(InputError, match="no row is in the regime 'fast'"):
         summarised(slow, regime="fast")

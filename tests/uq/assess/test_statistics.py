@@ -36,12 +36,12 @@ def test_replicates_of_a_plain_sample_are_just_rows():
 def test_saltelli_is_described_by_its_independent_rows_and_counted_by_all():
     ds = linear("saltelli", samples=32, replicates=4, settings={"fail_above": 0.9})
     statistics = summarised(ds)
-    ends = ds.isel(sample=np.isin(ds["block"], [0, 5]))
+    ends = ds.isel(row=np.isin(ds["block"], [0, 5]))
     assert statistics["samples"] == 32 * 4 * 6 and statistics["rows_used"] == 32 * 4 * 2
     assert statistics["outputs"]["y"]["mean"] == pytest.approx(float(ends["y"].mean()))
     assert statistics["outputs"]["y"]["failed"] == int(ends["y"].isnull().sum())
     assert statistics["status"]["non-finite"] == int(ds["y"].isnull().sum())
-    assert sum(statistics["status"].values()) == ds.sizes["sample"]
+    assert sum(statistics["status"].values()) == ds.sizes["row"]
 
 
 @pytest.mark.parametrize("method", ["latin-hypercube", "sobol", "halton", "saltelli"])

@@ -12,6 +12,7 @@ from uq.errors import InputError
 from uq.execution import amending, local_cluster, row_folder, runner
 from uq.execution.options import RunOptions
 from uq.execution.status import run_status
+from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.workload import workload_of
 from uq.study.definition import study_from_text
@@ -28,11 +29,12 @@ def test_a_run_stops_at_the_first_look_that_knows_enough(tmp_path, method, repli
     of = study(half_width, samples=samples, method=method, replicates=replicates, **estimate)
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     sizes, stopped = stopping.interim_sizes(of.design), ds.attrs["samples"]
-    assert stopping.interim_estimate(of.design, ds).reached
+    assert stopping.interim_estimate(of.design, Result(ds)).reached
     assert stopped < samples
     earlier = [computed(of.with_samples(size)) for size in sizes if size < stopped]
     assert not any(
-        stopping.interim_estimate(of.design, earlier_rows).reached for earlier_rows in earlier
+        stopping.interim_estimate(of.design, Result(earlier_rows)).reached
+        for earlier_rows in earlier
     )
 
 
@@ -96,7 +98,7 @@ def whole(path):
 def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, design):
     of = study(0.1, **design)
     once = runner.run(of, "once.nc")
-    total = once.sizes["sample"]
+    total = once.sizes["row"]
     for place in ("chunk", "look", "cut"):
         path = folder / f"{place}.nc"
         with monkeypatch.context() as patch, pytest.raises(Killed):
@@ -155,7 +157,7 @@ def test_a_new_description_changes_no_number_of_rows(folder):
     named = replace(of, text=of.text + "\n# a remark\n")
     again = runner.run(named, "out.nc", progress=pytest.fail)
     assert again.attrs["study"] == named.text
-    assert again.attrs["samples"] == first.attrs["samples"] == again.sizes["sample"]
+    assert again.attrs["samples"] == first.attrs["samples"] == again.sizes["row"]
 
 
 def test_the_budget_is_that_of_the_file(folder):
@@ -222,7 +224,7 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
         seeded = with_seed(of, seed)
         ds = computed(seeded)
         for size in stopping.interim_sizes(seeded.design):
-            seen = stopping.interim_estimate(seeded.design, ds.isel(sample=slice(size)))
+            seen = stopping.interim_estimate(seeded.design, Result(ds.isel(row=slice(size))))
             if seen.reached:
                 break
         low, high = seen.estimate.numbers[1:]

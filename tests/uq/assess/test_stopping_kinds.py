@@ -11,11 +11,12 @@ from uq.assess.sensitivities import sensitivities
 from uq.assess.sensitivity_json import sensitivity_json
 from uq.errors import InputError
 from uq.execution import runner
+from uq.result.result import Result
 
 
 def seen_with_confidence(monkeypatch, confidence, of, ds):
     monkeypatch.setattr(stopping, "confidence", lambda design: confidence)
-    return stopping.interim_estimate(of.design, ds)
+    return stopping.interim_estimate(of.design, Result(ds))
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,7 @@ def test_a_b_life_may_rest_on_censored_rows():
     def look(b_life):
         until = {"output": name, "b_life": b_life, "half_width": 0.2}
         given = tables(until, samples=256) | {"uncertain": PAIR}
-        return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, ds)
+        return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, Result(ds))
 
     assert look("B50").half_width < 0.2
     assert look("B90").half_width == np.inf
@@ -69,7 +70,7 @@ def test_an_index_is_that_of_the_sensitivity(monkeypatch, more, widest):
     of = study(1.0, samples=64, method="saltelli", replicates=8, index="S1", **more)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    index_values = sensitivity_json(sensitivities(ds))["outputs"]["y"]["S1"]
+    index_values = sensitivity_json(sensitivities(Result(ds)))["outputs"]["y"]["S1"]
     halves = {
         name: (estimate["high"] - estimate["low"]) / 2 for name, estimate in index_values.items()
     }
@@ -98,7 +99,7 @@ def test_shapley_effects_need_no_replicates(tmp_path):
     of = study(0.05, samples=4096, method="shapley", index="shapley", difference=["x4", "x1"])
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     assert ds.attrs["samples"] < 4096
-    seen = stopping.interim_estimate(of.design, ds)
+    seen = stopping.interim_estimate(of.design, Result(ds))
     assert seen.what == "shapley x4 - x1 of y"
     assert seen.estimate.low < 15 / 30 < seen.estimate.high
 
@@ -185,7 +186,9 @@ def test_a_run_may_stop_at_the_index_of_all_elements_together(monkeypatch, desig
     of = study_of(given | {"uncertain": whole.LAWS}, whole.NAME)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    every = sensitivity_json(sensitivities(ds, output="front[:]"))["outputs"]["front[:]"][index]
+    every = sensitivity_json(sensitivities(Result(ds), output="front[:]"))["outputs"]["front[:]"][
+        index
+    ]
     settled = {name: estimate for name, estimate in every.items() if estimate["low"] is not None}
     halves = {name: (estimate["high"] - estimate["low"]) / 2 for name, estimate in settled.items()}
     widest = max(halves, key=halves.get)

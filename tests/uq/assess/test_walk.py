@@ -27,6 +27,7 @@ from uq.explore.rare_events import ESTIMATORS as RARE
 from uq.explore.rare_events import rare_event
 from uq.indices.methods import fed_by
 from uq.result.elements import study_file_of
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 
 DRAWN = [name for name, design in DESIGNS.items() if getattr(design, "draw", None) is not None]
@@ -70,7 +71,7 @@ def result(design, samples=256):
         "flag_values": np.array([-1, 0, 1], np.int8),
         "flag_meanings": "none low high",
     }
-    ds = ds.assign(regime=("sample", (ds["x4"].values > 0.5).astype(np.int8), attrs))
+    ds = ds.assign(regime=("row", (ds["x4"].values > 0.5).astype(np.int8), attrs))
     return asking(ds, thresholds={"life": 0.2})
 
 
@@ -86,7 +87,7 @@ def damaged(ds, how, outputs=("y", "flat", "life")):
     elif how == "one infinite life" and "life" in ds:
         ds["life"][5] = np.inf
     elif how == "interrupted":
-        ds = ds.isel(sample=slice(None, ds.sizes["sample"] - 7))
+        ds = ds.isel(row=slice(None, ds.sizes["row"] - 7))
     return ds
 
 
@@ -280,10 +281,10 @@ def test_twin(damage):
     elif damage == "all failed":
         ds = paired({"distribution": "uniform", "lower": 0.95, "upper": 1.0})
     elif damage == "interrupted":
-        ds = ds.isel(sample=slice(None, 193))
+        ds = ds.isel(row=slice(None, 193))
     elif damage == "constant":
         ds["y"][:] = 0.1
-    outputs = strict(twin_json(with_twin(ds, PAIRED)))["outputs"]
+    outputs = strict(twin_json(with_twin(Result(ds), PAIRED)))["outputs"]
     if damage == "all failed":
         assert outputs == {}
         return
@@ -332,7 +333,7 @@ def test_rare_events(method, damage, settings):
 @pytest.mark.parametrize("estimate", [{}, {"quantile": 0.5}, {"above": 6.0}])
 def test_a_look_at_damaged_rows(damage, estimate):
     ds = damaged(linear(until={"output": "y", "half_width": 0.5} | estimate), damage, ("y",))
-    seen = stopping.interim_estimate(study_file_of(ds).design, ds)
+    seen = stopping.interim_estimate(study_file_of(ds).design, Result(ds))
     if damage == "all failed":
         assert not seen.reached and np.isnan(seen.estimate.numbers[:2]).all()
         return

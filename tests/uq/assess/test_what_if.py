@@ -17,6 +17,7 @@ from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
 from uq.result.element import Element
+from uq.result.result import Result
 from uq.stats.importance_weights import largest_shape
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
@@ -46,7 +47,7 @@ def result():
 
 
 def test_the_law_of_what_only_scales_is_replaced_exactly(result):
-    changed = answer(result, {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
+    changed = answer(Result(result), {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
     life = what_if_json(changed)["outputs"]["life"]
     z = result["z"].values
     below = special.ndtr((np.log(0.8) - np.log(2.0) - z / 2) / 0.9)
@@ -57,7 +58,7 @@ def test_the_law_of_what_only_scales_is_replaced_exactly(result):
 
 
 def test_the_same_laws_change_nothing(result):
-    document = what_if_json(answer(result, {"uncertain.z.sd": 1.0}))
+    document = what_if_json(answer(Result(result), {"uncertain.z.sd": 1.0}))
     plain = summarised(result)
     assert document["effective_rows"] == 1000 and document["pareto_k"] is None
     for name in ("life", "y"):
@@ -138,7 +139,7 @@ def test_a_multiple_and_listed_values_are_weighted(result):
     share = rows["z"].values.mean()
     assert row["mean"] == pytest.approx(share / (share + 3 * (1 - share)))
     factor = rows["b"].values / rows["a"].values
-    changed = answer(rows, {"uncertain.b.upper": 1.0})
+    changed = answer(Result(rows), {"uncertain.b.upper": 1.0})
     assert changed.effective_rows == pytest.approx((factor < 1).sum(), rel=0.02)
 
 
@@ -190,7 +191,7 @@ def test_a_scale_may_leave_the_values_of_the_rows():
     rows = computed(
         study({"a": {"distribution": "uniform", "lower": 1.0, "upper": 2.0}, "z": NORMAL})
     )
-    changed = answer(rows, {"uncertain.a.upper": 4.0})
+    changed = answer(Result(rows), {"uncertain.a.upper": 4.0})
     life = what_if_json(changed)["outputs"]["life"]
     least = 0.8 * np.exp(-rows["z"].values / 2)
     below = ((least - 1) / 3).clip(0, 1).mean()
@@ -209,7 +210,10 @@ def test_a_law_that_is_replaced_keeps_its_level():
 
 def test_a_single_row_says_why_a_number_is_missing():
     rows = computed(study(samples=1))
-    for document in (summarised(rows), what_if_json(answer(rows, {"uncertain.a.sigma": 0.4}))):
+    for document in (
+        summarised(rows),
+        what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.4})),
+    ):
         life = document["outputs"]["life"]
         below = life["thresholds"]["0.8"]
         assert 0 < below["below"]["value"] < 1 and below["below"]["low"] is None
@@ -225,7 +229,7 @@ def test_a_single_row_says_why_a_number_is_missing():
 
 def test_rows_that_all_failed_say_nothing():
     rows = computed(study(samples=20, settings={"fail_above": -99.0}))
-    statistics = what_if_json(answer(rows, {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
+    statistics = what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
     assert statistics["failed"] == 20 and statistics["thresholds"]["0.8"]["below"]["value"] is None
 
 

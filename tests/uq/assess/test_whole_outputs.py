@@ -11,6 +11,7 @@ from benchmarks.coverage import whole
 from uq import plots
 from uq.errors import InputError
 from uq.render.trace.trace import traced
+from uq.result.result import Result
 
 
 def curves(method="saltelli", samples=64, replicates=4, **analysis):
@@ -29,7 +30,7 @@ def with_elements(ds, like, *columns):
     attrs = ds[like].attrs
     return (
         ds.drop_vars([like, "time"])
-        .assign({like: (("sample", "place"), np.stack(columns, 1), attrs)})
+        .assign({like: (("row", "place"), np.stack(columns, 1), attrs)})
         .assign_coords(place=list("abcdefgh")[: len(columns)])
     )
 
@@ -164,11 +165,11 @@ def test_it_is_in_arrays_convergence_and_traces():
     running = uq.running_estimates(ds, "front")
     last = running[(running["output"] == "front[:]") & (running["estimate"] == "ST x1")].iloc[-1]
     assert last["value"] == index["value"]
-    traced_number = traced(ds, "sensitivity/outputs/front[:]/ST/x1")
+    traced_number = traced(Result(ds), "sensitivity/outputs/front[:]/ST/x1")
     assert traced_number.equal and traced_number.states == {
         "in groups with a value in each row": 7 * 4 * 32
     }
-    assert traced(ds, "convergence/outputs/front[:]/estimates/ST x1/0/value").equal
+    assert traced(Result(ds), "convergence/outputs/front[:]/estimates/ST x1/0/value").equal
 
 
 def test_curves_of_indices_are_those_of_the_elements():

@@ -86,7 +86,7 @@ def test_quiet_means_quiet(uq, write_study):
 def test_samples_can_be_set_for_one_run(uq, write_study):
     path = write_study(method="sobol", samples=8)
     assert uq("run", path, "--samples", "32", "-o", "out.nc", "--quiet", "--workers", 0).code == 0
-    assert api.open_result("out.nc").sizes["sample"] == 32
+    assert api.open_result("out.nc").sizes["row"] == 32
     ended = uq("run", path, "--samples", "33", "-o", "out.nc")
     assert ended.code == 2
     assert sentence("size", next=64) in ended.err

@@ -68,7 +68,7 @@ def test_a_mistake_keeps_its_exit_code(shell):
 def test_a_run_without_any_stream_writes_a_sound_result(shell, write_study):
     study = write_study(samples=8)
     assert shell(f"run {study} --workers 0 --quiet <&- >&- 2>&-") == (0, "")
-    assert api.open_result("results/small.nc").sizes["sample"] == 8
+    assert api.open_result("results/small.nc").sizes["row"] == 8
     code, printed = shell(f"run {study} --workers 0 >&-")
     assert (code, printed) == (1, f"uq: standard output cannot be written: {CLOSED}\n")
 

@@ -203,7 +203,7 @@ def test_a_script_needs_no_main_guard(write_study, folder):
         "print('once')\n"
         "import uq\n"
         f"ds = uq.run({str(path)!r}, 'out.nc', workers=2, chunk_rows=20)\n"
-        "print(ds.sizes['sample'])\n"
+        "print(ds.sizes['row'])\n"
     )
     ended = subprocess.run(
         [sys.executable, script],

@@ -11,6 +11,7 @@ from in_memory import compute
 from uq.assess.expected_widths import Widths, expected_widths
 from uq.cli.plan import _widths
 from uq.execution import planning, runner
+from uq.result.result import Result
 from uq.study.definition import load_study
 
 NORMAL = 'distribution = "uniform", lower = 0.0, upper = 1.0'
@@ -28,9 +29,9 @@ def test_the_cost_of_rows_that_sleep(write_study, monkeypatch):
     assert cost.workers == 2
     assert 0.01 <= cost.row_seconds < 0.02
     assert cost.seconds > 3000 * cost.row_seconds / 2
-    assert cost.pilot_rows == pilot.sizes["sample"] < 1000
+    assert cost.pilot_rows == pilot.sizes["row"] < 1000
     # From all of the study, not its beginning.
-    assert pilot["sample"].size == len(np.unique(pilot["group"].values))
+    assert pilot["row"].size == len(np.unique(pilot["group"].values))
     assert pilot["group"].values.max() > 2000
 
 
@@ -65,8 +66,8 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
         )
     )
     whole = compute(study, workers=0)
-    pilot = whole.isel(sample=slice(0, 400))
-    expected = expected_widths(pilot)["y"]
+    pilot = whole.isel(row=slice(0, 400))
+    expected = expected_widths(Result(pilot))["y"]
     statistics = summarised(whole)["outputs"]["y"]
     pairs = [(expected.mean, statistics["mean_interval"])]
     pairs += [(width, statistics["quantiles"][repr(p)]) for p, width in expected.quantiles.items()]
@@ -124,7 +125,7 @@ def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
 def test_a_quantile_at_a_life_that_never_ends_has_no_width(write_study):
     path = write_study(samples=200, uncertain=("x1",), law=NORMAL)
     ds = compute(load_study(path, "sample_models:KINDS"), workers=0)
-    quantiles = expected_widths(ds)["life[side=left,depth=0.5]"].quantiles
+    quantiles = expected_widths(Result(ds))["life[side=left,depth=0.5]"].quantiles
     assert quantiles[0.95] is None
     assert quantiles[0.05] > 0
 

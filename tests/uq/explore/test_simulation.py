@@ -14,7 +14,7 @@ from uq.files import whole_files
 
 def test_one_row_at_the_nominal_values_but_for_what_is_set():
     ds = uq.simulate("linear", {"x2": 1.0})
-    assert ds["y"].dims == ("sample",)
+    assert ds["y"].dims == ("row",)
     assert ds["y"].values == [0.5 + 2.0 + 1.5 + 2.0]
     assert [ds[name].item() for name in ("x1", "x2", "x3", "x4")] == [0.5, 1.0, 0.5, 0.5]
     assert ds["x2"].attrs["role"] == "fixed"

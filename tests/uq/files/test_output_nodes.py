@@ -145,7 +145,7 @@ def test_a_result_behind_a_link_goes_on(uq, result, folder):
     result.symlink_to(folder / "disk" / "kept.nc")
     assert uq("extend", result, "--samples", 16, "--workers", "0", "--quiet").code == 0
     assert result.is_symlink()
-    assert api.open_result(folder / "disk" / "kept.nc").sizes["sample"] == 16
+    assert api.open_result(folder / "disk" / "kept.nc").sizes["row"] == 16
     assert "already complete" in uq("run", "small.toml", "--samples", 16).out
     assert uq("verify", result).code == 0
 

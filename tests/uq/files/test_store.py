@@ -14,7 +14,7 @@ from uq.execution import chunk_file
 from uq.files import whole_files
 from uq.files.interrupts import undo_all
 
-DS = xr.Dataset({"a": ("sample", np.arange(100_000.0))})
+DS = xr.Dataset({"a": ("row", np.arange(100_000.0))})
 
 
 def test_missing_folders_are_made(folder):
@@ -27,11 +27,11 @@ def test_a_failed_write_leaves_nothing_and_keeps_what_was_there(folder):
     with pytest.raises(RunError, match=r"^a/b/out\.nc: could not be written: "):
         _write_with_file_limit(Path("a/b/out.nc"))
     assert everything(folder) == []
-    whole_files.write(DS.isel(sample=[0]), Path("out.nc"))
+    whole_files.write(DS.isel(row=[0]), Path("out.nc"))
     with pytest.raises(RunError):
         _write_with_file_limit(Path("out.nc"))
     assert everything(folder) == ["out.nc"]
-    assert xr.load_dataset("out.nc").sizes == {"sample": 1}
+    assert xr.load_dataset("out.nc").sizes == {"row": 1}
 
 
 def test_a_chunk_that_cannot_be_written_leaves_nothing(folder):

@@ -14,6 +14,7 @@ from uq.assess.design_sample import sample_of
 from uq.indices import polynomials
 from uq.indices.index import SHAPLEY
 from uq.indices.methods import METHODS
+from uq.result.result import Result
 
 
 def of_case(words, samples, seed=1):
@@ -27,7 +28,7 @@ def widths(effects):
 
 
 def controlled_and_alone(ds, output):
-    sample = replace(sample_of(ds), values=ds[output].values)
+    sample = replace(sample_of(Result(ds)), values=ds[output].values)
     ours = METHODS["shapley"].indices(sample).values[SHAPLEY]
     return ours, dependent.of_paths_alone(ds, output)
 
@@ -136,7 +137,7 @@ def test_elements_of_an_output_add_up():
     r = 0.6
     ds = weighted(r, 256)
     both = np.stack([ds["weighted"].values, ds["x3"].values], axis=1)
-    result = METHODS["shapley"].indices(replace(sample_of(ds), values=both))
+    result = METHODS["shapley"].indices(replace(sample_of(Result(ds)), values=both))
     sizes = 6.0 + 4.0 * r, 1.0
     alone = {"x2": r**2 / 2, "x3": 1 - r**2 / 2}
     for name, value in dependent.of_normal(r).items():

@@ -100,7 +100,7 @@ def test_rows_of_another_dependence_are_refused():
     x = ds["x2"].values.copy()
     x[5] += 1e-3
     with pytest.raises(InputError, match="the rows differ from those of a 'shapley' design"):
-        sensitivities(ds.assign(x2=("sample", x, ds["x2"].attrs)))
+        sensitivities(ds.assign(x2=("row", x, ds["x2"].attrs)))
 
 
 def test_designs_for_dependent_inputs_are_named_with_what_they_feed():

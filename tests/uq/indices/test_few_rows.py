@@ -23,7 +23,7 @@ ATTRS = {
 def with_event(ds, share):
     """Return a result whose regime is high in a corner of x1 and x2, of this probability."""
     high = ds["x1"].values + ds["x2"].values > 2 - np.sqrt(2 * share)
-    return ds.assign(regime=("sample", high.astype(np.int8), ATTRS))
+    return ds.assign(regime=("row", high.astype(np.int8), ATTRS))
 
 
 def of_event(share, samples=128, method=None, design="saltelli"):
@@ -51,7 +51,7 @@ def test_an_event_with_fewer_than_twenty_hits_is_warned_of():
 def test_few_misses_are_as_bad_as_few_hits():
     ds = linear("saltelli", samples=128, replicates=8)
     high = with_event(ds, 0.013)["regime"].values
-    ds = ds.assign(regime=("sample", (1 - high).astype(np.int8), ATTRS))
+    ds = ds.assign(regime=("row", (1 - high).astype(np.int8), ATTRS))
     refusal = sensitivities(ds, None, "P(regime=high)")["outputs"]["P(regime=high)"]["refused"]
     assert "misses in 2 048 rows" in refusal
 
@@ -128,7 +128,7 @@ def test_one_path_is_too_few_and_its_output_no_event():
 
 
 def test_one_hit_is_singular():
-    entry = of_paths(lambda ds: ds["sample"].values == 5)
+    entry = of_paths(lambda ds: ds["row"].values == 5)
     assert entry["refused"].startswith("only 1 hit in 66 rows: 5 are needed")
 
 

@@ -15,6 +15,7 @@ from uq.indices.index import S1, RefusedError
 from uq.indices.methods import METHODS, fed_by
 from uq.indices.residual_variance import residual_variance
 from uq.indices.sample import DesignSample
+from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 
 REPETITIONS = 40
@@ -162,7 +163,7 @@ def product(of_pair):
     a, b, c, e = np.random.default_rng(5).normal(size=(4, 3000))
     ds = linear(samples=3000)
     columns = zip(("x1", "x2", "x3", "x4"), (a, b, c, e), strict=True)
-    ds = ds.assign({name: ("sample", column, ds[name].attrs) for name, column in columns})
+    ds = ds.assign({name: ("row", column, ds[name].attrs) for name, column in columns})
     ds = with_output(ds, "life", np.exp(of_pair(a * b) + 0.3 * c + 0.05 * e), "lifetime")
     return asking(ds, outputs=["life"])
 
@@ -188,8 +189,8 @@ def test_what_leads_alone_is_called_so_and_what_is_beyond_single_inputs_stated(o
 
 def test_random_balance_is_a_method_by_name_and_ranks_nothing():
     ds = linear(samples=400)
-    assert methods(ds) == ("first-order",)
+    assert methods(Result(ds)) == ("first-order",)
     asked = asking(ds, outputs=["y"], sensitivity=["rbd-fast"])
-    assert methods(asked) == ("rbd-fast",)
+    assert methods(Result(asked)) == ("rbd-fast",)
     assert answer(asked).lead.ranking.method == "first-order"
     assert answer(asked).lead.ranking.contributions == answer(ds).lead.ranking.contributions

@@ -15,6 +15,7 @@ from uq.errors import InputError
 from uq.indices.index import RefusedError
 from uq.indices.methods import METHODS
 from uq.indices.sample import DesignSample
+from uq.result.result import Result
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {
@@ -231,7 +232,7 @@ def test_dependent_inputs_are_refused_by_methods_that_assume_independence(monkey
     ds = linear(samples=128)
     why = "the inputs of this study depend on each other"
     monkeypatch.setattr(module, "why_dependent", lambda ds: why)
-    assert module.methods(ds) == ("delta",)
+    assert module.methods(Result(ds)) == ("delta",)
     assert sensitivities(ds)["method"] == "delta"
     for method in ("rbd-fast", "hdmr"):
         with pytest.raises(InputError, match="inputs of this study depend on each other"):

@@ -122,7 +122,7 @@ def test_given_data_drops_rows_and_counts_them():
         assert sensitivity_result["groups_dropped"] == int(ds["y"].isnull().sum()) > 0
         assert sensitivity_result["rows_used"] == 200 - sensitivity_result["groups_dropped"]
         assert sensitivity_result["outputs"]["y"]["rows_used"] == sensitivity_result["rows_used"]
-        sound = ds.isel(sample=~np.isnan(ds["y"].values))
+        sound = ds.isel(row=~np.isnan(ds["y"].values))
         alone = indices(sound, method)["outputs"]["y"]
         assert alone == sensitivity_result["outputs"]["y"] | {"groups_dropped": 0}
 

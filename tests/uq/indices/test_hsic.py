@@ -102,14 +102,14 @@ def test_the_index_of_two_signs_is_their_squared_correlation():
     rng = np.random.default_rng(4)
     sign = np.where(rng.random(600) < 0.6, ds["z"].values > 9, rng.random(600) < 0.5)
     for first, second in ((0.0, 1.0), (7.0, -2.0)):  # whatever the two are called
-        coded = ds.assign(x3=("sample", np.where(sign, first, second), ds["x3"].attrs))
+        coded = ds.assign(x3=("row", np.where(sign, first, second), ds["x3"].attrs))
         squared = np.corrcoef(sign, ds["z"].values > 9)[0, 1] ** 2
         assert values(entry_of(coded, TARGET))["x3"] == pytest.approx(squared)
 
 
 def test_an_increasing_function_of_input_or_output_changes_nothing():
     ds = decided()
-    grown = ds.assign(x2=("sample", np.exp(9 * ds["x2"].values), ds["x2"].attrs))
+    grown = ds.assign(x2=("row", np.exp(9 * ds["x2"].values), ds["x2"].attrs))
     assert entry_of(grown, CONDITIONAL) == entry_of(ds, CONDITIONAL)
 
 
@@ -137,7 +137,7 @@ def test_rows_without_a_value_are_left_out_and_counted():
 
 def test_a_constant_input_has_no_index_and_few_hits_have_none():
     ds = decided()
-    still = ds.assign(x4=("sample", np.full(600, 0.5), ds["x4"].attrs))
+    still = ds.assign(x4=("row", np.full(600, 0.5), ds["x4"].attrs))
     entry = entry_of(still, TARGET)
     assert entry["hsic"]["x4"]["value"] is None and entry["p"]["x4"]["value"] is None
     assert entry["hsic"]["x1"]["value"] > 0.2

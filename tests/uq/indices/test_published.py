@@ -157,7 +157,7 @@ def test_a_failed_row_takes_its_path_along_and_order_does_not_matter():
     hurt = with_status(with_output(ds, "y", y), [3], 2)
     sensitivity_result = sensitivities(hurt)
     assert (sensitivity_result["groups_dropped"], sensitivity_result["rows_used"]) == (1, 255 * 5)
-    mixed = hurt.isel(sample=np.random.default_rng(0).permutation(hurt.sizes["sample"]))
+    mixed = hurt.isel(row=np.random.default_rng(0).permutation(hurt.sizes["row"]))
     again = sensitivities(mixed)["outputs"]["y"]["shapley"]
     assert values(again) == pytest.approx(values(sensitivity_result["outputs"]["y"]["shapley"]))
     few = sensitivities(linear("shapley", 16))["outputs"]["y"]

@@ -34,7 +34,7 @@ def values_of(entry):
 @pytest.mark.parametrize("value", [1.0, np.nan, np.inf])
 def test_an_output_without_variance_is_refused_not_zero(method, value):
     ds = linear(method, 80, 2)
-    ds = with_output(ds, "flat", np.full(ds.sizes["sample"], value))
+    ds = with_output(ds, "flat", np.full(ds.sizes["row"], value))
     entry = index_entry(asking(ds, outputs=["flat"]), "flat")
     assert entry["refused"] and not {"S1", "ST", "mu_star"} & entry.keys()
 
@@ -43,8 +43,8 @@ def test_missing_rows_are_refused():
     for method in ("morris", "fast"):
         ds = linear(method, 80, 2)
         with pytest.raises(InputError, match="rows of the design are missing"):
-            sensitivities(ds.isel(sample=slice(1, None)))
-        shuffled = ds.isel(sample=np.random.default_rng(1).permutation(ds.sizes["sample"]))
+            sensitivities(ds.isel(row=slice(1, None)))
+        shuffled = ds.isel(row=np.random.default_rng(1).permutation(ds.sizes["row"]))
         assert values_of(index_entry(shuffled)) == pytest.approx(
             values_of(index_entry(ds)), abs=1e-9
         )

@@ -59,16 +59,14 @@ def test_values_are_those_of_scipy():
 
 def test_order_of_rows_does_not_matter():
     ds = ishigami(samples=16, replicates=4)
-    shuffled = ds.isel(sample=np.random.default_rng(0).permutation(ds.sizes["sample"]))
+    shuffled = ds.isel(row=np.random.default_rng(0).permutation(ds.sizes["row"]))
     assert sensitivities(shuffled) == sensitivities(ds)
 
 
 def test_interval_is_students_of_the_replicates():
     ds = ishigami(samples=128, replicates=5)  # of 64, so few rows count that it is widened
     entry = indices(ds)["outputs"]["y"]
-    alone = [
-        ds.isel(sample=ds["replicate"].values == r).assign_attrs(replicates=1) for r in range(5)
-    ]
+    alone = [ds.isel(row=ds["replicate"].values == r).assign_attrs(replicates=1) for r in range(5)]
     values_alone = [indices(replicate)["outputs"]["y"]["ST"]["x2"]["value"] for replicate in alone]
     half = stats.t.ppf(0.975, 4) * np.std(values_alone, ddof=1) / np.sqrt(5)
     index = entry["ST"]["x2"]
@@ -116,8 +114,8 @@ def test_an_undefined_row_removes_its_group_like_a_failed_one():
 
 def test_constant_failed_and_missing_rows_are_refused_not_zero():
     ds = linear("saltelli", samples=16, replicates=4)
-    ds = with_output(ds, "flat", np.full(ds.sizes["sample"], 0.1))
-    ds = with_output(ds, "gone", np.full(ds.sizes["sample"], np.nan))
+    ds = with_output(ds, "flat", np.full(ds.sizes["row"], 0.1))
+    ds = with_output(ds, "gone", np.full(ds.sizes["row"], np.nan))
     few = np.where(ds["group"].values + ds["replicate"].values > 1, np.nan, ds["y"].values)
     outputs = indices(with_output(ds, "few", few))["outputs"]
     assert "same value" in outputs["flat"]["refused"]
@@ -130,9 +128,9 @@ def test_constant_failed_and_missing_rows_are_refused_not_zero():
     assert indices(ds)["groups_dropped"] == 0
     for rows in (slice(1, None), [0, 1, 2, 9, 10, 11]):
         with pytest.raises(InputError, match="rows of the design are missing"):
-            sensitivities(ds.assign_attrs(replicates=1).isel(sample=rows))
+            sensitivities(ds.assign_attrs(replicates=1).isel(row=rows))
     with pytest.raises(InputError, match="rows of the design are missing"):
-        sensitivities(ds.isel(sample=np.r_[0:6, 6:12, 12:18, 18:23, 29]))
+        sensitivities(ds.isel(row=np.r_[0:6, 6:12, 12:18, 18:23, 29]))
 
 
 def test_an_input_without_any_effect_is_zero_without_interval():

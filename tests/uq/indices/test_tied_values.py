@@ -224,9 +224,9 @@ def test_an_input_of_one_value_has_no_effect(method):
 
 def test_an_imported_column_with_many_ties_is_judged_whatever_the_order_of_its_rows():
     ds = asking(linear(samples=600), outputs=["y"])
-    rounded = ds.assign(x4=("sample", np.round(ds["x4"].values * 12), ds["x4"].attrs))
+    rounded = ds.assign(x4=("row", np.round(ds["x4"].values * 12), ds["x4"].attrs))
     order = np.random.default_rng(0).permutation(600)
     for method in ("pawn", "delta"):
         once = indices(rounded, method)["outputs"]["y"][method]["x4"]["value"]
-        again = indices(rounded.isel(sample=order), method)["outputs"]["y"][method]["x4"]["value"]
+        again = indices(rounded.isel(row=order), method)["outputs"]["y"][method]["x4"]["value"]
         assert again == pytest.approx(once, rel=1e-9)

@@ -9,6 +9,7 @@ from scipy import stats
 from models.analytic import EXPONENTIAL_WEAR
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
+from uq.result.result import Result
 from uq.study.evaluate import evaluate
 
 REPETITIONS = 200
@@ -76,12 +77,12 @@ def test_ranks_of_the_truth_are_uniform(problem):
     """Simulation-based calibration (Talts et al. 2018): a Kolmogorov-Smirnov test at 1 %."""
     make, inspect, names = PROBLEMS[problem]
     rows, truths = make(12_000, 1), make(3 * REPETITIONS, 2)
-    world = truths["world"].values if "world" in truths else np.arange(truths.sizes["sample"])
+    world = truths["world"].values if "world" in truths else np.arange(truths.sizes["row"])
     rng = np.random.default_rng(5)
     ranks = {name: [] for name in names}
     for number in np.unique(world)[:REPETITIONS]:
-        truth = truths.isel(sample=world == number)
-        learned = posterior(rows, read_tables(inspect(truth, rng)))
+        truth = truths.isel(row=world == number)
+        learned = posterior(Result(rows), read_tables(inspect(truth, rng)))
         unit = learned.units["A"]
         for name in names:
             drawn = rows[name].values[unit.rows]
@@ -101,7 +102,7 @@ def worlds():
 @pytest.mark.slow
 def test_it_agrees_with_a_random_walk_that_runs_the_model(worlds):
     lives = np.array([6e5, 1e6, 1.2e6])
-    learned = posterior(worlds, read_tables(measured(*lives)))
+    learned = posterior(Result(worlds), read_tables(measured(*lives)))
     assert_agrees(worlds, learned, random_walks(lives))
 
 
@@ -126,7 +127,7 @@ def test_it_agrees_with_openturns(worlds):
         chain = ot.RandomWalkMetropolisHastings(ot.JointDistribution(laws), list(middle), moves)
         chain.setLikelihood(ot.LogNormal(), seen, one_hot, ot.Sample(np.eye(3).tolist()))
         walks.append(np.log(np.asarray(chain.getSample(8_000))[500:]))
-    learned = posterior(worlds, read_tables(measured(*lives, cv=0.2)))
+    learned = posterior(Result(worlds), read_tables(measured(*lives, cv=0.2)))
     assert_agrees(worlds, learned, np.stack(walks))
 
 

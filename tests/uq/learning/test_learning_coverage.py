@@ -11,6 +11,7 @@ from uq.errors import RunError
 from uq.explore.updating import update
 from uq.learning.posterior_inputs import inputs_learnt
 from uq.learning.remaining_life import ANY, remaining
+from uq.result.result import Result
 
 REPETITIONS = 1000
 SHARED = [6e5, 1e6, 1.2e6]
@@ -75,9 +76,11 @@ CASES = {
 def held_by(ds, rate, name, life, unit):
     """Yield what has an interval in a posterior, and whether that holds the closed form."""
     time = life.ppf(0.2)
-    after = next(input_ for input_ in inputs_learnt(ds) if input_.name == name).posterior
+    after = next(input_ for input_ in inputs_learnt(Result(ds)) if input_.name == name).posterior
     left = next(
-        remaining_life for remaining_life in remaining(ds, [time]) if remaining_life.unit == unit
+        remaining_life
+        for remaining_life in remaining(Result(ds), [time])
+        if remaining_life.unit == unit
     )
     for what, estimate, exact in (
         ("mean", after.mean, rate.mean()),

@@ -10,6 +10,7 @@ from computed import computed
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
 from uq.learning.trust import distrust
+from uq.result.result import Result
 from uq.study.definition import load_study
 
 STUDY = Path(__file__).parents[3] / "studies" / "vibrator-tolerances.toml"
@@ -41,7 +42,7 @@ def test_it_finds_the_worse_bearing():
             }
             for output, sd in ERRORS.items()
         ]
-        learned = posterior(rows, read_tables(seen))
+        learned = posterior(Result(rows), read_tables(seen))
         if distrust(learned):
             continue
         weights = learned.units["A"].weights.weights

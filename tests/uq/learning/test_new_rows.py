@@ -16,6 +16,7 @@ from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.importance import own_rows
 from uq.learning.posterior_result import as_unit, prior_of
+from uq.result.result import Result
 from uq.result.result_file import open_result
 
 FAR = measured(2e7, cv=0.05)
@@ -82,7 +83,7 @@ def test_intervals_rest_on_independent_repetitions(result, new_rows):
     after = learnt_json(learnt(new_rows))["inputs"]["rate[unit=A]"]["posterior"]
     assert after["mean_low"] < after["mean"] < after["mean_high"]
     assert after["sd_low"] < after["sd"] < after["sd_high"]
-    assert own_rows(prior_of(new_rows)).identical(result)
+    assert own_rows(Result(prior_of(Result(new_rows)))).identical(result)
 
 
 def test_bits_taught_are_exact(new_rows):
@@ -147,7 +148,7 @@ def test_several_units_of_a_sample():
     mean, cov = start + gain @ (np.log(lives) - look @ start), prior - gain @ look @ prior
     for i, unit in enumerate("AB"):
         assert_exact(updated, mean[[i, 2]], cov[np.ix_([i, 2], [i, 2])], unit)
-    assert own_rows(prior_of(updated)).identical(ds)
+    assert own_rows(Result(prior_of(Result(updated)))).identical(ds)
 
 
 @pytest.mark.slow
@@ -156,7 +157,7 @@ def test_designs_with_replicates(method):
     ds = wear(samples=64, method=method, replicates=8)
     updated = update(ds, FAR, **SMALL)
     assert_exact(updated, *exactly([2e7], cv=0.05))
-    assert own_rows(prior_of(updated)).identical(ds)
+    assert own_rows(Result(prior_of(Result(updated)))).identical(ds)
 
 
 @pytest.mark.slow

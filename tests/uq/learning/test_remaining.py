@@ -13,6 +13,7 @@ from uq.explore.updating import update
 from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.remaining_life import ANY, remaining
+from uq.result.result import Result
 
 LEFT = "life[side=left,depth=100.0]"
 
@@ -22,7 +23,7 @@ def inspection(unit, kind, time, output="life"):
 
 
 def lives_of(ds, *by):
-    return {(life.unit, life.output): life for life in remaining(ds, by)}
+    return {(life.unit, life.output): life for life in remaining(Result(ds), by)}
 
 
 @pytest.fixture(scope="module")

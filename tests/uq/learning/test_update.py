@@ -17,6 +17,7 @@ from uq.files.whole_files import write_result
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.next_inspection import worth
 from uq.learning.posterior_result import as_unit, prior_of, unit_quality
+from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.stats.importance_weights import smoothed
 
@@ -106,7 +107,7 @@ def test_two_updates_are_one(result):
     )
     at_once = update(result, first + second)
     assert update(update(result, first), second).identical(at_once)
-    assert prior_of(at_once).identical(result)
+    assert prior_of(Result(at_once)).identical(result)
 
 
 def test_a_measurement_counts_once(result):
@@ -120,7 +121,7 @@ def test_a_measurement_counts_once(result):
 def test_it_is_written_as_it_is(result, tmp_path):
     made = update(result, measured(5e5), tmp_path / "posterior.nc")
     assert open_result(tmp_path / "posterior.nc").identical(made)
-    assert made["weight"].sizes == {"sample": 6000} and "ledger" in made.attrs
+    assert made["weight"].sizes == {"row": 6000} and "ledger" in made.attrs
 
 
 def test_many_units_take_little_room_on_disk(tmp_path):
@@ -151,7 +152,7 @@ def test_as_many_rows_as_a_refusal_names_are_enough():
     with pytest.raises(RunError, match="single rows may carry over 1 % of the weight") as refused:
         update(linear(samples=500), precise)
     more = int(re.search(r"add (\d+) rows", str(refused.value))[1])
-    assert unit_quality(update(linear(samples=500 + more), precise))[0].effective > 50
+    assert unit_quality(Result(update(linear(samples=500 + more), precise)))[0].effective > 50
 
 
 def test_a_model_error_widens(result):
@@ -214,7 +215,7 @@ def test_a_study_is_run_first(uq, folder):
     (folder / "found.csv").write_text("unit,output,kind,time\nA,life,survived,1\n")
     ended = uq("update", study, "found.csv", "-o", "posterior.nc", "--rows", "200", "--json")
     assert ended.code == 0, ended.err
-    assert open_result(folder / "posterior.nc").sizes["sample"] == 200
+    assert open_result(folder / "posterior.nc").sizes["row"] == 200
     assert json.loads(ended.out)["effective_rows"] == pytest.approx(200)
 
 

@@ -14,6 +14,7 @@ from uq.files.whole_files import write_result
 from uq.learning.posterior_result import as_unit
 from uq.render.html.page import page
 from uq.result.elements import elements_of
+from uq.result.result import Result
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +80,7 @@ def test_the_survival_curve_counts_rows_by_their_weight(unit):
 def test_censored_lives_leave_no_number_after_them(unit):
     late = unit["life"].values > 5.5e5
     cut = unit.assign(life=unit["life"].clip(max=5.5e5))
-    cut["life_censored"] = ("sample", late.astype(np.int8), {"role": "censored", "long_name": "x"})
+    cut["life_censored"] = ("row", late.astype(np.int8), {"role": "censored", "long_name": "x"})
     curve = api.survival(cut, "life")
     assert float(curve["survival"].sel(time=5.4e5, method="ffill")) == pytest.approx(
         of_weights(unit, unit["life"].values > 5.4e5), abs=0.01
@@ -115,10 +116,10 @@ def test_before_and_after_are_compared_with_cautious_intervals(posterior):
 
 
 def test_figures_and_report_show_weighted_rows(posterior, tmp_path):
-    names = {path.stem for path in plots.save_all(posterior, tmp_path)}
+    names = {path.stem for path in plots.save_all(Result(posterior), tmp_path)}
     assert {"lifetime-life", "quantiles-life", "inputs"} <= names
     assert not any(name.startswith(("scatter", "sobol", "convergence")) for name in names)
-    text = page(posterior, "posterior.nc")
+    text = page(Result(posterior), "posterior.nc")
     assert "given 2 inspections of 2 units" in text and "effective rows" in text
     assert "not with rows that inspections have weighted" in text
 

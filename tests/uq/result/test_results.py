@@ -24,6 +24,7 @@ from uq.render.html.dossier.chapters import dossier
 from uq.render.html.page import page
 from uq.result import result_file
 from uq.result.elements import elements_of
+from uq.result.result import Result
 from uq.study.definition import load_study, study_from_text
 
 
@@ -47,10 +48,10 @@ def kinds(write_study):
 def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
     study, path = kinds
     with xr.open_dataset(path) as ds:
-        assert ds.sizes == {"sample": 48, "side": 2, "depth": 2}
+        assert ds.sizes == {"row": 48, "side": 2, "depth": 2}
         assert list(ds["side"].values) == ["left", "right"]
         assert list(ds["depth"].values) == [0.5, 1.5]
-        assert ds["x2"].dims == ("sample",)
+        assert ds["x2"].dims == ("row",)
         attrs = dict(ds["x2"].attrs)
         attrs["admissible"] = list(attrs["admissible"])
         assert attrs == {
@@ -65,7 +66,7 @@ def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
         assert ds["x1"].item() == 0.125
         assert ds["x1"].attrs["role"] == "fixed"
         assert ds["x1"].attrs["source"] == "made up"
-        assert ds["life"].dims == ("sample", "side", "depth")
+        assert ds["life"].dims == ("row", "side", "depth")
         assert ds["life"].attrs == {
             "role": "output",
             "kind": "lifetime",
@@ -111,7 +112,7 @@ def test_rows_know_their_place_in_the_design(kinds):
     _, path = kinds
     ds = result_file.open_result(path)
     row = np.arange(48)
-    assert np.array_equal(ds["sample"], row)
+    assert np.array_equal(ds["row"], row)
     assert np.array_equal(ds["block"], row % 3)
     assert np.array_equal(ds["replicate"], row // 3 % 2)
     assert np.array_equal(ds["group"], row // 6)
@@ -232,7 +233,7 @@ def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch
     small = result_file.open_result(path)
     monkeypatch.setattr(result_file, "_IN_MEMORY_BYTES", 0)
     with result_file.open_result(path) as large:
-        assert summary_json(summarise(large)) == summary_json(summarise(small))
+        assert summary_json(summarise(Result(large))) == summary_json(summarise(Result(small)))
         assert large.identical(small)
         assert not any(large[name].variable._in_memory for name in large.data_vars if name != "x1")
 
@@ -263,12 +264,12 @@ def test_a_result_is_titled_by_what_its_study_says_it_is(described):
         uq.sensitivity,
         lambda ds: uq.row(ds, 0),
         lambda ds: uq.trace(ds, "outputs/y/mean"),
-        lambda ds: page(ds, "none.nc"),
-        lambda ds: dossier(ds, "none.nc"),
+        lambda ds: page(Result(ds), "none.nc"),
+        lambda ds: dossier(Result(ds), "none.nc"),
     ],
 )
 def test_a_result_of_which_no_row_was_kept_is_refused_in_one_line(ask):
-    ds = linear("monte-carlo", samples=8).isel(sample=slice(0))
+    ds = linear("monte-carlo", samples=8).isel(row=slice(0))
     with pytest.raises(InputError) as refused:
         ask(ds)
     assert str(refused.value) == "this result has no rows"

@@ -13,6 +13,7 @@ from uq.execution import runner
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
 from uq.learning.posterior_result import as_unit, inspections_of
+from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.soundness import unsound
 
@@ -134,14 +135,14 @@ def test_what_no_inspections_leave_behind_is_unsound(posterior, kind):
 def test_wrong_inspections_in_a_result_are_one_line(posterior):
     entries = json.dumps([{"unit": "A", "hours": 3.0}, {"unit": 5}])
     with pytest.raises(InputError, match=r"inspection 1: .*; and \d+ more") as refused:
-        inspections_of(posterior.assign_attrs(inspections=entries))
+        inspections_of(Result(posterior.assign_attrs(inspections=entries)))
     assert len(refused.value.lines) == 1
 
 
 def test_posteriors_and_their_units_are_sound(posterior, tmp_path):
     for ds in (posterior, as_unit(posterior, "A")):
         write_result(ds, tmp_path / "post.nc")
-        assert open_result(tmp_path / "post.nc").sizes["sample"] == 800
+        assert open_result(tmp_path / "post.nc").sizes["row"] == 800
 
 
 @pytest.fixture
@@ -154,7 +155,7 @@ def result(write_study, folder):
     ("change", "words"),
     [
         (lambda ds: ds.drop_vars("y"), "does not hold the output 'y'"),
-        (lambda ds: with_value(ds, "sample", 10**12, -1), "does not number all rows"),
+        (lambda ds: with_value(ds, "row", 10**12, -1), "does not number all rows"),
     ],
 )
 def test_an_incomplete_result_is_not_extended(uq, result, change, words):
@@ -190,7 +191,7 @@ def test_a_failure_of_the_system_is_not_called_a_damaged_file(uq, result, monkey
 
 def test_a_variable_without_a_role_is_left_alone(uq, result):
     with netCDF4.Dataset(result, "a") as file:
-        file.createVariable("more", "f8", ("sample",))
+        file.createVariable("more", "f8", ("row",))
     for verb in (("summary", result), ("compare", result, result), ("row", result, 3)):
         assert uq(*verb).code == 0
 

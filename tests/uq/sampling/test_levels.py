@@ -29,7 +29,7 @@ def test_an_input_varies_on_its_level_alone(method, replicates):
     ds = computed(nested(method=method, replicates=replicates))
     place = nesting_of(ds)
     assert (place.samples, place.units, place.repeats) == (16 * replicates, 3, 2)
-    assert ds.sizes["sample"] == 16 * replicates * 3 * 2
+    assert ds.sizes["row"] == 16 * replicates * 3 * 2
     shared, unit_values, chance = (place.table(ds[name].values) for name in LEVELS)
     assert varies(shared[:, 0, 0], 0) and not np.ptp(shared, axis=(1, 2)).any()
     assert varies(unit_values[:, :, 0], 1) and not np.ptp(unit_values, axis=2).any()
@@ -95,8 +95,8 @@ def test_the_identity_knows_levels_units_and_repeats():
 
 def test_rows_of_a_sample_are_found_in_any_order():
     ds = nested_result()
-    order = np.random.default_rng(0).permutation(ds.sizes["sample"])[:50]
-    place, some = nesting_of(ds), nesting_of(ds.isel(sample=order))
+    order = np.random.default_rng(0).permutation(ds.sizes["row"])[:50]
+    place, some = nesting_of(ds), nesting_of(ds.isel(row=order))
     table, part = place.table(ds["y"].values), some.table(ds["y"].values[order])
     worlds = np.unique(place.sample[order])
     is_finite = np.isfinite(part)

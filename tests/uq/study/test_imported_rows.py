@@ -12,6 +12,7 @@ from uq.assess.convergence import running_estimates
 from uq.assess.pairing import Kinship, kinship
 from uq.assess.survival import survival
 from uq.errors import InputError
+from uq.result.result import Result
 from uq.study.definition import study_from_text
 from uq.study.row_sampling import row_block
 
@@ -183,7 +184,10 @@ def test_the_statement_does_not_change_the_rows(table):
 def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     folder, x = table
     first = result_of(folder, independent=True)
-    assert kinship(first, result_of(folder, independent=True, seed=5)) is Kinship.ROWS_IMPORTED
+    assert (
+        kinship(Result(first), Result(result_of(folder, independent=True, seed=5)))
+        is Kinship.ROWS_IMPORTED
+    )
     comparison = compared(first, first)
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
     assert (
@@ -192,5 +196,5 @@ def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
     (folder / "rows.csv").write_text("\n".join(lines))
     other = result_of(folder, independent=True, seed=5)
-    assert kinship(first, other) is Kinship.UNKNOWN_IMPORTED
+    assert kinship(Result(first), Result(other)) is Kinship.UNKNOWN_IMPORTED
     assert compared(first, other)["pairing"] == "unknown"

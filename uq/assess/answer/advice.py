@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Sequence
 from math import ceil, isfinite, isinf, isnan
 
-import xarray as xr
-
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.facts import Answer
 from uq.assess.answer.levels import VarianceComponents
@@ -16,11 +14,7 @@ from uq.assess.answer.sufficiency import Enough, needed
 from uq.assess.answer.tighter_tolerances import tighten
 from uq.assess.answer.wording import called, called_together, share_text
 from uq.assess.findings import Findings
-from uq.result.commands import file_of, model_option
-from uq.result.elements import analysis_of, why_no_statistics
-from uq.result.nesting import levels_of
-from uq.result.result_file import failed
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.sampling.levels import CHANCE
 from uq.text.keys import key_of
 from uq.text.numbers import counted, grouped
@@ -38,7 +32,7 @@ def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
     found : Answer
         Without advice.
     """
-    if has_weights(findings.ds):
+    if findings.result.has_weights:
         return
     enough = found.enough
     told = [
@@ -47,8 +41,12 @@ def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
         *_unknown(found),
         *_leave_to_chance(found.levels),
         *_measure(findings, found),
-        *([] if found.regimes_first else [*_tighten(findings, found)] or _keep(findings.ds, found)),
-        *(_add_rows(findings.ds, enough) if found.quantities else ()),
+        *(
+            []
+            if found.regimes_first
+            else [*_tighten(findings, found)] or _keep(findings.result, found)
+        ),
+        *(_add_rows(findings.result, enough) if found.quantities else ()),
     ]
     answered = found.quantities
     if answered and not enough.question and all(one.rule in _AS_SETTLED for one in told):
@@ -75,16 +73,16 @@ def _leave_to_chance(levels: VarianceComponents | None) -> Iterator[Advice]:
 
 
 def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    ds = findings.ds
-    lost, rows = int(failed(ds).sum()), ds.sizes["sample"]
-    most = analysis_of(ds).max_failed
+    result = findings.result
+    lost, rows = int(result.failed.sum()), len(result)
+    most = result.analysis.max_failed
     why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
     why += [one.what for one in bounds_unsettled(findings, answered) if isinf(one.factor)]
     if why:
         yield Advice(
             "failed",
             f"Fix the {counted(lost, 'failed row')} first: {why[0]};"
-            f" 'uq rerun {file_of(ds)} --failed{model_option(ds)}' computes failed rows again,"
+            f" 'uq rerun {result.file} --failed{result.model_option}' computes failed rows again,"
             " if necessary with other settings.",
         )
 
@@ -110,10 +108,10 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, event = _leading(found)
     if leader is None:
         return
-    marks = {name: mark_of(findings.ds, name) for name in leader.sure}
-    levels = levels_of(findings.ds)
+    marks = {name: mark_of(findings.result, name) for name in leader.sure}
+    levels = findings.result.levels
     to_what = f" to how many {event.clause}" if event else ""
-    starts = {name for name in marks if "initial" in findings.ds[name].attrs}
+    starts = {name for name in marks if "initial" in findings.result.dataset[name].attrs}
     lasting = [
         name
         for name, how in marks.items()
@@ -158,11 +156,11 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
 
 def _tighten(findings: Findings, found: Answer) -> Iterator[Advice]:
     leader, _ = _leading(found)
-    if leader is not None and any(mark_of(findings.ds, one) != CHOSEN for one in leader.inputs):
-        yield from tighten(findings.ds, found.quantities[0], leader)
+    if leader is not None and any(mark_of(findings.result, one) != CHOSEN for one in leader.inputs):
+        yield from tighten(findings.result, found.quantities[0], leader)
 
 
-def _keep(ds: xr.Dataset, found: Answer) -> Iterator[Advice]:
+def _keep(result: Result, found: Answer) -> Iterator[Advice]:
     """Yield where to keep the input that decides an event, where the event is settled to differ."""
     _, event = _leading(found)
     lead = found.lead
@@ -170,7 +168,7 @@ def _keep(ds: xr.Dataset, found: Answer) -> Iterator[Advice]:
         return
     place = event.curve.most if more else event.curve.least
     there, overall = event.curve.shares[place], event.share
-    if mark_of(ds, event.over) == ASSUMED:  # it is what it is
+    if mark_of(result, event.over) == ASSUMED:  # it is what it is
         return
     if there.low > overall.high if more else there.high < overall.low:
         where, what = f"{event.part(place)}: {share_text(there)} do there", "decided_by"
@@ -186,11 +184,11 @@ def _keep(ds: xr.Dataset, found: Answer) -> Iterator[Advice]:
         )
 
 
-def _add_rows(ds: xr.Dataset, enough: Enough) -> Iterator[Advice]:
+def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
     """Yield that intervals are missing, or how many rows would settle what the study is about."""
-    rows = ds.sizes["sample"]
+    rows = len(result)
     if enough.unknown:
-        wanted = "know what can be promised" if why_no_statistics(ds) else "have intervals"
+        wanted = "know what can be promised" if result.why_no_statistics else "have intervals"
         yield Advice("rows", f"To {wanted}: {enough.unknown}.")
     open_ones = [one for one in enough.question if isfinite(one.factor)]
     if not open_ones or not rows or enough.errors is not None:
@@ -199,10 +197,10 @@ def _add_rows(ds: xr.Dataset, enough: Enough) -> Iterator[Advice]:
     more = ""
     if less:
         are, them = ("is", "it") if len(less) == 1 else ("are", "them")
-        listed = f"'uq convergence {file_of(ds)}' lists {them}"
+        listed = f"'uq convergence {result.file}' lists {them}"
         more = f"; {len(less)} more {are} not settled ({listed})"
     yield Advice(
         "rows",
-        f"Compute {needed(worst, ds)} instead of {grouped(rows)}: {worst.what}{more}.",
+        f"Compute {needed(worst, result)} instead of {grouped(rows)}: {worst.what}{more}.",
         rows=ceil(min(worst.factor, MOST) * rows),
     )

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from weakref import WeakKeyDictionary
 
-import xarray as xr
-
 from uq.assess.answer.advice import advise
 from uq.assess.answer.assumptions import assumptions
 from uq.assess.answer.facts import Answer
@@ -17,18 +15,17 @@ from uq.assess.answer.sufficiency import enough_of
 from uq.assess.answer.wording import called
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
-from uq.result.elements import analysis_of, study_file_of
-from uq.result.result_file import failed
+from uq.result.result import AnyResult, Result
 from uq.study.file import Tied
 from uq.text.numbers import capitalized
 
 
-def answer(ds: xr.Dataset) -> Answer:
+def answer(result: AnyResult) -> Answer:
     """Say what can be promised, what it depends on, and what to do.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
 
     Returns
@@ -42,7 +39,8 @@ def answer(ds: xr.Dataset) -> Answer:
     >>> found.lead.promise.lower < found.lead.range.low.value  # a cautious bound
     True
     """
-    return conclude(Findings(ds))
+    result = Result.of(result)
+    return conclude(Findings(result))
 
 
 _KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
@@ -58,27 +56,27 @@ def conclude(findings: Findings) -> Answer:
 
 def without_advice(findings: Findings) -> Answer:
     """Return the answer but for what to do, for which rows are weighted."""
-    ds = findings.ds
-    found = tuple((quantities if findings.rows.sizes["sample"] else only_ranked)(findings))
+    result = findings.result
+    found = tuple((quantities if len(findings.rows) else only_ranked)(findings))
     regimes = tuple(regimes_of(findings))
     plain = Answer(
-        str(ds.attrs["title"]),
-        ds.sizes["sample"],
-        int(failed(ds).sum()),
+        str(result.dataset.attrs["title"]),
+        len(result),
+        int(result.failed.sum()),
         found,
         regimes,
         (),
         tuple(findings.summary.notes),
-        regimes_first=bool(regimes) and analysis_of(ds).outputs[:1] == (REGIME,),
-        starts_alike=starts_alike(ds) if regimes else "",
-        assumptions=assumptions(ds),
+        regimes_first=bool(regimes) and result.analysis.outputs[:1] == (REGIME,),
+        starts_alike=starts_alike(result) if regimes else "",
+        assumptions=assumptions(result),
     )
     known = beside_levels(plain, _levels(findings, plain))
     about = known.main_regimes if known.regimes_first else ()
     return replace(
         known,
         enough=enough_of(findings, known.quantities, about),
-        ties=ties_of(ds, known),
+        ties=ties_of(result, known),
         mixing=intermingled(findings) if known.regimes_first else known.mixing,
     )
 
@@ -113,7 +111,7 @@ def _levels(findings: Findings, found: Answer) -> VarianceComponents | None:
     return None if lead is None else levels_of(findings, lead.name, "its scatter", lead.ranking)
 
 
-def ties_of(ds: xr.Dataset, found: Answer) -> str:
+def ties_of(result: Result, found: Answer) -> str:
     """Return which inputs have the value of one that contributes most in every row, or ""."""
     own = [] if found.lead is None else [found.lead.ranking]
     rankings = [*(event.ranking for event in found.asked_events), *own]
@@ -125,7 +123,7 @@ def ties_of(ds: xr.Dataset, found: Answer) -> str:
     }
     tied = {
         name: law.equals
-        for name, law in study_file_of(ds).uncertain.items()
+        for name, law in result.study.uncertain.items()
         if isinstance(law, Tied) and law.equals in leading
     }
     same = (f"{called(name)} equals {called(other)}" for name, other in tied.items())

@@ -23,7 +23,6 @@ from uq.assess.earliest import (
 )
 from uq.assess.findings import Findings
 from uq.errors import InputError
-from uq.result.commands import file_of, model_option
 from uq.result.elements import Element
 from uq.result.row_choice import lowest_rows
 from uq.stats.intervals import Replicates
@@ -132,14 +131,14 @@ def earliest(
         The replicate of each independent row.
     """
     try:
-        chosen = lowest_rows(findings.ds, element.name, _MOST_ROWS)
+        chosen = lowest_rows(findings.result, element.name, _MOST_ROWS)
     except InputError:
         return None
     rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
     if not rows or (len(rows) > 1 and not np.ptp(element.values[element.present])):
         return None
-    ds, lowest = findings.ds, shlex.quote(element.name)
-    command = f"uq row {file_of(ds)} --lowest {lowest}{model_option(ds)}"
+    result, lowest = findings.result, shlex.quote(element.name)
+    command = f"uq row {result.file} --lowest {lowest}{result.model_option}"
     found = Earliest(element.name, rows, lives, unit, command)
     places = earliest_rows(element)
     if len(places) < FEWEST:
@@ -150,7 +149,7 @@ def earliest(
         size=len(places),
         of=int(element.present.sum()),
         inputs=None if inputs is None else tuple(inputs),
-        units=tuple(unit_of_input(findings.ds, one.name) for one in inputs or ()),
+        units=tuple(unit_of_input(findings.result, one.name) for one in inputs or ()),
         regimes=tuple(regimes_of_first(findings.rows, places, part)),
     )
 

@@ -3,10 +3,8 @@
 from collections.abc import Sequence
 from math import sqrt
 
-import xarray as xr
-
 from uq.assess.answer.wording import DisplayUnit, called, unit_of_input
-from uq.result.elements import study_file_of
+from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.sampling.scipy_laws import LogUniform
 from uq.study.file import Tied
@@ -36,16 +34,16 @@ def halved(law: Law) -> dict[str, float]:
     return {"lower": (lower + middle) / 2, "upper": (upper + middle) / 2}
 
 
-def halvings(ds: xr.Dataset, inputs: Sequence[str]) -> dict[str, dict[str, float]]:
+def halvings(result: Result, inputs: Sequence[str]) -> dict[str, dict[str, float]]:
     """Return the arguments that give each input half its scatter; none if one has no middle.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     inputs : sequence of str
     """
-    laws = study_file_of(ds).uncertain
+    laws = result.study.uncertain
     found = {}
     for name in inputs:
         law = laws[name]
@@ -53,25 +51,25 @@ def halvings(ds: xr.Dataset, inputs: Sequence[str]) -> dict[str, dict[str, float
     return found if all(found.values()) else {}
 
 
-def halvings_in_words(ds: xr.Dataset, changes: dict[str, dict[str, float]]) -> str:
+def halvings_in_words(result: Result, changes: dict[str, dict[str, float]]) -> str:
     """Return what half the scatter is: ``sd 0.5 mm instead of 1``; once for laws alike."""
-    texts = {name: _in_words(ds, name, arguments) for name, arguments in changes.items()}
+    texts = {name: _in_words(result, name, arguments) for name, arguments in changes.items()}
     if len(set(texts.values())) == 1:
         return next(iter(texts.values()))
     return "; ".join(f"{called(name)}: {text}" for name, text in texts.items())
 
 
-def _in_words(ds: xr.Dataset, name: str, new: dict[str, float]) -> str:
-    law = study_file_of(ds).uncertain[name]
+def _in_words(result: Result, name: str, new: dict[str, float]) -> str:
+    law = result.study.uncertain[name]
     old = {key: float(getattr(law, key)) for key in new}
     if "lower" in new:
         is_factor = getattr(law, "times", None) is not None
-        unit = DisplayUnit() if is_factor else unit_of_input(ds, name)
+        unit = DisplayUnit() if is_factor else unit_of_input(result, name)
         then = unit.between(new["lower"], new["upper"])
         return f"{then} instead of {unit.bare_between(old['lower'], old['upper'])}"
     ((key, before),) = old.items()
     if key == "sd":
-        unit = unit_of_input(ds, name)
+        unit = unit_of_input(result, name)
         return f"sd {unit.text(new[key])} instead of {unit.number(before)}"
     shown = percent if key == "cv" else "{:.3g}".format
     return f"{key} {shown(new[key])} instead of {shown(before)}"

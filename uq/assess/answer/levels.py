@@ -4,14 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isnan
 
-import xarray as xr
-
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.wording import called, joined, sentence, share_text
 from uq.assess.findings import Findings
 from uq.assess.targets import FORMS, split_name
-from uq.result.nesting import is_nested
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.sampling.levels import CHANCE, LEVELS, OWN, SHARED
 from uq.stats.estimate import Estimate
 
@@ -116,7 +113,7 @@ def levels_of(
     ranking : Ranking, optional
         Of the inputs: a level names first those that contribute most.
     """
-    if not is_nested(findings.ds) or has_weights(findings.ds):
+    if not findings.result.is_nested or findings.result.has_weights:
         return None
     known = findings.levels
     name = next((one for one in known.outputs if target in (one, split_name(one)[1])), None)
@@ -152,7 +149,7 @@ def levels_of(
 def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[str, str]:
     """Return what the levels are called: by what is on them."""
     drawn_anew = [name for name, level in inputs.items() if level == CHANCE]
-    starts = any("initial" in findings.ds[name].attrs for name in drawn_anew)
+    starts = any("initial" in findings.result.dataset[name].attrs for name in drawn_anew)
     return {
         SHARED: "what all units share",
         OWN: "the machine" if units == 1 else "what is each unit's own",
@@ -160,14 +157,14 @@ def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[st
     }
 
 
-def starts_alike(ds: xr.Dataset) -> str:
+def starts_alike(result: Result) -> str:
     """Return that the start is the same in all rows, where a model has one to vary, or ""."""
     starts = [
         name
-        for name, one in ds.variables.items()
+        for name, one in result.dataset.variables.items()
         if one.attrs.get("role") in ("input", "fixed") and "initial" in one.attrs
     ]
-    if not starts or any(ds[name].attrs.get("role") == "input" for name in starts):
+    if not starts or any(result.dataset[name].attrs.get("role") == "input" for name in starts):
         return ""
     named = joined([called(str(name)) for name in starts])
     verb = "is" if len(starts) == 1 else "are"

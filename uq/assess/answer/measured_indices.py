@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from math import isfinite, nan, sqrt
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.chosen_targets import chosen
 from uq.assess.design_sample import sample_of
@@ -15,10 +14,7 @@ from uq.indices.given_data import MIN_ROWS
 from uq.indices.index import IndexKind, Null, RefusedError
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, fed_by
-from uq.result.elements import has_independent_samples
-from uq.result.nesting import one_of_each_sample
-from uq.result.weights import has_weights
-from uq.sampling.designs import DESIGNS
+from uq.result.result import Result
 from uq.sampling.layouts import PLAIN
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import scatter_interval
@@ -56,17 +52,17 @@ class Measured:
         return sqrt(max(self.half**2 + other.half**2 - 2 * self.shared.get(other.name, 0.0), 0.0))
 
 
-def method_for(ds: xr.Dataset, event: bool) -> str | None:
+def method_for(result: Result, event: bool) -> str | None:
     """Return the method that ranks: the first that the study asks for, or that its design feeds.
 
     Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
     probability of a rare one. None for rows with weights. Of shares of the variance alone, the ones
     with intervals where the design has such: a leader is not named without.
     """
-    if has_weights(ds):
+    if result.has_weights:
         return None
-    fed = fed_by(DESIGNS[ds.attrs["design"]], bool(why_dependent(ds)))
-    found = [_with_intervals(name, fed) for name in (*methods(ds), *fed) if name in fed]
+    fed = fed_by(result.design, bool(why_dependent(result)))
+    found = [_with_intervals(name, fed) for name in (*methods(result), *fed) if name in fed]
     known = [name for name in found if not METHODS[name].conditional]
     if not event:
         return next((name for name in known if METHODS[name].takes_numbers), None)
@@ -87,7 +83,7 @@ def _has_scale(method: SensitivityMethod) -> bool:
 
 
 def measured_inputs(
-    ds: xr.Dataset, method: str, name: str, kind: IndexKind, found: TargetIndices
+    result: Result, method: str, name: str, kind: IndexKind, found: TargetIndices
 ) -> Iterator[Measured]:
     """Yield the indices of one kind, the largest first, of inputs with an effect of their own."""
     every, borrowed = found.kinds()[kind], found.indices.by_correlation
@@ -96,7 +92,7 @@ def measured_inputs(
     limit = null.largest if isfinite(null.largest) else null.limit
     products = found.indices.half_products
     has_errors = bool(products) or any(one.has_interval for one in values.values())
-    scatter = {} if has_errors else _parts(ds, method, name).get(kind.key, {})
+    scatter = {} if has_errors else _parts(result, method, name).get(kind.key, {})
     known = sorted(values, key=lambda label: -_size(values[label]))
     # Where no other input has an effect in any row, it is certain without an interval.
     alone = kind.unit == "variance" and all(values[label].value == 0 for label in known[1:])
@@ -124,20 +120,20 @@ def _size(one: Estimate) -> float:
     return one.value if isfinite(one.value) else -1.0
 
 
-def _parts(ds: xr.Dataset, method: str, name: str) -> dict[str, dict[str, list[float]]]:
+def _parts(result: Result, method: str, name: str) -> dict[str, dict[str, list[float]]]:
     """Return the indices from independent parts of the rows: kind -> input -> one of each part."""
-    if DESIGNS[ds.attrs["design"]].layout is not PLAIN:
+    if result.design.layout is not PLAIN:
         return {}
-    ds = one_of_each_sample(ds)
-    (target,) = chosen(ds, method, [name])
-    sample = replace(sample_of(ds), values=target.values, nulls=False)
+    result = result.first_rows
+    (target,) = chosen(result, method, [name])
+    sample = replace(sample_of(result), values=target.values, nulls=False)
     rows = np.flatnonzero(sample.whole)
     if (most := METHODS[method].most_rows) and len(rows) > most:
         rows = np.sort(np.random.default_rng(0).choice(rows, most, replace=False))
-    if has_independent_samples(ds):
+    if result.has_independent_samples:
         part = np.arange(len(rows)) % max(min(_PARTS, len(rows) // MIN_ROWS), 1)
     else:
-        part = ds["replicate"].values[rows]
+        part = result.dataset["replicate"].values[rows]
     found: dict[str, dict[str, list[float]]] = {}
     if len(np.unique(part)) < _FEWEST_PARTS:
         return found

@@ -1,11 +1,8 @@
 """The subject of a number of a result, by the name that a person reads."""
 
-import xarray as xr
-
 from uq.assess.answer.wording import element_called
 from uq.assess.targets import split_name
-from uq.result.elements import analysis_of, named_elements
-from uq.result.variables import is_category, outputs_of
+from uq.result.result import Result
 from uq.text.numbers import compared, estimated
 from uq.text.symbols import readable
 
@@ -29,19 +26,19 @@ class NumberTarget:
         Of the element, with its place.
     """
 
-    def __init__(self, ds: xr.Dataset, name: str):
+    def __init__(self, result: Result, name: str):
         form, inside, _ = split_name(name)
         output = inside.partition("=" if "[" not in inside else "[")[0]
         self.name, self.units, self.meaning = name, "1", ""
-        self._compared, self._asked = "", analysis_of(ds).thresholds.get(output, ())
-        if is_category(ds, output):
-            self.meaning = str(ds[output].attrs["long_name"])
-        elif output in (known := outputs_of(ds)):
-            element, *others = named_elements(ds, inside)
+        self._compared, self._asked = "", result.analysis.thresholds.get(output, ())
+        if result.is_category(output):
+            self.meaning = str(result.dataset[output].attrs["long_name"])
+        elif output in (known := result.outputs):
+            element, *others = result.named_elements(inside)
             declared = known[output]
             self._units = declared.unit
             self._compared = compared(inside, declared.is_angle)
-            self.meaning = element_called(ds, element)
+            self.meaning = element_called(result, element)
             if others:
                 self.meaning = f"{readable(element.meaning)}, all {1 + len(others)} elements"
             self.units = "1" if form else declared.unit

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from math import inf, isfinite, isnan, nan
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.answer.tolerance_bound import BoundaryAtom, SampleSupport, ToleranceBound
 from uq.assess.answer.wording import DisplayUnit
@@ -12,8 +11,7 @@ from uq.assess.joint_bounds import SIDES
 from uq.assess.statistic import Statistic
 from uq.assess.summary import Described
 from uq.result.elements import Element
-from uq.result.nesting import is_nested
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.stats.estimate import NOTHING, Estimate
 from uq.study.file import AnalysisTable
 from uq.text.numbers import percent
@@ -26,7 +24,7 @@ MIDDLE = 0.5
 
 
 def promise_of(
-    ds: xr.Dataset,
+    result: Result,
     described: Described,
     element: Element,
     analysis: AnalysisTable,
@@ -37,7 +35,7 @@ def promise_of(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
     described : Described
         With the quantiles and bounds that the answer needs.
     element : Element
@@ -76,7 +74,7 @@ def promise_of(
     with_failed = [one.best.failed if one else None for one in found]
     reason = ""
     if any(sides) and not any(map(isfinite, bounds)):
-        reason = _why_no_bound(ds, element, both, bounds)
+        reason = _why_no_bound(result, element, both, bounds)
     elif isfinite(wrong := _contradicted(bounds, ends)):
         reason = f"counted from the rows, {unit.text(wrong)}, it lies beyond the quantile itself"
         bounds = [nan, nan]
@@ -174,7 +172,7 @@ def _sides(
 
 
 def _why_no_bound(
-    ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
+    result: Result, element: Element, both: list[Statistic | None], bounds: list[float]
 ) -> str:
     needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
     if needed == inf:
@@ -183,8 +181,8 @@ def _why_no_bound(
         return f"it needs {needed:.0f} rows"
     if any(not isnan(one) for one in bounds):
         return f"too few {end_of(element)}"
-    if has_weights(ds):
+    if result.has_weights:
         return "the rows are weighted by inspections"
-    if is_nested(ds):
+    if result.is_nested:
         return "the rows of one sample are not independent"
-    return f"the rows of a '{ds.attrs['design']}' design are not independent"
+    return f"the rows of a '{result.design_name}' design are not independent"

@@ -5,7 +5,6 @@ from dataclasses import replace
 from math import isfinite, nan
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.earliest import earliest
@@ -39,15 +38,8 @@ from uq.errors import InputError
 from uq.indices.methods import METHODS
 from uq.result.elements import (
     Element,
-    analysis_of,
-    are_independent,
-    elements_of,
-    replicates_of,
-    shown_outputs,
-    weights_of,
 )
-from uq.result.variables import outputs_of
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.study.file import AnalysisTable
 from uq.text.numbers import threshold
@@ -72,40 +64,40 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     -------
     list of Quantity
     """
-    ds = findings.ds
-    asked = analysis_of(ds, only and only.partition("[")[0])
+    result = findings.result
+    asked = result.analysis_of(only and only.partition("[")[0])
     wanted = with_bounds(asked, findings)
-    summary = summarise(ds, asked) if only else findings.summary
+    summary = summarise(result, asked) if only else findings.summary
     parts = [part for part in ("quantiles", "tolerance") if _asks(wanted, asked, part)]
-    more = summarise(ds, wanted, parts=parts).outputs if parts else {}
-    part = replicates_of(findings.rows)
-    context = Context(findings.rows, wanted, part, weights_of(findings.rows))
+    more = summarise(result, wanted, parts=parts).outputs if parts else {}
+    part = findings.rows.replicates
+    context = Context(findings.rows, wanted, part, findings.rows.weights)
     return [
         _quantity(findings, _with(summary.outputs[one.name], more.get(one.name)), context, one)
-        for one in elements_of(findings.rows, _by_importance(ds, asked))  # one at a time in memory
+        for one in findings.rows.elements(_by_importance(result, asked))  # one at a time in memory
         if one.present.any() and only in (None, one.name)
     ]
 
 
 def only_ranked(findings: Findings) -> list[Quantity]:
     """Return what the inputs contribute, of rows that have indices but no statistics."""
-    ds = findings.ds
+    result = findings.result
     found = []
-    for element in elements_of(ds, _by_importance(ds, analysis_of(ds))):
+    for element in result.elements(_by_importance(result, result.analysis)):
         values = np.abs(element.values[np.isfinite(element.values)])
         if not len(values):
             continue
         ranking = _ranking(findings, element, unit_for(element.units, float(np.median(values))))
-        words, meaning = element_called(ds, element), readable(element.meaning)
+        words, meaning = element_called(result, element), readable(element.meaning)
         found.append(Quantity(element.name, words, meaning, ranking=ranking))
     return found
 
 
-def _by_importance(ds: xr.Dataset, asked: AnalysisTable) -> list[str]:
+def _by_importance(result: Result, asked: AnalysisTable) -> list[str]:
     """Return the outputs that a study asks for, the one that it is about first."""
-    declared = outputs_of(ds)
+    declared = result.outputs
     return sorted(
-        shown_outputs(ds, asked),
+        result.shown_outputs(asked),
         key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
     )
 
@@ -130,7 +122,7 @@ def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
     changes: dict[str, object] = {}
     if missing:
         changes["quantiles"] = (*asked.quantiles, *missing)
-    if asked.tolerance is None and are_independent(findings.rows):
+    if asked.tolerance is None and findings.rows.has_independent_rows:
         tolerances = type(asked).model_validate(
             {"tolerance": {"coverage": COVERAGE, "confidence": CONFIDENCE}}
         )
@@ -160,10 +152,10 @@ def _quantity(
     typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
     unit = unit_for(element.units, abs(typical))
     fine = unit._replace(resolution=resolution_of(folded, _NARROW))
-    promise = promise_of(findings.ds, described, element, context.analysis, wanted, fine)
+    promise = promise_of(findings.result, described, element, context.analysis, wanted, fine)
     return Quantity(
         element.name,
-        element_called(findings.ds, element),
+        element_called(findings.result, element),
         readable(element.meaning),
         promise,
         Range(
@@ -177,30 +169,30 @@ def _quantity(
             known_of(element),
             element.is_lifetime,
         ),
-        tuple(_events(findings, described, element, unit)),
+        tuple(_events(findings, described, element)),
         _as_computed(_ranking(findings, element, unit), described),
         wanted,
         earliest(findings, element, unit, context.replicate)
-        if _may_end_badly(findings.ds, element)
+        if _may_end_badly(findings.result, element)
         else None,
-        assumed_scales(findings.ds, element),
+        assumed_scales(findings.result, element),
         own_error_of(promise, described, folded, context),
     ).with_limits()
 
 
-def assumed_scales(ds: xr.Dataset, element: Element) -> tuple[str, ...]:
+def assumed_scales(result: Result, element: Element) -> tuple[str, ...]:
     """Return what all lives are proportional to, or to the reciprocal of, and is assumed."""
-    scales = (name for name in element.declared.scales if name in ds)
-    return tuple(name for name in scales if mark_of(ds, name) == ASSUMED)
+    scales = (name for name in element.declared.scales if name in result.dataset)
+    return tuple(name for name in scales if mark_of(result, name) == ASSUMED)
 
 
-def _may_end_badly(ds: xr.Dataset, element: Element) -> bool:
+def _may_end_badly(result: Result, element: Element) -> bool:
     """Return whether the rows that end first are of interest, and stand for themselves."""
-    return element.is_lifetime and not element.declared.success and not has_weights(ds)
+    return element.is_lifetime and not element.declared.success and not result.has_weights
 
 
 def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking | None:
-    method = method_for(findings.ds, event=False)
+    method = method_for(findings.result, event=False)
     if method is None:
         return None
     target = number_of(element)
@@ -238,9 +230,7 @@ def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | Non
     return replace(ranking, what=f"{ranking.what}, of lives as computed")
 
 
-def _events(
-    findings: Findings, described: Described, element: Element, unit: DisplayUnit
-) -> Iterator[Event]:
+def _events(findings: Findings, described: Described, element: Element) -> Iterator[Event]:
     side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
     for one in described.parts["thresholds"]:
         if one.key[-1] != side or one.at is None:
@@ -271,7 +261,7 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
         Its probability.
     """
     found = Event(target, said, one.best.estimate, one.failed)
-    method = method_for(findings.ds, event=True)
+    method = method_for(findings.result, event=True)
     if method is None or one.best.estimate.value in (0.0, 1.0):
         return found
     verb = ("lowers the probability", "raises the probability")
@@ -287,10 +277,10 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
         return found
     over, rows = ranking.leader.inputs[0], findings.ranked.rows
     curve = curve_over(rows, target, method, over)
-    return replace(found, over=over, curve=curve, over_unit=unit_of_input(findings.ds, over))
+    return replace(found, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
 
 
-def curve_over(rows: xr.Dataset, target: str, method: str, over: str) -> EventCurve | None:
+def curve_over(rows: Result, target: str, method: str, over: str) -> EventCurve | None:
     """Return the probability of an event over an input."""
     hits = next(chosen(rows, method, [target])).values
-    return event_curve(hits, independent_inputs(rows)[over], replicates_of(rows))
+    return event_curve(hits, independent_inputs(rows)[over], rows.replicates)

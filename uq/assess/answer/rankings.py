@@ -4,8 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import expm1, isfinite, log1p, nan
 
-import xarray as xr
-
 from uq.assess.answer.contributions import SMALL, AverageEffect, Contribution, Ranking
 from uq.assess.answer.measured_indices import Measured, measured_inputs
 from uq.assess.answer.repeat_interval import AGAIN
@@ -18,9 +16,7 @@ from uq.assess.targets import FORMS, IndexTarget, split_name
 from uq.errors import choices
 from uq.indices.index import S1, ST, IndexKind, Indices
 from uq.indices.methods import fed_by
-from uq.result.elements import replicates_of, study_file_of
-from uq.result.ranked_rows import ranked_in_words
-from uq.sampling.designs import DESIGNS
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.study.file import Tied
 
@@ -60,7 +56,7 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     Ranking
     """
     ranking = _ranking(findings.ranked, name, method, verbs)
-    by = ranked_in_words(findings.ranked.ds, findings.ds)
+    by = findings.result.ranked_in_words
     if not by:
         return ranking
     reason = f"{ranking.reason} ({by})" if ranking.reason else ""
@@ -74,7 +70,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         return Ranking(name, method, reason=why, rows_factor=found.rows_factor)
     kinds = found.kinds()
     kind = list(kinds)[-1]
-    measured = list(measured_inputs(findings.ds, method, name, kind, found))
+    measured = list(measured_inputs(findings.result, method, name, kind, found))
     form = FORMS.get(split_name(name)[0])
     of = f" of the {form}" if form else ""
     share = f"share of the variance{of}, " if kind.unit == "variance" else ""
@@ -88,7 +84,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
     # What does not exceed inputs without effect may yet contribute as much as the first.
     weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
-    groups = list(_groups(findings.ds, weighed))
+    groups = list(_groups(findings.result, weighed))
     if len({twin_of(one.name) for one in groups[0]}) > MOST_TIED:
         names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
@@ -102,7 +98,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     least = LEAST * _scale(measured[0], kind)
     listed = [group for group in groups if group[0].index.value >= least]
     moved = _effects(findings, method, name, [one.name for group in listed for one in group])
-    units = {one: unit_of_input(findings.ds, one) for one in moved}
+    units = {one: unit_of_input(findings.result, one) for one in moved}
     contributions = tuple(_contribution(group, kind, name, moved, verbs, units) for group in listed)
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
     of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
@@ -137,8 +133,8 @@ def unexplained(indices: Indices) -> Estimate:
 
 def _totals(findings: Findings, name: str) -> dict[str, float]:
     """Return the total indices, the largest first, of an expansion that represents the rows."""
-    dependent = bool(why_dependent(findings.ds))
-    if _EXPANSION not in fed_by(DESIGNS[findings.ds.attrs["design"]], dependent):
+    dependent = bool(why_dependent(findings.result))
+    if _EXPANSION not in fed_by(findings.result.design, dependent):
         return {}
     found = findings.indices(_EXPANSION, name)
     values = {} if found.refused else found.indices.values[ST]
@@ -187,11 +183,11 @@ def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat
     return f"{names} {'decide that' if of_event else 'contribute'} alike: {kind.key} {most}"
 
 
-def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]]:
+def _groups(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:
     """Yield inputs together that are twins or whose indices do not distinguish them."""
     laws = {
         name: None if isinstance(one, Tied) else one.model_dump(exclude={"source"})
-        for name, one in study_file_of(ds).uncertain.items()
+        for name, one in result.study.uncertain.items()
     }
 
     def are_twins(one: Measured, other: Measured) -> bool:
@@ -224,7 +220,7 @@ def _effects(
     targets: list[IndexTarget] = list(chosen(rows, method, [name]))
     if len(targets) != 1:
         return {}
-    columns, part = independent_inputs(rows), replicates_of(rows)
+    columns, part = independent_inputs(rows), rows.replicates
     found = effects(targets[0].values, columns, part, inputs)
     return {name: one for name, one in found.items() if one.slope.has_interval}
 

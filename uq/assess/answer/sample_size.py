@@ -65,7 +65,7 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
 
 def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
     """Yield the bounds that the study asks for and the rows do not give."""
-    rows = findings.rows.sizes["sample"]
+    rows = len(findings.rows)
     for key, words in _BOUNDS.items():
         described = (findings.summary.outputs[one.name] for one in answered)
         found = (one.find(key, side) for one in described for side in ("lower", "upper"))

@@ -2,7 +2,7 @@
 
 import re
 
-import xarray as xr
+from uq.result.result import Result
 
 ASSUMED = "assumed"
 CHOSEN = "chosen"
@@ -30,6 +30,6 @@ def mark(source: str) -> str:
     return (found[1] or found[2]) if found else ""
 
 
-def mark_of(ds: xr.Dataset, name: str) -> str:
+def mark_of(result: Result, name: str) -> str:
     """Return how well a parameter of a result is known; "" also where it has no source."""
-    return mark(str(ds[name].attrs.get("source", "")))
+    return mark(str(result.dataset[name].attrs.get("source", "")))

@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite
 
-import xarray as xr
-
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.repeat_interval import PredictionInterval, repeated_share
 from uq.assess.answer.sample_size import (
@@ -19,10 +17,8 @@ from uq.assess.answer.wording import DisplayUnit
 from uq.assess.convergence import Errors, compared
 from uq.assess.findings import Findings
 from uq.assess.summary import why_no_intervals
-from uq.result.elements import named_elements, why_no_statistics
-from uq.result.nesting import is_nested
-from uq.result.variables import is_error, outputs_of
-from uq.result.weights import has_weights
+from uq.result.result import Result
+from uq.result.variables import is_error
 from uq.text.numbers import capitalized, rows_in_words
 
 
@@ -103,11 +99,11 @@ def enough_of(
     regimes : sequence of Event
         Those that the study is about; none if it is about a quantity.
     """
-    ds = findings.ds
-    why = why_no_statistics(ds)
-    none = f"the rows of a '{ds.attrs['design']}' design {why}; use 'monte-carlo'" if why else ""
-    unknown = none or why_no_intervals(ds).removeprefix("no intervals: ")
-    known = outputs_of(ds)
+    result = findings.result
+    why = result.why_no_statistics
+    none = f"the rows of a '{result.design_name}' design {why}; use 'monte-carlo'" if why else ""
+    unknown = none or why_no_intervals(result).removeprefix("no intervals: ")
+    known = result.outputs
     own = [one for one in answered if not is_error(one.output, known)] or [*answered]
     about, rest = ([], own) if regimes else (own[:1], own[1:])
     question = [each for one in about for each in unsettled(one)]
@@ -116,7 +112,7 @@ def enough_of(
     besides = [
         replace(each, what=f"{each.what} ({one.words})") for one in rest for each in unsettled(one)
     ]
-    errors = None if not about or has_weights(ds) else _errors(findings, about[0])
+    errors = None if not about or result.has_weights else _errors(findings, about[0])
     found = Enough(
         unknown,
         tuple(sorted(question, key=lambda one: -one.factor)),
@@ -126,7 +122,7 @@ def enough_of(
         _again(about, regimes),
     )
     others = [one for one in found.every if one is not next(iter(found.question), None)]
-    said = (capitalized(settled(one, ds)) for one in others if isfinite(one.factor))
+    said = (capitalized(settled(one, result)) for one in others if isfinite(one.factor))
     return replace(found, others=tuple(said))
 
 
@@ -140,20 +136,20 @@ def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInt
 
 def _errors(findings: Findings, one: Quantity) -> Errors | None:
     """Return the errors of a quantity where that of the rows themselves is the larger."""
-    (element,) = named_elements(findings.rows, one.name)
+    (element,) = findings.rows.named_elements(one.name)
     found = compared(findings.rows, element, findings.summary.outputs[one.name])
     return found if found.warning else None
 
 
-def settled(one: Unsettled, ds: xr.Dataset) -> str:
+def settled(one: Unsettled, result: Result) -> str:
     """Return what is not settled, and how many rows in all would settle it."""
-    return f"{one.what}; {needed(one, ds)} in all would settle it."
+    return f"{one.what}; {needed(one, result)} in all would settle it."
 
 
-def needed(one: Unsettled, ds: xr.Dataset) -> str:
+def needed(one: Unsettled, result: Result) -> str:
     """Return the rows that would settle it, and of how many samples where these have several."""
     many = "more than" if one.factor > MOST else "about"
     factor = min(one.factor, MOST)
-    rows = f"{many} {rows_in_words(factor * ds.sizes['sample'])} rows"
-    samples = rows_in_words(factor * int(ds.attrs["samples"]))
-    return f"{rows} ({samples} samples)" if is_nested(ds) else rows
+    rows = f"{many} {rows_in_words(factor * result.dataset.sizes['row'])} rows"
+    samples = rows_in_words(factor * int(result.dataset.attrs["samples"]))
+    return f"{rows} ({samples} samples)" if result.is_nested else rows

@@ -4,8 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot, isfinite
 
-import xarray as xr
-
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.halved_scatter import halvings, halvings_in_words
 from uq.assess.answer.parts import Quantity
@@ -16,7 +14,7 @@ from uq.assess.answer.wording import DisplayUnit, twin_of
 from uq.assess.targets import split_name
 from uq.assess.what_if import answer as weighted
 from uq.errors import InputError, RunError
-from uq.result.elements import analysis_of
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.study.file import AnalysisTable
 from uq.text.keys import key_of
@@ -26,23 +24,23 @@ _UNKNOWN = "the rows cannot show what it would change"
 
 
 def tightened(
-    ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]
+    result: Result, quantity: Quantity, inputs: Sequence[str]
 ) -> Iterator[TighterTolerance]:
     """Yield what half the scatter of some inputs would change about a quantity.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     quantity : Quantity
     inputs : sequence of str
         All of them at once.
     """
     promised_numbers = list(_promised(quantity))
-    laws = halvings(ds, inputs)
+    laws = halvings(result, inputs)
     if not promised_numbers or not laws:
         return
-    unanswered = TighterTolerance(tuple(inputs), "", law=halvings_in_words(ds, laws))
+    unanswered = TighterTolerance(tuple(inputs), "", law=halvings_in_words(result, laws))
     changes = {
         f"uncertain.{name}.{key}": value
         for name, arguments in laws.items()
@@ -50,7 +48,7 @@ def tightened(
     }
     try:
         keys = [key for key, *_ in promised_numbers]
-        answer = weighted(ds, changes, _asked(ds, quantity, keys), _PARTS)
+        answer = weighted(result, changes, _asked(result, quantity, keys), _PARTS)
     except (InputError, RunError) as refusal:
         yield replace(unanswered, reason=f"{_UNKNOWN} ({refusal})")
         return
@@ -80,9 +78,9 @@ def tightened(
         )
 
 
-def _asked(ds: xr.Dataset, quantity: Quantity, keys: Sequence[Sequence[str]]) -> AnalysisTable:
+def _asked(result: Result, quantity: Quantity, keys: Sequence[Sequence[str]]) -> AnalysisTable:
     """Return what a study asks for, of this quantity and these quantiles alone."""
-    asked = analysis_of(ds, quantity.output)
+    asked = result.analysis_of(quantity.output)
     wanted = {key[1] for key in keys if key[0] == "quantiles"}
     quantiles = tuple(p for p in asked.quantiles if repr(p) in wanted)
     return asked.model_copy(update={"quantiles": quantiles})
@@ -129,12 +127,12 @@ ABOUT = 0.75
 """Of the gain of the best tolerance, the least that counts as about as much."""
 
 
-def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterator[Advice]:
+def tighten(result: Result, quantity: Quantity, leader: Contribution) -> Iterator[Advice]:
     """Yield which tolerance to tighten, which would help about as much, and all that are known.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     quantity : Quantity
         What the study is about.
@@ -142,7 +140,8 @@ def tighten(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> Iterato
         What contributes most: its number is the one that all are compared by.
     """
     of_contributions = [
-        _shown(ds, quantity, contribution) for contribution in _candidates(ds, quantity, leader)
+        _shown(result, quantity, contribution)
+        for contribution in _candidates(result, quantity, leader)
     ]
     estimated = [
         tolerance
@@ -182,14 +181,14 @@ def twins(leader: Contribution) -> tuple[str, ...]:
     return tuple(name for name in leader.sure if twin_of(name) == twin_of(leader.inputs[0]))
 
 
-def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> list[Contribution]:
+def _candidates(result: Result, quantity: Quantity, leader: Contribution) -> list[Contribution]:
     """Return what contributes and is not chosen, no input named twice, the leader first."""
     rankings = [event.ranking for event in quantity.events] + [quantity.ranking]
     candidates = [leader]
     for ranking in rankings:
         for contribution in ranking.contributions if ranking is not None else ():
             inputs = set(contribution.inputs)
-            if any(mark_of(ds, name) == CHOSEN for name in inputs):
+            if any(mark_of(result, name) == CHOSEN for name in inputs):
                 continue
             if not any(inputs & set(candidate.inputs) for candidate in candidates):
                 candidates.append(contribution)
@@ -197,13 +196,13 @@ def _candidates(ds: xr.Dataset, quantity: Quantity, leader: Contribution) -> lis
 
 
 def _shown(
-    ds: xr.Dataset, quantity: Quantity, contribution: Contribution
+    result: Result, quantity: Quantity, contribution: Contribution
 ) -> Sequence[TighterTolerance]:
     """Return what half the scatter of inputs would change, of as many as the rows can show."""
     tolerances: list[TighterTolerance] = []
     sets = (contribution.sure, twins(contribution), contribution.inputs[:1])
     for inputs in dict.fromkeys(sets):
-        tolerances = list(tightened(ds, quantity, inputs))
+        tolerances = list(tightened(result, quantity, inputs))
         if any(not tolerance.reason for tolerance in tolerances):
             break
     return tolerances

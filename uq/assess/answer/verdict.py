@@ -18,21 +18,21 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     output : str, optional
         Only for this output, or this element of one.
     """
-    ds = findings.ds
+    result = findings.result
     if output is None:
         answer = without_advice(findings)
         asked, found = answer.quantities, answer.enough
     else:
         asked = tuple(one for one in quantities(findings) if output in (one.name, one.output))
         found = enough_of(findings, asked)
-    if not ds.sizes["sample"]:
+    if not len(result):
         return []
     if found.unknown:
         return [f"Whether the rows are enough is not known: {found.unknown}."]
     if not found.every:
         return ["Enough rows: what the study asks is settled."] if asked else []
     lines = [
-        f"Not enough rows: {settled(one, ds)}"
+        f"Not enough rows: {settled(one, result)}"
         if isfinite(one.factor)
         else f"{sentence(one.what)} More rows would not help."
         for one in found.every

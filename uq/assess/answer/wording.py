@@ -5,10 +5,8 @@ from collections.abc import Sequence
 from math import ceil, floor, isfinite, log10
 from typing import NamedTuple
 
-import xarray as xr
-
 from uq.result.element import Element
-from uq.result.variables import input_unit
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.numbers import capitalized, digits, percent, percent_interval
 from uq.text.symbols import readable
@@ -81,9 +79,9 @@ def unit_for(units: str, typical: float) -> DisplayUnit:
     return _printed(*unit_of(units, typical))
 
 
-def unit_of_input(ds: xr.Dataset, name: str) -> DisplayUnit:
+def unit_of_input(result: Result, name: str) -> DisplayUnit:
     """Return the unit for numbers of an input of a result."""
-    return _printed(*input_unit(ds, name))
+    return _printed(*result.input_unit(name))
 
 
 def _printed(name: str, size: float) -> DisplayUnit:
@@ -133,11 +131,15 @@ def _plural(words: str) -> str:
     return words + ("es" if words.endswith(("s", "x")) else "s")
 
 
-def element_called(ds: xr.Dataset, element: Element) -> str:
+def element_called(result: Result, element: Element) -> str:
     """Return an element in words: ``time to wear depth, left, 250 µm``."""
     words = [readable(element.meaning)]
     for dim, value in element.place.items():
-        attrs = ds[element.output][dim].attrs if dim in ds[element.output].coords else {}
+        attrs = (
+            result.dataset[element.output][dim].attrs
+            if dim in result.dataset[element.output].coords
+            else {}
+        )
         if isinstance(value, str):
             words.append(value)
         elif attrs.get("units") in ("m", "s", "Hz"):

@@ -9,7 +9,7 @@ from scipy import special
 
 from uq.assess.statistic import Context, Reader, Statistic, StatisticKind
 from uq.assess.targets import number_of
-from uq.result.elements import Element, output_names
+from uq.result.elements import Element
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import (
@@ -45,9 +45,9 @@ _KIND = StatisticKind(
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the share of the variance between regimes, of a life by its logarithm or rank."""
     target = number_of(element)
-    if "regime" not in output_names(context.rows) or target.refused or context.weights:
+    if "regime" not in context.rows.output_names or target.refused or context.weights:
         return
-    codes = context.rows["regime"].values
+    codes = context.rows.dataset["regime"].values
     split = between_share(target.values, codes, context.replicate)
     if isfinite(split.value):
         label = "variance between regimes"
@@ -98,8 +98,8 @@ def between_share(
         low, high = UNKNOWN
     else:
         of = replicate[kept]
-        found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
-        low, high = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
+        shares = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
+        low, high = scatter_interval(value, shares) if np.isfinite(shares).all() else UNKNOWN
     return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
 
 

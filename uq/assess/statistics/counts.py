@@ -5,12 +5,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from uq.assess.counted_rows import share_of
 from uq.assess.population import Population
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
-from uq.assess.statistics.thresholds import share_of
-from uq.result.elements import Element, elements_of, output_names
+from uq.result.elements import Element
+from uq.result.result import Result
 from uq.result.variables import error_name
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
@@ -20,7 +20,9 @@ from uq.text.numbers import counted, percent
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    return {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
+    return {
+        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
+    }
 
 
 _EFFECTIVE = StatisticKind(
@@ -70,12 +72,12 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
 
     Rows count if their value is finite and not censored; one that states no error falls short.
     """
-    asked = context.rows[element.output].attrs.get("accuracy")
+    asked = context.rows.dataset[element.output].attrs.get("accuracy")
     error = stated_error(context.rows, element)
     if asked is None or error is None:
         return
-    known = np.isfinite(element.values) & ~element.censored
-    kept = np.abs(error.values[known]) <= asked * np.abs(element.values[known])
+    ended = np.isfinite(element.values) & ~element.censored
+    kept = np.abs(error.values[ended]) <= asked * np.abs(element.values[ended])
     rows, missed = len(kept), int((~kept).sum())
     share = missed / rows if rows else None
     lost = percent(share) if missed and share else ""
@@ -94,15 +96,15 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     )
 
 
-def stated_error(ds: xr.Dataset, element: Element) -> Element | None:
+def stated_error(result: Result, element: Element) -> Element | None:
     """Return the error that the model states for an element of these rows, None if it states none.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
     element : Element
     """
     name = error_name(element.output)
-    if name not in output_names(ds):
+    if name not in result.output_names:
         return None
-    return next((one for one in elements_of(ds, [name]) if one.place == element.place), None)
+    return next((error for error in result.elements([name]) if error.place == element.place), None)

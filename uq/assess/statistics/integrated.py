@@ -4,11 +4,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import isfinite, nan
 
-from uq.assess.life_quantiles import B_LIVES
 from uq.assess.population import Population
 from uq.assess.scaling import why_not_integrated
 from uq.assess.statistic import FACT, Context, Reader, Statistic
-from uq.assess.statistics.quantiles import LIFE
+from uq.assess.statistics.quantiles import B_LIVES, LIFE
 from uq.result.elements import Element
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_json import number

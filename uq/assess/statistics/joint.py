@@ -14,10 +14,12 @@ from uq.study.file import USUAL
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    found: dict[str, Any] = {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
-    for one in group:
-        found |= estimate_json.flag(f"{one.key[-1]}_", one.estimate, "value")
-    return found
+    numbers: dict[str, Any] = {
+        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
+    }
+    for statistic in group:
+        numbers |= estimate_json.flag(f"{statistic.key[-1]}_", statistic.estimate, "value")
+    return numbers
 
 
 def joint(element: Element, context: Context) -> Iterator[Statistic]:
@@ -25,8 +27,8 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     asked = context.analysis
     if context.replicate is not None or context.weights is not None:
         return
-    own = [one for one in context.joint_bounds if one.element == element.name]
-    if not own:
+    bounds = [one for one in context.joint_bounds if one.element == element.name]
+    if not bounds:
         return
     coverage, confidence = (f"{100 * share:g}" for share in asked.tolerance or USUAL)
     words = (
@@ -36,23 +38,23 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     is_first = context.joint_bounds[0].element == element.name
     listing = Listing(words, keeps_empty=True)
     bound = StatisticKind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
-    for one in own:
+    for joint_bound in bounds:
         yield Statistic(
-            ("joint_bounds", one.side),
-            f"joint bound, {one.side}",
-            Estimate(one.value, beyond=("value",) * one.beyond),
+            ("joint_bounds", joint_bound.side),
+            f"joint bound, {joint_bound.side}",
+            Estimate(joint_bound.value, beyond=("value",) * joint_bound.beyond),
             element.units,
             bound,
-            rows_needed=one.rows_needed if isnan(one.value) else None,
-            column=f"joint_{one.side}",
-            heading=one.side,
-            notes=(f"{words}.",) * (is_first and one is own[0]),
+            rows_needed=joint_bound.rows_needed if isnan(joint_bound.value) else None,
+            column=f"joint_{joint_bound.side}",
+            heading=joint_bound.side,
+            notes=(f"{words}.",) * (is_first and joint_bound is bounds[0]),
             by=(joint_bounds,),
         )
     yield Statistic(
         ("joint_bounds", "rows_needed"),
         "rows needed",
-        Estimate(own[0].rows_needed).finite,
+        Estimate(bounds[0].rows_needed).finite,
         "rows",
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="joint_rows_needed",

@@ -17,16 +17,16 @@ from uq.stats.tails import heavier_tail
 from uq.stats.weighted_means import moments_of_rows, weighted_moments
 
 
-def _numbers(one: Statistic) -> dict[str, Any]:
-    return estimate_json.numbers(one.estimate)
+def _numbers(statistic: Statistic) -> dict[str, Any]:
+    return estimate_json.numbers(statistic.estimate)
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for one in group:
-        found[one.key[-1]] = estimate_json.number(one.estimate.value)
-        found[f"{one.key[-1]}_interval"] = estimate_json.ends(one.estimate)
-    return found
+    numbers: dict[str, Any] = {}
+    for statistic in group:
+        numbers[statistic.key[-1]] = estimate_json.number(statistic.estimate.value)
+        numbers[f"{statistic.key[-1]}_interval"] = estimate_json.ends(statistic.estimate)
+    return numbers
 
 
 MOMENT = StatisticKind(entry=_numbers, write=_write)
@@ -48,26 +48,28 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
     The shape k of the heavier tail (``tail_k``): there is no variance from 0.5 on, no mean from 1.
     """
     values = element.at_least
-    known = len(values) and not (element.never.any() or element.censored.any())
+    have_moments = len(values) and not (element.never.any() or element.censored.any())
     nothing = Moments(NOTHING, NOTHING, None, None)
-    found = moments(values, context.present(element)) if known else nothing
-    if known and context.weights is not None:
-        found = _weighted(element, context, context.weights, found)
-    more = found.caution or ""
+    estimates = moments(values, context.present(element)) if have_moments else nothing
+    if have_moments and context.weights is not None:
+        estimates = _weighted(element, context, context.weights, estimates)
+    more = estimates.caution or ""
     unit = element.units
     mean, sd = _BY if context.weights is None else _WEIGHTED
-    yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN, by=mean)
-    yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD, by=sd)
-    reasons = _reasons(found)
-    tail = found.tail
+    yield Statistic(
+        ("mean",), "mean", estimates.mean, unit, MOMENT, more=more, estimator=MEAN, by=mean
+    )
+    yield Statistic(("sd",), "sd", estimates.sd, unit, SPREAD, estimator=SD, by=sd)
+    reasons = _reasons(estimates)
+    tail = estimates.tail
     yield Statistic(
         ("tail",),
         "tail",
         NOTHING if tail is None else Estimate(tail.k, tail.low, tail.high),
         kind=FACT,
         column="tail_k",
-        notes=(*dict.fromkeys(reasons.values()), *filter(None, [found.caution])),
-        facts={"tail": tail and tail._asdict(), "reasons": reasons, "caution": found.caution},
+        notes=(*dict.fromkeys(reasons.values()), *filter(None, [estimates.caution])),
+        facts={"tail": tail and tail._asdict(), "reasons": reasons, "caution": estimates.caution},
         by=(heavier_tail,),
     )
 
@@ -76,19 +78,19 @@ def _weighted(element: Element, context: Context, by: Smoothed, plain: Moments) 
     """Return the moments of weighted rows; the tail rules out what it does without weights."""
     kept = element.present
     both = weighted_moments(element.values[kept], by.weights[kept], context.present(element))
-    found = [
-        Estimate(one.value if isfinite(other.value) else nan, reason=other.reason)
+    weighted = [
+        Estimate(estimate.value if isfinite(other.value) else nan, reason=other.reason)
         if other.reason
-        else one
-        for one, other in zip(both, (plain.mean, plain.sd), strict=True)
+        else estimate
+        for estimate, other in zip(both, (plain.mean, plain.sd), strict=True)
     ]
     if by.refusal:
-        found = [Estimate(reason=by.refusal)] * 2
-    return Moments(found[0], found[1], plain.tail, plain.caution)
+        weighted = [Estimate(reason=by.refusal)] * 2
+    return Moments(weighted[0], weighted[1], plain.tail, plain.caution)
 
 
-def _reasons(found: Moments) -> dict[str, str]:
-    both = {"sd": found.sd, "mean": found.mean}
-    reasons = {f"{name}_interval": one.reason for name, one in both.items()}
-    reasons |= {name: one.reason for name, one in both.items() if isnan(one.value)}
+def _reasons(estimates: Moments) -> dict[str, str]:
+    both = {"sd": estimates.sd, "mean": estimates.mean}
+    reasons = {f"{name}_interval": estimate.reason for name, estimate in both.items()}
+    reasons |= {name: estimate.reason for name, estimate in both.items() if isnan(estimate.value)}
     return {name: reason for name, reason in reasons.items() if reason}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.assess.life_quantiles import whenever_censored_rows_end
+from uq.assess.counted_rows import whenever_censored_rows_end
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
@@ -16,10 +16,12 @@ from uq.stats.order_statistics import rows_for_bound, rows_still_needed, toleran
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    found: dict[str, Any] = {one.key[-1]: estimate_json.number(one.estimate.value) for one in group}
-    for one in group:
-        found |= estimate_json.flag(f"{one.key[-1]}_", one.estimate, "value")
-    return found
+    numbers: dict[str, Any] = {
+        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
+    }
+    for statistic in group:
+        numbers |= estimate_json.flag(f"{statistic.key[-1]}_", statistic.estimate, "value")
+    return numbers
 
 
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
@@ -47,14 +49,14 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     if element.is_angle:
         largest = tolerance_bounds(np.abs(element.at_most), failed, *asked)[1]
         bounds["magnitude"] = Estimate(largest)
-    for name, found in bounds.items():
+    for name, estimate in bounds.items():
         yield Statistic(
             ("tolerance", name),
             f"tolerance, {name}",
-            found,
+            estimate,
             element.units,
             bound,
-            rows_needed=needed if isnan(found.value) else None,
+            rows_needed=needed if isnan(estimate.value) else None,
             column=f"tolerance_{name}",
             heading=name,
             by=(tolerance_bounds,),

@@ -11,6 +11,7 @@ import typer
 from uq.cli import options as given
 from uq.errors import InputError
 from uq.execution.options import RunOptions
+from uq.result.result import Result
 from uq.text.literals import plain_line
 
 
@@ -113,19 +114,20 @@ def summary(
     from uq.cli import summary_tables
     from uq.cli.changed_file import warn_if_altered
     from uq.cli.printing import print_json
-    from uq.result.result_file import open_result
 
-    ds = open_result(result)
-    findings = Findings(ds)
+    opened = Result.open(result)
+    findings = Findings(opened)
     answered = regime is None and not plain  # the answer is that of all rows
     if answered and not (fits or json):
         summary_tables.show_findings(findings)
         warn_if_altered(result)
         return
     asked = regime is not None or fits or plain
-    statistics = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
+    statistics = (
+        summarise(opened, regime=regime, fits=fits, plain=plain) if asked else findings.summary
+    )
     if not json:
-        summary_tables.show_summary(ds, statistics)
+        summary_tables.show_summary(opened, statistics)
         warn_if_altered(result)
         return
     answer = {"answer": answer_json(conclude(findings))} if answered else {}
@@ -149,11 +151,10 @@ def sensitivity(
     from uq.assess.sensitivity_json import sensitivity_json
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import show
-    from uq.result.result_file import open_result
 
-    ds = open_result(result)
-    indices = sensitivities(ds, method, output, regime)
-    print_json(sensitivity_json(indices)) if json else show(ds, indices)
+    opened = Result.open(result)
+    indices = sensitivities(opened, method, output, regime)
+    print_json(sensitivity_json(indices)) if json else show(opened, indices)
 
 
 def levels(
@@ -257,9 +258,8 @@ def plot(
 ) -> None:
     """Draw the figures of a result into a folder."""
     from uq.plots import save_all
-    from uq.result.result_file import open_result
 
-    for path in save_all(open_result(result), folder or result.with_suffix("")):
+    for path in save_all(Result.open(result), folder or result.with_suffix("")):
         print(path)
 
 

@@ -158,6 +158,7 @@ def run(
     """Run a study, or resume it; show the summary."""
     from uq.cli.run import carried_out, end, loaded
     from uq.execution.runner import finished, output_path, run_study
+    from uq.result.result import Result
 
     asked = loaded(study, model, samples, row_limit)
     target = output_path(asked, output)
@@ -166,7 +167,7 @@ def run(
     else:
         options = RunOptions(workers, scheduler, chunk_rows, row_limit, fresh, mixed)
         ds, note = carried_out(target, quiet, options, partial(run_study, asked, target))
-    return end(asked, ds, target, quiet, note, mixed)
+    return end(asked, Result(ds), target, quiet, note, mixed)
 
 
 def rare_event(

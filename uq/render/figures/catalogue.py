@@ -93,8 +93,14 @@ class Drawable:
     @property
     def caption(self) -> str:
         """What it shows."""
-        ds, name = self.findings.ds, self.subject.name
-        what = str(ds[name].attrs["long_name"]) if name in ds else subject(ds, name) if name else ""
+        result, name = self.findings.result, self.subject.name
+        what = (
+            str(result.dataset[name].attrs["long_name"])
+            if name in result.dataset
+            else subject(result, name)
+            if name
+            else ""
+        )
         event = what.removeprefix("whether ")
         caption = self.entry.caption.format(what=what, event=event, method=self.subject.method)
         return capitalized(caption) + f" ({self.subject.part})" * bool(self.subject.part)
@@ -103,7 +109,7 @@ class Drawable:
         """Return the figure."""
         needs = {need: getattr(self.findings, need) for need in self.entry.needs}
         names = filter(None, [self.subject.name])
-        return self.entry.draw(self.findings.ds, *names, **needs, **self.subject.keywords)
+        return self.entry.draw(self.findings.result, *names, **needs, **self.subject.keywords)
 
 
 def drawables(

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
@@ -17,7 +16,8 @@ from uq.render.figures.index_plot import range_of_indices, subject
 from uq.render.figures.panel import arrows, column, finish, title, whole_numbers
 from uq.render.figures.style import INK, LINES, SHADES, styled
 from uq.render.figures.words import as_label, label, labelled
-from uq.result.elements import Floats, independent_rows, named_elements
+from uq.result.elements import Floats
+from uq.result.result import AnyResult, Result
 from uq.text.numbers import grouped
 
 _MOST_INPUTS = 6
@@ -27,13 +27,13 @@ _APART = 0.06  # between the intervals of two inputs, over the distance of twice
 
 @styled
 def convergence(
-    ds: xr.Dataset, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the convergence of the mean (or the median) of an output, with 95 % intervals.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         An output other than a category, or one element of it.
@@ -52,20 +52,26 @@ def convergence(
     InputError
         When the first rows of the design do not form a design, or neither estimate is known.
     """
-    running = running_estimates(ds) if running is None else running
-    kind, own = followed(ds, output, running)
+    result = Result.of(result)
+    running = running_estimates(result) if running is None else running
+    kind, own = followed(result, output, running)
     if not kind:
         raise InputError(f"{output}: neither its mean nor its median can be estimated")
-    chosen, part = drawn_elements(independent_rows(ds), output)
+    chosen, part = drawn_elements(result.independent, output)
     unit = display_unit(chosen[0].units, np.concatenate([one.values for one in chosen]))
     (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
         _curve(
-            panel, own[own["output"] == element.name], unit.size, colour, line, label(ds, element)
+            panel,
+            own[own["output"] == element.name],
+            unit.size,
+            colour,
+            line,
+            label(result, element),
         )
     what = "mean" if kind == "mean" else "median"
-    known = _over_samples(panel, ds)
+    known = _over_samples(panel, result)
     if known and not np.isfinite(own[["low", "high"]].astype(float)).all(axis=None):
         known += " where the rows allow one"
     whole_numbers(panel.yaxis)
@@ -73,9 +79,9 @@ def convergence(
     return finish(panel)
 
 
-def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
+def followed(result: Result, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
     """Return the estimate of an output that `convergence` draws ("" for none), and its lines."""
-    names = [element.name for element in named_elements(independent_rows(ds), output)]
+    names = [element.name for element in result.independent.named_elements(output)]
     own = running[running["output"].isin(names)]
     own = own[np.isfinite(own["value"].astype(float))]
     # If a life never ends, the first rows may have a mean although all rows have none.
@@ -86,13 +92,13 @@ def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, p
 
 @styled
 def index_convergence(
-    ds: xr.Dataset, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the convergence of the total indices of an output, with 95 % intervals.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of a crossed design.
     output : str
         A name that `uq.sensitivity` returns.
@@ -108,7 +114,8 @@ def index_convergence(
     InputError
         When the output has no total indices.
     """
-    running = running_estimates(ds) if running is None else running
+    result = Result.of(result)
+    running = running_estimates(result) if running is None else running
     own = total_indices(running)
     own = own[own["output"] == output]
     if own.empty:
@@ -122,16 +129,16 @@ def index_convergence(
         samples = samples * 2 ** (_APART * (i - (len(leading) - 1) / 2))
         colour, line = SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
         style: Any = {"color": colour, "ls": line, "marker": _MARKS[i], "ms": 3}
-        panel.plot(samples, value, label=labelled(ds[name], width=60), **style)
+        panel.plot(samples, value, label=labelled(result.dataset[name], width=60), **style)
         known = np.isfinite(low)
         panel.vlines(samples[known], low[known], high[known], color=colour, lw=0.8)
         ends.append((samples, low, high))
     panel.set_ylabel("Total index (ST)")
     panel.set_ylim(range_of_indices(panel.get_ylim()))
-    said = _over_samples(panel, ds)
+    said = _over_samples(panel, result)
     for one in ends:
         arrows(panel, *one, "y", color=INK)
-    title(panel, as_label(subject(ds, output), width=50), said)
+    title(panel, as_label(subject(result, output), width=50), said)
     return finish(panel)
 
 
@@ -156,13 +163,13 @@ def _numbers(lines: pd.DataFrame) -> list[Floats]:
     return [lines[name].to_numpy(float) for name in ("samples", "value", "low", "high")]
 
 
-def _over_samples(axes: Axes, ds: xr.Dataset) -> str:
+def _over_samples(axes: Axes, result: Result) -> str:
     """Draw the axis of samples, and return what the bands are."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: grouped(round(value)))
     axes.minorticks_off()
-    replicates = int(ds.attrs["replicates"])
+    replicates = int(result.dataset.attrs["replicates"])
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
     known = any(len(band.get_paths()) for band in axes.collections)
     return known * "with 95 % intervals"

@@ -3,12 +3,11 @@
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.assess.life_quantiles import B_LIVES
 from uq.assess.statistic import Statistic
+from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import Described, Summary, summarise
 from uq.assess.survival import survival
 from uq.render.figures.elements_plot import (
@@ -25,7 +24,8 @@ from uq.render.figures.figure import Drawing
 from uq.render.figures.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
 from uq.render.figures.style import INK, MARK, ROWS, WIDTH, styled, thinned
 from uq.render.figures.words import as_label, label, literal, rows_in_words, typeset
-from uq.result.elements import Element, analysis_of, independent_rows, named_elements
+from uq.result.elements import Element
+from uq.result.result import AnyResult, Result
 from uq.stats.estimate_text import rounded_text
 from uq.text.numbers import minus
 from uq.text.units import ReadableUnit
@@ -39,7 +39,7 @@ _BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneou
 
 @styled
 def histogram(
-    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, summary: Summary | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw a histogram of an output.
 
@@ -48,7 +48,7 @@ def histogram(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         An output other than a lifetime or category, or one element of it.
@@ -61,37 +61,38 @@ def histogram(
     -------
     matplotlib.figure.Figure
     """
-    chosen, part = drawn_elements(independent_rows(ds), output)
+    result = Result.of(result)
+    chosen, part = drawn_elements(result.independent, output)
     (panel,) = column(axes, 2.1)
     together = np.concatenate([element.at_least for element in chosen])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
-    known = (summary or summarise(ds)).outputs
+    known = (summary or summarise(result)).outputs
     marked = False
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
-        marked |= _mark_bounds(panel, ds, element, known.get(element.name), unit, colour)
+        marked |= _mark_bounds(panel, result, element, known.get(element.name), unit, colour)
         style: Any = {"color": colour, "ls": line, "lw": 1.2}
         if len(chosen) == 1:
             style = {"color": ROWS, "fill": True, "lw": 0}
         shares = shares_in_bins(element, element.present, edges, unit)
-        panel.stairs(shares, edges, label=label(ds, element), **style)
+        panel.stairs(shares, edges, label=label(result, element), **style)
     panel.set(ylim=(0, None), ylabel="Share of rows per bin")
     panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     logarithmic(panel) if wide else None
-    mark_thresholds(panel, ds, chosen[0], unit)
+    mark_thresholds(panel, result, chosen[0], unit)
     None if wide else roomy(panel)
     entitle(panel, chosen, part, *[_BOUND] * marked)
     return finish(panel)
 
 
 @styled
-def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw a histogram of an output, stacked by regime.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of a model with regimes.
     output : str
         An output other than a category, or one element of it. Of more than four elements the
@@ -103,10 +104,11 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     -------
     matplotlib.figure.Figure
     """
-    rows = independent_rows(ds)
-    every = named_elements(rows, output)
+    result = Result.of(result)
+    rows = result.independent
+    every = rows.named_elements(output)
     chosen = every if len(every) <= _MOST_PANELS else [every[0], every[-1]]
-    codes = rows["regime"].values
+    codes = rows.dataset["regime"].values
     ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
     drawn = set(codes[np.any(ended, axis=0)].tolist())
     regimes = {name: one for name, one in occurring_regimes(rows).items() if one[0] in drawn}
@@ -122,13 +124,13 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
             base = top
         panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
-        entitle(panel, [element], of=label(ds, element))
+        entitle(panel, [element], of=label(result, element))
     below = "" if chosen == every else f"\nthe first and the last of {len(every)} elements"
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name) + below)
     if wide:
         logarithmic(panels[-1])
     for panel in panels:
-        mark_thresholds(panel, ds, chosen[0], unit)
+        mark_thresholds(panel, result, chosen[0], unit)
     if not wide:
         roomy(panels[-1])
     return finish(panels[0])
@@ -136,7 +138,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
 
 @styled
 def lifetime(
-    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, summary: Summary | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
@@ -149,7 +151,7 @@ def lifetime(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         A lifetime, or one element of it.
@@ -162,26 +164,27 @@ def lifetime(
     -------
     matplotlib.figure.Figure
     """
-    rows = independent_rows(ds)
+    result = Result.of(result)
+    rows = result.independent
     chosen, part = drawn_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = display_unit(chosen[0].declared.unit, ends)
     (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
-    known = (summary or summarise(ds)).outputs
+    known = (summary or summarise(result)).outputs
     for i, element in enumerate(chosen):
-        curve = survival(ds, element.name)
+        curve = survival(result, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
         time = curve["time"].values / unit.size
         colour, line = curve_style(i, element, chosen)
-        words = label(ds, element, never=float(curve["never"]))
+        words = label(result, element, never=float(curve["never"]))
         panel.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
         for which, alpha, meaning in _BANDS:
             low, high = 1 - curve[f"{which}high"], 1 - curve[f"{which}low"]
             if np.isfinite(low).any():
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
-        if _mark_bounds(panel, ds, element, known.get(element.name), unit, colour):
+        if _mark_bounds(panel, result, element, known.get(element.name), unit, colour):
             bands[_BOUND] = True
     success = chosen[0].declared.success
     event = typeset(literal(success)) if success else "the life has ended"
@@ -191,7 +194,7 @@ def lifetime(
         logarithmic(panel)
     if len(ends) == 0:
         panel.set_xticks([])
-    mark_thresholds(panel, ds, chosen[0], unit)
+    mark_thresholds(panel, result, chosen[0], unit)
     panel.set_xlim(panel.get_xlim())
     marked: set[str] = set()
     for i, element in enumerate(chosen):
@@ -208,7 +211,7 @@ def lifetime(
 
 def _mark_bounds(
     axes: Axes,
-    ds: xr.Dataset,
+    result: Result,
     element: Element,
     found: Described | None,
     unit: ReadableUnit,
@@ -217,7 +220,7 @@ def _mark_bounds(
     """Draw the tolerance bounds of an element, and return whether there are any."""
     if found is None or element.is_angle:
         return False
-    wanted = analysis_of(ds).wanted.get(element.output)
+    wanted = result.analysis.wanted.get(element.output)
     if element.is_lifetime:
         wanted = "below" if element.declared.success else "above"
     sides = {"above": ["lower"], "below": ["upper"], None: ["lower", "upper"]}[wanted]
@@ -250,13 +253,13 @@ def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: s
 
 @styled
 def quantile_table(
-    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, summary: Summary | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw a table of the quantiles of an output, with their 95 % intervals.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         An output other than a category.
@@ -269,14 +272,15 @@ def quantile_table(
     -------
     matplotlib.figure.Figure
     """
-    chosen, part = drawn_elements(independent_rows(ds), output)
-    outputs = (summary or summarise(ds)).outputs
+    result = Result.of(result)
+    chosen, part = drawn_elements(result.independent, output)
+    outputs = (summary or summarise(result)).outputs
     found = [outputs[element.name].parts["quantiles"] for element in chosen]
     values = [one.estimate.finite.value for quantiles in found for one in quantiles]
     unit = display_unit(chosen[0].units, np.array(values))
     head = as_label(chosen[0].meaning, unit.name, 58).splitlines()
     blocks = [
-        (label(ds, element), [_quantile(one, unit.size) for one in quantiles])
+        (label(result, element), [_quantile(one, unit.size) for one in quantiles])
         for element, quantiles in zip(chosen, found, strict=True)
     ]
     lines = sum(len(quantiles) + bool(words) for words, quantiles in blocks)

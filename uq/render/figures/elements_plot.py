@@ -6,14 +6,13 @@ from itertools import cycle
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 
 from uq.render.figures.panel import is_wide
 from uq.render.figures.style import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.render.figures.words import labelled, literal, rows_in_words
-from uq.result.elements import Element, Floats, Mask, analysis_of, flags, named_elements
-from uq.result.variables import input_unit
+from uq.result.elements import Element, Floats, Mask, flags
+from uq.result.result import Result
 from uq.text.numbers import minus, printed, threshold
 from uq.text.units import ReadableUnit, typical, unit_of
 
@@ -21,12 +20,12 @@ _MOST_BINS = 60
 _MOST_CURVES = 12
 
 
-def drawn_elements(rows: xr.Dataset, output: str) -> tuple[list[Element], str]:
+def drawn_elements(rows: Result, output: str) -> tuple[list[Element], str]:
     """Return the elements of an output that a figure has room for, and how many of all they are.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
     output : str
 
     Returns
@@ -36,7 +35,7 @@ def drawn_elements(rows: xr.Dataset, output: str) -> tuple[list[Element], str]:
     str
         "" where these are all.
     """
-    every = named_elements(rows, output)
+    every = rows.named_elements(output)
     chosen = [every[i] for i in thinned(len(every), _MOST_CURVES)]
     all_drawn = len(chosen) == len(every)
     return chosen, "" if all_drawn else f"{len(chosen)} of {len(every)} elements"
@@ -63,15 +62,15 @@ def display_unit(units: str, values: Floats) -> ReadableUnit:
     return unit_of(units, typical(values))
 
 
-def input_axis(axes: Axes, ds: xr.Dataset, name: str, width: int = 44) -> float:
+def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
     """Label the horizontal axis as that of an input, and return the size of its unit."""
-    unit = input_unit(ds, name)
-    axes.set_xlabel(labelled(ds[name], unit.name, width))
+    unit = result.input_unit(name)
+    axes.set_xlabel(labelled(result.dataset[name], unit.name, width))
     return unit.size
 
 
 def mark_thresholds(
-    axes: Axes, ds: xr.Dataset, element: Element, unit: ReadableUnit, vertical: bool = False
+    axes: Axes, result: Result, element: Element, unit: ReadableUnit, vertical: bool = False
 ) -> None:
     """Draw the study's thresholds of an output as lines, those of an angle on both sides.
 
@@ -81,7 +80,7 @@ def mark_thresholds(
     ----------
     axes : Axes
         With the data.
-    ds : xarray.Dataset
+    result : Result
     element : Element
     unit : ReadableUnit
         That of the axis.
@@ -90,7 +89,7 @@ def mark_thresholds(
     """
     ends, scale = (axes.get_ylim, axes.get_yscale) if vertical else (axes.get_xlim, axes.get_xscale)
     line = axes.axhline if vertical else axes.axvline
-    for asked in analysis_of(ds).thresholds.get(element.output, ()):
+    for asked in result.analysis.thresholds.get(element.output, ()):
         at = asked / unit.size
         sign = "±" if element.is_angle else ""
         words = minus(f"threshold {sign}{threshold(asked, element.units)}")
@@ -153,12 +152,12 @@ def _bin_count(values: Floats) -> int:
     return int(min(np.ceil(np.ptp(values) * np.cbrt(len(values)) / min(widths)), _MOST_BINS))
 
 
-def occurring_regimes(rows: xr.Dataset) -> dict[str, tuple[int, str]]:
+def occurring_regimes(rows: Result) -> dict[str, tuple[int, str]]:
     """Return code and colour of each regime that occurs, by its label, in the order of the model.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         Rows of a result, of a model with regimes or not.
 
     Returns
@@ -166,9 +165,9 @@ def occurring_regimes(rows: xr.Dataset) -> dict[str, tuple[int, str]]:
     dict of str to tuple
         A regime has the same colour in all figures, whichever others occur.
     """
-    if "regime" not in rows:
+    if "regime" not in rows.dataset:
         return {}
-    there = set(np.unique(rows["regime"].values).tolist())
-    known = [(name, code) for code, name in flags(rows["regime"]) if code >= 0]
+    there = set(np.unique(rows.dataset["regime"].values).tolist())
+    known = [(name, code) for code, name in flags(rows.dataset["regime"]) if code >= 0]
     coloured = zip(known, cycle(COLOURS))
     return {literal(name): (code, colour) for (name, code), colour in coloured if code in there}

@@ -1,7 +1,6 @@
 """The figure of the probability of an event over the input that decides it."""
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -13,11 +12,12 @@ from uq.render.figures.index_plot import output_of
 from uq.render.figures.panel import column, finish, title
 from uq.render.figures.style import INK, styled
 from uq.render.figures.words import as_label, symbol_of
+from uq.result.result import AnyResult, Result
 
 
 @styled
 def event_probability(
-    ds: xr.Dataset, output: str, *, event: Event | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, event: Event | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the probability of an event in parts of the input that decides it, with 95 % intervals.
 
@@ -25,7 +25,7 @@ def event_probability(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         The event, such as ``P(life<86400.0)`` or ``P(regime=periodic)``.
@@ -43,7 +43,8 @@ def event_probability(
     InputError
         When the study asks for no such event, or no input is known to decide it.
     """
-    event = event or next((one for one in answer(ds).events if one.name == output), None)
+    result = Result.of(result)
+    event = event or next((one for one in answer(result).events if one.name == output), None)
     if event is None or event.curve is None:
         raise InputError(f"'{output}': no input is known to decide it, or the study does not ask")
     curve, colour = event.curve, INK
@@ -57,9 +58,11 @@ def event_probability(
     panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0, label=words)
     panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9, label="of all rows")
     panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
-    title(panel, *(as_label(one, width=46) for one in (output_of(ds, event.name), what)))
+    title(panel, *(as_label(one, width=46) for one in (output_of(result, event.name), what)))
     over = called(event.over)  # as the sentence beside the figure does
-    panel.set_xlabel(as_label(over, event.over_unit.name, symbol=symbol_of(ds[event.over])))
+    panel.set_xlabel(
+        as_label(over, event.over_unit.name, symbol=symbol_of(result.dataset[event.over]))
+    )
     return finish(panel)
 
 

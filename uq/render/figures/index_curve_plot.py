@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -18,9 +17,8 @@ from uq.render.figures.index_plot import range_of_indices
 from uq.render.figures.panel import column, finish, heading, is_wide, logarithmic, roomy, title
 from uq.render.figures.style import LINES, SHADES, styled
 from uq.render.figures.words import as_label, labelled, place_in_words
-from uq.result.elements import Element, named_elements
-from uq.result.nesting import one_of_each_sample
-from uq.result.variables import outputs_of
+from uq.result.elements import Element
+from uq.result.result import AnyResult, Result
 from uq.text.units import unit_of
 
 FEWEST = 3
@@ -29,19 +27,19 @@ FEWEST = 3
 _MOST_INPUTS = 4
 
 
-def dimension_of(ds: xr.Dataset, output: str) -> str | None:
+def dimension_of(result: Result, output: str) -> str | None:
     """Return the dimension that indices of an output are drawn along; None if there is none.
 
     It is the one with most coordinates of those whose coordinates are numbers, three at least.
     """
-    dims = [dim for dim in outputs_of(ds)[output].dims if ds[dim].dtype.kind in "iuf"]
-    longest = max(dims, key=lambda dim: ds.sizes[dim], default=None)
-    return longest if longest is not None and ds.sizes[longest] >= FEWEST else None
+    dims = [dim for dim in result.outputs[output].dims if result.dataset[dim].dtype.kind in "iuf"]
+    longest = max(dims, key=lambda dim: result.dataset.sizes[dim], default=None)
+    return longest if longest is not None and result.dataset.sizes[longest] >= FEWEST else None
 
 
 @styled
 def index_curves(
-    ds: xr.Dataset,
+    result: AnyResult,
     output: str,
     *,
     method: str | None = None,
@@ -55,7 +53,7 @@ def index_curves(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         An output with a dimension of three or more numbers.
@@ -76,10 +74,11 @@ def index_curves(
     InputError
         When there is no such output or dimension, or there are no indices of all elements.
     """
-    findings = findings or Findings(ds)
-    method = method or methods(ds)[0]
-    elements = named_elements(one_of_each_sample(ds), output)
-    along = dimension_of(ds, elements[0].output)
+    result = Result.of(result)
+    findings = findings or Findings(result)
+    method = method or methods(result)[0]
+    elements = result.first_rows.named_elements(output)
+    along = dimension_of(result, elements[0].output)
     if along is None or len(elements) < FEWEST:
         raise InputError(f"'{output}' has no dimension of {FEWEST} or more numbers")
     whole = findings.indices(method, next(wholes(elements)).name)
@@ -91,11 +90,13 @@ def index_curves(
     panels: dict[str, list[tuple[float, TargetIndices]]] = {}
     for one in elements:
         others = {dim: at for dim, at in one.place.items() if dim != along}
-        place = place_in_words(ds, replace(one, place=others))
+        place = place_in_words(result, replace(one, place=others))
         name = f"{form}({one.name})" if form else one.name
         found = findings.indices(method, name)
         panels.setdefault(place, []).append((float(one.place[along]), found))
-    unit = unit_of(ds[along].attrs.get("units", "1"), float(np.abs(ds[along]).max()))
+    unit = unit_of(
+        result.dataset[along].attrs.get("units", "1"), float(np.abs(result.dataset[along]).max())
+    )
     bands = ", with 95 % bands" if any(one.has_interval for one in of_all.values()) else ""
     drawn = column(axes, 0.6 + 1.5 * len(panels), len(panels))
     for panel, (place, points) in zip(drawn, panels.items(), strict=True):
@@ -107,7 +108,8 @@ def index_curves(
             ]
             value, low, high = np.array(numbers).T
             style: Any = {"color": SHADES[i], "ls": LINES[i]}
-            words = f"{labelled(ds[name], width=44)}: {kind.text(of_all[name].value)} all together"
+            called = labelled(result.dataset[name], width=44)
+            words = f"{called}: {kind.text(of_all[name].value)} all together"
             panel.plot(at, value, marker=".", ms=4, label=words, **style)
             panel.fill_between(at, low, high, color=SHADES[i], alpha=0.25, lw=0)
         panel.set_ylim(range_of_indices(panel.get_ylim()))
@@ -116,7 +118,7 @@ def index_curves(
         logarithmic(drawn[-1])
     else:
         roomy(drawn[-1])
-    drawn[-1].set_xlabel(labelled(ds[along], unit.name))
+    drawn[-1].set_xlabel(labelled(result.dataset[along], unit.name))
     heading(drawn[0], as_label(_subject(elements[0], form), width=48))
     return finish(drawn[-1])
 

@@ -1,7 +1,6 @@
 """The figure of sensitivity indices."""
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -13,14 +12,13 @@ from uq.indices.index import BY_CORRELATION
 from uq.render.figures.panel import arrows, column, finish, heading, roomy
 from uq.render.figures.style import BARS, INK, styled
 from uq.render.figures.words import as_label, element_in_words, labelled
-from uq.result.elements import analysis_of, named_elements
-from uq.result.variables import is_category
+from uq.result.result import AnyResult, Result
 from uq.text.numbers import threshold
 
 
 @styled
 def index_bars(
-    ds: xr.Dataset,
+    result: AnyResult,
     output: str,
     *,
     method: str | None = None,
@@ -31,7 +29,7 @@ def index_bars(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         A name that `uq.sensitivity` returns.
@@ -51,18 +49,19 @@ def index_bars(
     InputError
         When there is no such output, the name is ambiguous, or there are no indices.
     """
-    found = found or _only(ds, output, method)
+    result = Result.of(result)
+    found = found or _only(result, output, method)
     name, every = found.name, found.kinds().items()
     kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [
-        labelled(ds[parameter], width=30)
+        labelled(result.dataset[parameter], width=30)
         + f"\n({BY_CORRELATION})" * (parameter in found.indices.by_correlation)
         for parameter in parameters
     ]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
-    said = as_label(subject(ds, name), width=56)
+    said = as_label(subject(result, name), width=56)
     (panel,) = column(axes, 0.8 + 0.13 * (lines.sum() + said.count("\n")))
     middle = np.cumsum(lines) - lines / 2
     thickness, ends = 0.8 * lines.min() / len(kinds), []
@@ -106,9 +105,9 @@ def range_of_indices(ends: tuple[float, float]) -> tuple[float, float]:
     return max(ends[0], -0.25), min(ends[1], 1.25)
 
 
-def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
+def _only(result: Result, output: str, method: str | None) -> TargetIndices:
     """Return the indices of the only target of a name."""
-    found = sensitivities(ds, method, output).targets
+    found = sensitivities(result, method, output).targets
     if len(found) > 1:
         raise InputError(f"'{output}' is ambiguous; name one of: {', '.join(found)}")
     ((name, one),) = found.items()
@@ -117,16 +116,16 @@ def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
     return one
 
 
-def subject(ds: xr.Dataset, name: str) -> str:
+def subject(result: Result, name: str) -> str:
     """Describe a target of `uq.assess.sensitivities`."""
     form, inside, at = split_name(name)
     category, _, label = inside.rpartition("=")
-    words = output_of(ds, name)
-    if is_category(ds, category.partition("[")[0]):
+    words = output_of(result, name)
+    if result.is_category(category.partition("[")[0]):
         return f"whether the {words.removeprefix('the ')}{',' * ('[' in category)} is {label}"
-    element, *_ = named_elements(ds, inside)
+    element, *_ = result.named_elements(inside)
     if at:
-        asked = analysis_of(ds).thresholds.get(element.output, ())
+        asked = result.analysis.thresholds.get(element.output, ())
         at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)
         side = "below" if "<" in name else "above"
         size = "magnitude of the " * element.is_angle
@@ -137,14 +136,16 @@ def subject(ds: xr.Dataset, name: str) -> str:
     return words
 
 
-def output_of(ds: xr.Dataset, name: str) -> str:
+def output_of(result: Result, name: str) -> str:
     """Describe the output that a target of `uq.assess.sensitivities` is of, with its place."""
     _, inside, _ = split_name(name)
     category = inside.rpartition("=")[0]
     output, _, place = category.partition("[")
-    if is_category(ds, output):
-        return ", ".join(filter(None, (ds[output].attrs["long_name"], place.removesuffix("]"))))
-    element, *others = named_elements(ds, inside)
+    if result.is_category(output):
+        return ", ".join(
+            filter(None, (result.dataset[output].attrs["long_name"], place.removesuffix("]")))
+        )
+    element, *others = result.named_elements(inside)
     if others:
         return f"{element.meaning}, all {1 + len(others)} elements together"
-    return element_in_words(ds, element)
+    return element_in_words(result, element)

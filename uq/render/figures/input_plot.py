@@ -4,7 +4,6 @@ import textwrap
 from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -14,7 +13,8 @@ from uq.render.figures.elements_plot import bins, input_axis
 from uq.render.figures.panel import figure_of, grid, logarithmic, roomy
 from uq.render.figures.style import INK, ROWS, styled
 from uq.render.figures.words import as_label
-from uq.result.elements import Floats, independent_rows
+from uq.result.elements import Floats
+from uq.result.result import AnyResult, Result
 from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within
 from uq.text.numbers import grouped, printed
@@ -24,13 +24,13 @@ _IN_ONE_COLUMN = 2  # inputs
 
 @styled
 def inputs(
-    ds: xr.Dataset, *, names: Sequence[str] | None = None, axes: Axes | None = None
+    result: AnyResult, *, names: Sequence[str] | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the distribution of each input, with its stated law.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     names : sequence of str, optional
         Inputs; by default all.
@@ -46,9 +46,10 @@ def inputs(
     InputError
         When the rows do not follow the laws.
     """
-    found, weights = laws_and_values(ds), weights_of_samples(ds)
+    result = Result.of(result)
+    found, weights = laws_and_values(result), weights_of_samples(result)
     if not found:
-        raise InputError(f"the rows of a '{ds.attrs['design']}' design do not follow the laws")
+        raise InputError(f"the rows of a '{result.design_name}' design do not follow the laws")
     if unknown := [name for name in names or () if name not in found]:
         raise InputError(f"no such input '{unknown[0]}' (allowed: {choices(found)})")
     found = {name: found[name] for name in names or found}
@@ -61,14 +62,14 @@ def inputs(
         width = 44 if columns == 1 else 20
         per = 1.0
         if law.times is None:
-            per = input_axis(panel, ds, name, width)
+            per = input_axis(panel, result, name, width)
         else:
-            factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
+            factor = f"{result.dataset[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))
         _panel(panel, law, values, weights, per, ticks=6 // columns)
     count = len(next(iter(found.values()))[1])
     rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
-    several = independent_rows(ds).sizes["sample"] > count
+    several = len(result.independent) > count
     of = ", one of each sample" * several
     said = f"Share of {rows} per bin{of}; line: stated law"
     panels[0].set_title(textwrap.fill(printed(said), 50).replace("\u00a0", " "), loc="left")

@@ -16,6 +16,7 @@ from uq.render.figures.panel import column, finish
 from uq.render.figures.quantities import families, find, label_axes, pair, scale_of
 from uq.render.figures.style import COLOURS, LINES, are_many, point_size, styled
 from uq.render.figures.words import as_label, literal, powers
+from uq.result.result import AnyResult, Result
 from uq.text.numbers import in_unit, minus, percent
 from uq.text.units import ReadableUnit
 
@@ -26,7 +27,7 @@ _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 @styled
 def curve(
-    ds: xr.Dataset, output: str, *, against: str | None = None, axes: Axes | None = None
+    result: AnyResult, output: str, *, against: str | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
 
@@ -35,7 +36,7 @@ def curve(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
     output : str
         A variable along one dimension, and optionally a second one, for instance ``site``, with
         one curve for each coordinate.
@@ -55,15 +56,16 @@ def curve(
     InputError
         When a quantity does not exist.
     """
-    across, up = pair(ds, against or _first_dimension(ds, output), output)
+    result = Result.of(result)
+    across, up = pair(result.dataset, against or _first_dimension(result, output), output)
     (axes,) = column(axes, 2.2)
     scales = label_axes(axes, across, up)
     along = across.dims[0]
     across, up = across.transpose(..., along), up.transpose(..., along)
     for i, (xs, ys, style) in enumerate(families(across, up, scales)):
         axes.plot(xs, ys, ls=LINES[i % len(LINES)], **style)
-    if "regime" in ds and ds["regime"].dims == (along,):
-        kinds = ds["regime"].values
+    if "regime" in result.dataset and result.dataset["regime"].dims == (along,):
+        kinds = result.dataset["regime"].values
         changed = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
         changes = np.unique(across.values[..., changed]) * scales[0].factor
         for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
@@ -74,7 +76,7 @@ def curve(
 
 @styled
 def bifurcation(
-    ds: xr.Dataset,
+    result: AnyResult,
     output: str,
     *,
     against: str | None = None,
@@ -85,7 +87,7 @@ def bifurcation(
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
     output : str
         A variable along the dimension of the parameter and others, NaN where it has no value.
     against : str, optional
@@ -107,8 +109,12 @@ def bifurcation(
     InputError
         When a quantity does not exist.
     """
-    up, across = find(ds, output), find(ds, against or _first_dimension(ds, output))
-    kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
+    result = Result.of(result)
+    up, across = (
+        find(result.dataset, output),
+        find(result.dataset, against or _first_dimension(result, output)),
+    )
+    kinds = find(result.dataset, by) if by else xr.full_like(across, "", dtype=object)
     known = str(kinds.attrs.get("flag_meanings", "")).split()
     (axes,) = column(axes, 2.4)
     scales = label_axes(axes, across, up)
@@ -186,8 +192,8 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     return finish(axes)
 
 
-def _first_dimension(ds: xr.Dataset, output: str) -> str:
-    return str(next(iter(find(ds, output).dims), output))
+def _first_dimension(result: Result, output: str) -> str:
+    return str(next(iter(find(result.dataset, output).dims), output))
 
 
 def _basin(one: xr.Dataset, outputs: Sequence[str], width: int) -> str:

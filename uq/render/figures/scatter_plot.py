@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -27,12 +26,8 @@ from uq.result.elements import (
     Element,
     Floats,
     Mask,
-    independent_rows,
-    named_elements,
-    replicates_of,
 )
-from uq.result.variables import input_unit
-from uq.result.weights import refuse_weights
+from uq.result.result import AnyResult, Result
 from uq.stats import intervals, order_statistics
 from uq.stats.tails import lacks_variance
 from uq.text.numbers import counted
@@ -48,14 +43,14 @@ _GAP = 0.1  # between neighbouring rows, over the width of the panel, that inter
 
 
 @styled
-def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw an output against its most influential inputs, with conditional means.
 
     Rows in several regimes have a line for each, which stops where an input has no such row.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         An output or one element of it; for an output with several elements, the first is drawn.
@@ -68,9 +63,10 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    refuse_weights(ds, "a scatter plot")
-    rows = independent_rows(ds)
-    element = named_elements(rows, output)[0]
+    result = Result.of(result)
+    result.refuse_weights("a scatter plot")
+    rows = result.independent
+    element = rows.named_elements(output)[0]
     inputs = independent_inputs(rows)
     first = leading(inputs, element)[:_MOST_INPUTS]
     alone = len(first) < 2
@@ -85,14 +81,14 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     parts = _parts(rows, len(element.values))
     medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
     for panel, name in zip(panels, first, strict=True):
-        per = input_axis(panel, ds, name, width=46 if alone else 30)
+        per = input_axis(panel, result, name, width=46 if alone else 30)
         x = inputs[name] / per
         across = is_wide(x)
         if across:
             logarithmic(panel)
         _points(panel, x, shown)
         for words, (own, colour) in parts.items():
-            _conditional(panel, x, shown, own, colour, words, medians, replicates_of(rows) is None)
+            _conditional(panel, x, shown, own, colour, words, medians, rows.replicates is None)
         if not across:
             roomy(panel, 6 if alone else 4)
         whole_numbers(panel.yaxis)
@@ -100,8 +96,8 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
             logarithmic(panel, vertical=True)
         if not np.isfinite(shown.values).any():
             panel.set_yticks([])
-        mark_thresholds(panel, ds, element, unit, vertical=True)
-    above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(ds, element)]
+        mark_thresholds(panel, result, element, unit, vertical=True)
+    above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(result, element)]
     what = "median" if medians else "mean"
     of_each = f"lines: {what} in slices of a regime's rows" if len(parts) > 1 else ""
     said = [rows_in_words([element]), of_each]
@@ -111,12 +107,12 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     return finish(panels[0])
 
 
-def _parts(rows: xr.Dataset, count: int) -> dict[str, tuple[Mask, str]]:
+def _parts(rows: Result, count: int) -> dict[str, tuple[Mask, str]]:
     """Return which rows a line describes, and its colour: of each regime, or of all rows."""
     regimes = occurring_regimes(rows)
     if len(regimes) < 2:
         return {"": (np.ones(count, dtype=bool), INK)}
-    codes = rows["regime"].values
+    codes = rows.dataset["regime"].values
     return {name: (codes == code, colour) for name, (code, colour) in regimes.items()}
 
 
@@ -237,12 +233,12 @@ def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
 
 
 @styled
-def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
+def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     """Draw the inputs that best separate the regimes against each other, coloured by regime.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result of a model with regimes and at least two uncertain inputs.
     axes : matplotlib.axes.Axes, optional
         Where to draw: panels divide its area. By default a new figure.
@@ -256,15 +252,16 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     InputError
         When there are no regimes, or fewer than two inputs.
     """
-    refuse_weights(ds, "pairs of inputs by regime")
-    rows = independent_rows(ds)
+    result = Result.of(result)
+    result.refuse_weights("pairs of inputs by regime")
+    rows = result.independent
     regimes = occurring_regimes(rows)
     inputs = independent_inputs(rows)
     if not regimes or len(inputs) < 2:
         raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
-    codes = rows["regime"].values
+    codes = rows.dataset["regime"].values
     leading = _deciding(inputs, codes)[:_MOST_INPUTS]
-    units = {name: input_unit(ds, name) for name in leading}
+    units = {name: result.input_unit(name) for name in leading}
     side = len(leading) - 1
     alone = side == 1
     height = 2.1 if alone else 1.45 * side
@@ -288,9 +285,13 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
             whole_numbers(panel.yaxis)
             roomy(panel, 6 if alone else 3)
             if i == side - 1:
-                panel.set_xlabel(labelled(rows[across], units[across].name, 38 if alone else 17))
+                panel.set_xlabel(
+                    labelled(rows.dataset[across], units[across].name, 38 if alone else 17)
+                )
             if j == 0:
-                panel.set_ylabel(labelled(rows[down], units[down].name, 30 if alone else 20))
+                panel.set_ylabel(
+                    labelled(rows.dataset[down], units[down].name, 30 if alone else 20)
+                )
     for name, (_, colour) in regimes.items():
         panels[0, 0].plot([], [], ".", ms=size, mew=0, color=colour, label=name)
     panels[0, 0].set_title(f"{counted(len(codes), 'row')} by regime", loc="left")

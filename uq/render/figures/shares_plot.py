@@ -1,7 +1,6 @@
 """The figure of the shares of a category."""
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -11,18 +10,17 @@ from uq.render.figures.elements_plot import occurring_regimes
 from uq.render.figures.panel import column, finish, title
 from uq.render.figures.style import BARS, INK, styled
 from uq.render.figures.words import as_label, literal
-from uq.result.elements import category_codes, independent_rows, weights_of
-from uq.result.variables import is_category
+from uq.result.result import AnyResult, Result
 from uq.text.numbers import counted
 
 
 @styled
-def shares(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw the share of the rows in each label of a category, with 95 % intervals.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result, xarray.Dataset or path
         A result.
     output : str
         A category, such as ``regime``, or one element of it.
@@ -38,12 +36,13 @@ def shares(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     InputError
         When it is no category.
     """
+    result = Result.of(result)
     name = output.partition("[")[0]
-    if not is_category(ds, name):
+    if not result.is_category(name):
         raise InputError(f"'{output}' is no category of this result")
-    rows = independent_rows(ds)
-    weights = weights_of(rows)
-    found = {one: category_shares(rows, one, weights) for one in category_codes(rows, output)}
+    rows = result.independent
+    weights = rows.weights
+    found = {one: category_shares(rows, one, weights) for one in rows.codes(output)}
     labels = [
         label
         for label in next(iter(found.values()))
@@ -66,6 +65,6 @@ def shares(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     panel.set_yticks(np.arange(len(labels))[::-1], list(map(literal, labels)))
     known = any(of[label].estimate.has_interval for of in found.values() for label in labels)
     panel.set(xlim=(0, 1), xlabel="Share of rows" + known * ", with 95 % interval")
-    meaning = as_label(str(ds[name].attrs["long_name"]), width=46)
-    title(panel, meaning, counted(rows.sizes["sample"], "row"))
+    meaning = as_label(str(result.dataset[name].attrs["long_name"]), width=46)
+    title(panel, meaning, counted(len(rows), "row"))
     return finish(panel)

@@ -13,9 +13,6 @@ from uq.render.figures.catalogue import FigureSubject
 from uq.render.figures.convergence_plot import followed, total_indices
 from uq.render.figures.elements_plot import occurring_regimes
 from uq.render.figures.index_curve_plot import dimension_of
-from uq.result.elements import analysis_of, shown_outputs
-from uq.result.variables import outputs_of
-from uq.result.weights import has_weights
 from uq.text.element_names import is_whole
 
 _MOST_INPUTS = 6
@@ -28,15 +25,15 @@ def the_result(findings: Findings) -> Iterator[FigureSubject]:
 
 def outputs(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each output with numbers."""
-    if findings.rows.sizes["sample"]:
-        known, ds = outputs_of(findings.ds), findings.ds
-        shown = shown_outputs(ds, analysis_of(ds))
+    if len(findings.rows):
+        known, result = findings.result.outputs, findings.result
+        shown = result.shown_outputs(result.analysis)
         yield from (FigureSubject(output) for output in shown if not known[output].is_category)
 
 
 def inputs(findings: Findings) -> Iterator[FigureSubject]:
     """Yield the inputs with laws, as many at a time as fit a quarter of a page."""
-    names = list(laws_and_values(findings.ds))
+    names = list(laws_and_values(findings.result))
     count = -(-len(names) // _MOST_INPUTS)
     for i in range(count):
         part = f"{i + 1} of {count}" if count > 1 else ""
@@ -46,7 +43,7 @@ def inputs(findings: Findings) -> Iterator[FigureSubject]:
 
 def categories(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each category that occurs, the regime among them."""
-    if findings.rows.sizes["sample"]:
+    if len(findings.rows):
         shares = findings.summary.shares.items()
         occur = (name for name, of in shares if any(one.facts["count"] for one in of.values()))
         yield from map(FigureSubject, dict.fromkeys(name.partition("[")[0] for name in occur))
@@ -60,7 +57,7 @@ def targets(findings: Findings) -> Iterator[FigureSubject]:
 
 def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
     """Yield each method with what it finds for each target."""
-    for method in methods(findings.ds):
+    for method in methods(findings.result):
         try:
             targets_of = findings.sensitivities(method).targets
         except InputError:  # the report gives the reason
@@ -75,7 +72,7 @@ def curves(findings: Findings) -> Iterator[FigureSubject]:
     for method, found in _indices(findings):
         inside = split_name(found.name)[1]
         output = inside.partition("[")[0]
-        if is_whole(inside) and dimension_of(findings.ds, output):
+        if is_whole(inside) and dimension_of(findings.result, output):
             yield FigureSubject(output, method, {"method": method, "findings": findings})
 
 
@@ -96,7 +93,7 @@ def crossed_targets(findings: Findings) -> Iterator[FigureSubject]:
 
 def is_lifetime(findings: Findings, name: str) -> bool:
     """Whether the output is a lifetime."""
-    return outputs_of(findings.ds)[name].is_lifetime
+    return findings.result.outputs[name].is_lifetime
 
 
 def is_no_lifetime(findings: Findings, name: str) -> bool:
@@ -116,7 +113,7 @@ def in_one_regime(findings: Findings, name: str) -> bool:
 
 def has_plain_rows(findings: Findings, name: str) -> bool:
     """Whether each row counts once."""
-    return not has_weights(findings.ds)
+    return not findings.result.has_weights
 
 
 def has_several_inputs(findings: Findings, name: str) -> bool:
@@ -126,4 +123,4 @@ def has_several_inputs(findings: Findings, name: str) -> bool:
 
 def has_running_estimate(findings: Findings, name: str) -> bool:
     """Whether an estimate of the output is known for fewer rows."""
-    return bool(followed(findings.ds, name, findings.running)[0])
+    return bool(followed(findings.result, name, findings.running)[0])

@@ -9,6 +9,7 @@ from typing import Any
 import xarray as xr
 
 from uq.result.elements import Element
+from uq.result.result import Result
 from uq.text.literals import plain
 from uq.text.numbers import capitalized, counted, grouped, minus, percent, quantity
 from uq.text.symbols import IN_TEXT, LETTERS, WORD
@@ -111,9 +112,9 @@ def unbroken(unit: str) -> str:
     return powers(unit).replace(" ", "\u00a0")
 
 
-def place_in_words(ds: xr.Dataset, element: Element) -> str:
+def place_in_words(result: Result, element: Element) -> str:
     """Return the place of an element within its output: ``left, 250 µm``."""
-    words, variable = [], ds[element.output]
+    words, variable = [], result.dataset[element.output]
     for dim, value in element.place.items():
         attrs: Mapping[str, Any] = variable[dim].attrs if dim in variable.coords else {}
         if isinstance(value, str):
@@ -125,10 +126,10 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
     return ", ".join(words)
 
 
-def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
+def label(result: Result, element: Element, never: float = 0.0) -> str:
     """Return the label of a curve: its place, and the share of rows that never end."""
     share = f"never: {percent(never)}" if never > 0 else ""
-    return literal(minus(", ".join(filter(None, (place_in_words(ds, element), share)))))
+    return literal(minus(", ".join(filter(None, (place_in_words(result, element), share)))))
 
 
 def rows_in_words(chosen: Sequence[Element]) -> str:
@@ -143,9 +144,9 @@ def rows_in_words(chosen: Sequence[Element]) -> str:
     return ", ".join(counts)
 
 
-def element_in_words(ds: xr.Dataset, element: Element) -> str:
+def element_in_words(result: Result, element: Element) -> str:
     """Return the meaning of an element and its place: ``time to wear depth, left, 250 µm``."""
-    return ", ".join(filter(None, (element.meaning, place_in_words(ds, element))))
+    return ", ".join(filter(None, (element.meaning, place_in_words(result, element))))
 
 
 def in_words(variable: xr.DataArray) -> str:

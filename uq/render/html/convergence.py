@@ -49,7 +49,7 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
     if not found:
         return Convergence(None, [], "there is no numeric output", [])
     try:
-        errors = enough(findings.ds)
+        errors = enough(findings.result)
     except InputError as refused:
         return Convergence(None, [], str(refused), [])
     lines = [

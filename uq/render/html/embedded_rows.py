@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.answer.parts import Quantity
 from uq.assess.answer.wording import called
@@ -20,20 +19,11 @@ from uq.render.figures.words import element_in_words, literal, meaning_of, symbo
 from uq.render.html.first_scatter import first_element, first_input
 from uq.render.html.symbols import parts_of
 from uq.render.html.tolerances import promised, tolerances
-from uq.result.commands import model_option
 from uq.result.element import Element
 from uq.result.elements import (
-    analysis_of,
-    are_independent,
-    elements_of,
     flags,
-    has_independent_samples,
-    replicates_of,
-    shown_outputs,
 )
-from uq.result.result_file import failed
-from uq.result.variables import input_unit
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.stats.clusters import Clusters
 from uq.stats.intervals import upper_probability
 from uq.stats.quantile_functions import student
@@ -91,11 +81,11 @@ def rows_inside(
     """
     if why_no_rows(findings):
         return None
-    analysis, whole, outputs = analysis_of(findings.ds), findings.rows, _outputs(findings)
+    analysis, whole, outputs = findings.result.analysis, findings.rows, _outputs(findings)
     inputs = independent_inputs(whole)
-    rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
+    rows = part_of(whole, len(inputs) + sum(1 for _ in whole.elements(outputs)))
     elements = list(population(rows, outputs))
-    columns = [_input(rows, name, input_unit(findings.ds, name)) for name in inputs]
+    columns = [_input(rows, name, findings.result.input_unit(name)) for name in inputs]
     promises = {one.name: one.promise for one in answered if one.promise is not None}
     columns += [
         _output(rows, one, analysis) | {"promised": list(promised(promises.get(one.name)))}
@@ -113,12 +103,12 @@ def rows_inside(
             f" {design['intervals']}"
         )
     return {
-        "model": model_option(rows),
+        "model": rows.model_option,
         "file": shlex.quote(plain(file)),
-        "total": whole.sizes["sample"],
-        "allowed": _allowed(findings.ds),
-        "numbers": encoded(rows["sample"].values, "<i4"),
-        "failed": encoded(failed(rows), "u1"),
+        "total": len(whole),
+        "allowed": _allowed(findings.result),
+        "numbers": encoded(rows.dataset["row"].values, "<i4"),
+        "failed": encoded(rows.failed, "u1"),
         "columns": columns,
         "categories": list(_categories(rows)),
         "colours": {"rows": ROWS, "limit": LIMIT},
@@ -128,60 +118,60 @@ def rows_inside(
     }
 
 
-def _allowed(ds: xr.Dataset) -> list[int]:
+def _allowed(result: Result) -> list[int]:
     """Return the first and last number of a row, whether the page holds it or not."""
-    numbers = ds["sample"].values
+    numbers = result.dataset["row"].values
     return [int(numbers.min()), int(numbers.max())]
 
 
 def why_no_rows(findings: Findings) -> str:
     """Return why a page cannot compute with the rows of a result; "" where it can."""
-    if has_weights(findings.ds):
+    if findings.result.has_weights:
         return "Inspections have weighted the rows, and a page computes with rows that count alike."
-    if not findings.rows.sizes["sample"]:
-        return f"No row of design '{findings.ds.attrs['design']}' follows the laws of the inputs."
-    if any(elements_of(findings.rows, _outputs(findings))):
+    if not len(findings.rows):
+        return f"No row of design '{findings.result.design_name}' follows the laws of the inputs."
+    if any(findings.rows.elements(_outputs(findings))):
         return ""
-    if any(elements_of(findings.rows, shown_outputs(findings.ds, analysis_of(findings.ds)))):
+    if any(findings.rows.elements(findings.result.shown_outputs(findings.result.analysis))):
         return "No row has a value of any output."
     return "The outputs are categories; there is no number to draw."
 
 
 def _outputs(findings: Findings) -> list[str]:
     """Return the outputs that a page shows and some row has."""
-    shown = shown_outputs(findings.ds, analysis_of(findings.ds))
+    shown = findings.result.shown_outputs(findings.result.analysis)
     return [one for one in shown if one not in findings.absent]
 
 
-def part_of(rows: xr.Dataset, columns: int) -> xr.Dataset:
+def part_of(rows: Result, columns: int) -> Result:
     """Return rows, or if a page cannot hold as many, a random part of them: whole samples.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     columns : int
         Numbers of each row.
 
     Returns
     -------
-    xarray.Dataset
+    Result
         The same each time.
     """
-    count = rows.sizes["sample"]
+    count = len(rows)
     most = min(MOST_ROWS, MOST_NUMBERS // columns)
     if count <= most:
         return rows
-    part = replicates_of(rows)
+    part = rows.replicates
     sample = np.asarray(part) if isinstance(part, Clusters) else np.arange(count)
     names, size = np.unique(sample, return_counts=True)
-    order = np.random.default_rng(int(rows.attrs["seed"])).permutation(len(names))
+    order = np.random.default_rng(int(rows.dataset.attrs["seed"])).permutation(len(names))
     chosen = names[order[np.cumsum(size[order]) <= most]]
-    return rows.isel(sample=np.isin(sample, chosen))
+    return rows.take(np.isin(sample, chosen))
 
 
-def _input(rows: xr.Dataset, name: str, unit: ReadableUnit) -> dict[str, Any]:
-    variable = rows[name]
+def _input(rows: Result, name: str, unit: ReadableUnit) -> dict[str, Any]:
+    variable = rows.dataset[name]
     return _column(name, called(name), *unit, variable.values) | {
         "role": "input",
         "symbol": parts_of(symbol_beside(called(name), variable)),
@@ -190,7 +180,7 @@ def _input(rows: xr.Dataset, name: str, unit: ReadableUnit) -> dict[str, Any]:
     }
 
 
-def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
+def _output(rows: Result, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
     unit, per = display_unit(element.units, element.values)
     column = _column(element.name, element_in_words(rows, element), unit, per, element.values)
     return column | {
@@ -234,13 +224,13 @@ def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[s
     }
 
 
-def _categories(rows: xr.Dataset) -> Iterator[dict[str, Any]]:
+def _categories(rows: Result) -> Iterator[dict[str, Any]]:
     """Yield the regimes, and how rows ended."""
     colours = {name: colour for name, (_, colour) in occurring_regimes(rows).items()}
     for name, label in (("regime", "Regime"), ("status", "Status")):
-        if name in rows:
-            codes = rows[name].values
-            counts = {code: int((codes == code).sum()) for code, _ in flags(rows[name])}
+        if name in rows.dataset:
+            codes = rows.dataset[name].values
+            counts = {code: int((codes == code).sum()) for code, _ in flags(rows.dataset[name])}
             yield {
                 "name": name,
                 "label": label,
@@ -252,23 +242,23 @@ def _categories(rows: xr.Dataset) -> Iterator[dict[str, Any]]:
                         "count": counts[code],
                         "colour": colours.get(literal(words), ROWS) if name == "regime" else None,
                     }
-                    for code, words in flags(rows[name])
+                    for code, words in flags(rows.dataset[name])
                     if counts[code]
                 ],
             }
 
 
-def _design(rows: xr.Dataset) -> dict[str, Any]:
+def _design(rows: Result) -> dict[str, Any]:
     """Return what intervals rest on, and a sentence that says so."""
-    part = replicates_of(rows)
+    part = rows.replicates
     found: dict[str, Any] = {
-        "independent": are_independent(rows),
+        "independent": rows.has_independent_rows,
         "replicate": None,
         "sample": None,
         "samples": None,
         "parts": "rows",
     }
-    several = "samples" if has_independent_samples(rows) else "replicates"
+    several = "samples" if rows.has_independent_samples else "replicates"
     count = 0 if part is None else len(np.unique(part))
     if isinstance(part, Clusters):
         found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}

@@ -6,8 +6,6 @@ from functools import partial
 from math import isfinite
 from typing import NamedTuple
 
-import xarray as xr
-
 from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.findings import Findings
 from uq.assess.ranked_indices import Values, lines
@@ -17,6 +15,7 @@ from uq.errors import InputError
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
 from uq.render.figures.index_plot import subject
 from uq.render.html.cells import SHARE, Cell, HtmlTable
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 from uq.text.numbers import capitalized, counted
@@ -76,7 +75,7 @@ def sensitivity_of(findings: Findings) -> list[MethodTable]:
     -------
     list of MethodTable
     """
-    return [_method(findings, name) for name in methods(findings.ds)]
+    return [_method(findings, name) for name in methods(findings.result)]
 
 
 def _method(findings: Findings, name: str) -> MethodTable:
@@ -87,17 +86,17 @@ def _method(findings: Findings, name: str) -> MethodTable:
     used = f"from {counted(found.rows_used, 'row')}"
     if found.groups_dropped:
         used += f"; {counted(found.groups_dropped, 'group')} with missing values dropped"
-    subjects = (_subject(findings.ds, name, one) for one in found.targets.values())
+    subjects = (_subject(findings.result, name, one) for one in found.targets.values())
     return MethodTable(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> IndexTable:
+def _subject(result: Result, method: str, found: TargetIndices) -> IndexTable:
     name, indices = found.name, found.indices
-    words = capitalized(readable(subject(ds, name)))
+    words = capitalized(readable(subject(result, name)))
     if found.refused:
         return IndexTable(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    of = f"{NumberTarget(ds, name).name} by {method}"
+    of = f"{NumberTarget(result, name).name} by {method}"
     listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
     tables = tuple(_table(caption, one, indices, traced) for caption, one in listed if one)

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from math import floor, log10
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.answer.sources import mark
 from uq.assess.answer.wording import DisplayUnit, unit_of_input
@@ -13,8 +12,7 @@ from uq.contract import Floats
 from uq.render.figures.words import meaning_of, symbol_of, unbroken
 from uq.render.html.cells import Cell, HtmlTable, without_empty_columns
 from uq.render.html.symbols import indexed
-from uq.result.elements import study_file_of
-from uq.result.variables import input_unit
+from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.study.file import Tied
 from uq.text.keys import key_of
@@ -23,20 +21,20 @@ from uq.text.symbols import readable, symbol
 from uq.text.units import PURE, beside, unit_of
 
 
-def input_tables(ds: xr.Dataset) -> Iterator[HtmlTable]:
+def input_tables(result: Result) -> Iterator[HtmlTable]:
     """Yield the tables of uncertain inputs and of rank correlations.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
 
     Yields
     ------
     HtmlTable
     """
-    yield _uncertain(ds)
-    study = study_file_of(ds)
+    yield _uncertain(result)
+    study = result.study
     if study.dependence is not None:
         names, matrix = study.dependence.parameters, study.dependence.rank_correlation
         rows = [
@@ -49,35 +47,48 @@ def input_tables(ds: xr.Dataset) -> Iterator[HtmlTable]:
         yield HtmlTable(caption, ("pair", "stated"), rows)
 
 
-def fixed_inputs(ds: xr.Dataset) -> HtmlTable | None:
+def fixed_inputs(result: Result) -> HtmlTable | None:
     """Return the table of fixed inputs, None where there are none."""
-    fixed = [name for name in ds.data_vars if ds[name].attrs.get("role") == "fixed"]
-    by_study = study_file_of(ds).fixed
-    lines = [_fixed(ds, str(name), name in by_study) for name in fixed]
+    fixed = [
+        name
+        for name in result.dataset.data_vars
+        if result.dataset[name].attrs.get("role") == "fixed"
+    ]
+    by_study = result.study.fixed
+    lines = [_fixed(result, str(name), name in by_study) for name in fixed]
     header = ("input", "value", "known", "source")
     return HtmlTable("Fixed inputs", header, lines) if lines else None
 
 
-def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
-    value = ds[name].item()
+def _fixed(result: Result, name: str, by_study: bool) -> tuple[Cell, ...]:
+    value = result.dataset[name].item()
     # The source in the model is that of the nominal value alone.
-    source = (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(ds, name)
-    unit = unit_of(str(ds[name].attrs["units"]), value)
+    source = (
+        (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(result, name)
+    )
+    unit = unit_of(str(result.dataset[name].attrs["units"]), value)
     text = beside(f"{value / unit.size:.6g}", unbroken(unit.name)).replace(" ", "\u00a0")
-    return (_name(ds, name), Cell(text, key=value), *source)
+    return (_name(result, name), Cell(text, key=value), *source)
 
 
-def _uncertain(ds: xr.Dataset) -> HtmlTable:
-    given, weights = laws_and_values(ds), weights_of_samples(ds)
+def _uncertain(result: Result) -> HtmlTable:
+    given, weights = laws_and_values(result), weights_of_samples(result)
     rows = []
-    for name, entry in study_file_of(ds).uncertain.items():
+    for name, entry in result.study.uncertain.items():
         quantiles = [Cell("")] * 3
         if name in given:
             law_of, _ = given[name]
             found = compare(*given[name], weights).sampled
-            unit = unit_of_input(ds, name) if law_of.times is None else DisplayUnit()
+            unit = unit_of_input(result, name) if law_of.times is None else DisplayUnit()
             quantiles = _quantiles(name, unit, found)
-        rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
+        rows.append(
+            (
+                _name(result, name),
+                Cell(_law(result, name, entry)),
+                *quantiles,
+                *_source(result, name),
+            )
+        )
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
     return without_empty_columns(HtmlTable("Uncertain inputs", header, rows))
 
@@ -97,20 +108,20 @@ def _quantiles(name: str, unit: DisplayUnit, found: Floats) -> list[Cell]:
     ]
 
 
-def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
+def _law(result: Result, name: str, entry: Law | Tied) -> str:
     if isinstance(entry, Tied):
         return f"equals {entry.equals}"
     if entry.times is not None:
         return f"{entry.times} times {law_in_unit(entry, PURE)}"
-    return law_in_unit(entry, input_unit(ds, name))
+    return law_in_unit(entry, result.input_unit(name))
 
 
-def _name(ds: xr.Dataset, name: str) -> Cell:
-    words = readable(meaning_of(ds[name]))
-    written = indexed(symbol(symbol_of(ds[name])))
+def _name(result: Result, name: str) -> Cell:
+    words = readable(meaning_of(result.dataset[name]))
+    written = indexed(symbol(symbol_of(result.dataset[name])))
     return Cell(name, written + f": {words}" if written else words)
 
 
-def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:
-    source = str(ds[name].attrs["source"])
+def _source(result: Result, name: str) -> tuple[Cell, Cell]:
+    source = str(result.dataset[name].attrs["source"])
     return Cell(mark(source)), Cell(source)

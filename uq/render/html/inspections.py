@@ -4,12 +4,12 @@ import csv
 import io
 import json
 
-import xarray as xr
+from uq.result.result import Result
 
 
-def inspections_csv(ds: xr.Dataset) -> str:
+def inspections_csv(result: Result) -> str:
     """Return the inspections inside a result as `uq update` reads them; "" where there are none."""
-    inspections = json.loads(ds.attrs.get("inspections", "[]"))
+    inspections = json.loads(result.dataset.attrs.get("inspections", "[]"))
     if not inspections:
         return ""
     text = io.StringIO()

@@ -6,11 +6,10 @@ import shlex
 from functools import cache
 from typing import Any
 
-import xarray as xr
 from markupsafe import Markup, escape
 
 from uq.render.html.answer import STYLE
-from uq.result.elements import study_file_of
+from uq.result.result import Result
 from uq.text.literals import plain
 from uq.text.numbers import capitalized, printed
 
@@ -18,14 +17,14 @@ _SHOWN_TEXT = 50_000
 """Characters of the study's text that a page shows: a study may contain data files."""
 
 
-def laid_out(template: str, ds: xr.Dataset, **content: Any) -> str:
+def laid_out(template: str, result: Result, **content: Any) -> str:
     """Return a page on a result as HTML.
 
     Parameters
     ----------
     template : str
         The name of one that extends ``base.html``.
-    ds : xarray.Dataset
+    result : Result
         A result.
     **content
         What this template shows besides title, style and study file.
@@ -34,13 +33,13 @@ def laid_out(template: str, ds: xr.Dataset, **content: Any) -> str:
     -------
     str
     """
-    text = ds.attrs["study"]
+    text = result.dataset.attrs["study"]
     return (
         templates()
         .get_template(template)
         .render(
-            attrs=ds.attrs,
-            study=study_file_of(ds),
+            attrs=result.dataset.attrs,
+            study=result.study,
             text=text.expandtabs(4)[:_SHOWN_TEXT],
             text_is_cut=len(text) > _SHOWN_TEXT,
             answer_style=STYLE,

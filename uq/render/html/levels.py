@@ -8,8 +8,6 @@ from uq.assess.findings import Findings
 from uq.assess.variance_by_level import SOURCES
 from uq.indices.index import S1
 from uq.render.html.cells import SHARE, Cell, HtmlTable
-from uq.result.nesting import is_nested
-from uq.result.weights import has_weights
 from uq.sampling.levels import LEVELS
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import share_text
@@ -34,12 +32,12 @@ class LevelTables(NamedTuple):
 
 def levels_of(findings: Findings) -> LevelTables | None:
     """Return the shares of a result; None where no sample has several rows, or with weights."""
-    if not is_nested(findings.ds) or has_weights(findings.ds):
+    if not findings.result.is_nested or findings.result.has_weights:
         return None
     found = findings.levels
     rows, notes = [], []
     for name, one in found.outputs.items():
-        shown = NumberTarget(findings.ds, name).name
+        shown = NumberTarget(findings.result, name).name
         rows.append((Cell(shown), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
         notes += [f"{sentence} ({shown})" for sentence in one.sentences]
     if (another := found.another_regime) is not None:

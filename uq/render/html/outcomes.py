@@ -4,8 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import isnan
 
-import xarray as xr
-
 from uq.assess.findings import Findings
 from uq.assess.regime_boundary import in_words
 from uq.assess.statistic import Listing, Reader, Statistic
@@ -14,19 +12,19 @@ from uq.assess.summary import REGIME, Described, Shares, Summary
 from uq.contract import Output, Status
 from uq.render.figures.words import place_in_words, unbroken
 from uq.render.html.cells import SHARE, Cell, HtmlTable, cell, without_empty_columns
-from uq.result.elements import elements_of, independent_rows
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 from uq.text.numbers import capitalized, percent, percent_interval, threshold
 from uq.text.units import typical, unit_of
 
 
-def status_table(ds: xr.Dataset, summary: Summary) -> HtmlTable:
+def status_table(result: Result, summary: Summary) -> HtmlTable:
     """Return the number and share of rows by status, its meaning, and the first message."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
     for label, found in summary.status.items():
-        example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
+        example = str(result.dataset["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
         share = found / max(summary.samples, 1)
         count = Cell(str(found), key=float(found), traced=key_of("status", label))
         cells = (count, Cell(percent(share), key=share, scale=SHARE))
@@ -119,13 +117,13 @@ class Outcome:
         return self.declared.unit if is_value else ""
 
 
-def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
+def outcomes(result: Result, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
     names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
     found = []
-    for element in elements_of(independent_rows(ds), list(names)):
+    for element in result.independent.elements(list(names)):
         described = summary.outputs[element.name]
-        place = place_in_words(ds, element)
+        place = place_in_words(result, element)
         found.append(Outcome(element.name, place, element.declared, described))
     return found
 

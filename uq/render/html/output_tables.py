@@ -13,7 +13,6 @@ from uq.render.html.cells import HtmlTable
 from uq.render.html.indices import IndexTable, MethodTable, of_output, output_of
 from uq.render.html.outcomes import Outcome, category_table, result_tables, words_used
 from uq.render.html.pictures import Picture
-from uq.result.elements import analysis_of, shown_outputs
 from uq.text.symbols import readable
 
 
@@ -60,15 +59,15 @@ def groups(
         Those that the head of the report does not show.
     methods : sequence of MethodTable
     """
-    ds = findings.ds
-    shown = shown_outputs(ds, analysis_of(ds))
+    result = findings.result
+    shown = result.shown_outputs(result.analysis)
     for name in dict.fromkeys((*(one.output for one in answer.quantities), *shown)):
         if name == REGIME:  # it has its own section
             continue
         own = [one for one in found if one.output == name]
         group = Group(
             name,
-            readable(str(ds[name].attrs["long_name"])),
+            readable(str(result.dataset[name].attrs["long_name"])),
             sayings([one for one in answer.quantities[1:] if one.output == name]),
             [*_shares(findings, name), *result_tables(own)],
             words_used(own),

@@ -4,8 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
@@ -25,16 +23,16 @@ from uq.render.html.outcomes import outcomes, regime_tables, status_table
 from uq.render.html.output_tables import groups
 from uq.render.html.pictures import pictures
 from uq.render.html.references import references
-from uq.result.commands import file_of, model_option, named
-from uq.result.result_file import failed, open_result
-from uq.sampling.designs import DESIGNS
+from uq.result.commands import named
+from uq.result.result import Result
+from uq.result.result_file import open_result
 from uq.study.provenance import provenance
 
 
 def write_report(
     result: str | Path,
     path: str | Path,
-    lay_out: Callable[[xr.Dataset, str], str] | None = None,
+    lay_out: Callable[[Result, str], str] | None = None,
 ) -> None:
     """Write the report of a result as one self-contained HTML file.
 
@@ -53,21 +51,21 @@ def write_report(
         When the result cannot be read or the report cannot be written.
     """
     result, path = Path(result), Path(path)
-    ds = named(open_result(result), result.name)
+    opened = Result(named(open_result(result), result.name))
     check_target(path, 0)
     if path.exists() and path.samefile(result):
         raise InputError(f"{path}: is the result itself; give the report another name")
-    text = (lay_out or page)(ds, result.name)
+    text = (lay_out or page)(opened, result.name)
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
-def page(ds: xr.Dataset, name: str) -> str:
+def page(result: Result, name: str) -> str:
     """Return the report of a result as HTML, the same text each time.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     name : str
         The name of its file.
@@ -76,31 +74,31 @@ def page(ds: xr.Dataset, name: str) -> str:
     -------
     str
     """
-    return laid_out("page.html", ds, file=name, **_content(ds, name))
+    return laid_out("page.html", result, file=name, **_content(result, name))
 
 
-def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
+def _content(result: Result, file: str) -> dict[str, Any]:
     """Return what the template lays out."""
-    findings = Findings(ds)
+    findings = Findings(result)
     answer = conclude(findings)
     summary = findings.summary
-    found = outcomes(ds, summary)
+    found = outcomes(result, summary)
     methods = sensitivity_of(findings)
     drawn = list(pictures(findings, "results", without=findings.absent))
     by_regime = list(pictures(findings, "rows"))
     headed = headline(answer, drawn, by_regime)
-    lost = int(failed(ds).sum())
+    lost = int(result.failed.sum())
     hashes = ("study_sha256", "study_identity")
     return {
-        "design": DESIGNS[ds.attrs["design"]],
+        "design": result.design,
         "summary": summary,
         "answer": headed,
         "groups": list(groups(findings, answer, found, drawn, methods)),
         "regimes_answered": regimes(answer),
-        "inputs": list(input_tables(ds)),
-        "inputs_fixed": fixed_inputs(ds),
+        "inputs": list(input_tables(result)),
+        "inputs_fixed": fixed_inputs(result),
         "inputs_drawn": list(pictures(findings, "inputs")),
-        "status": status_table(ds, summary),
+        "status": status_table(result, summary),
         "failed": lost,
         "regimes": regime_tables(findings),
         "rows_drawn": [
@@ -115,10 +113,12 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "methods": methods,
         "rows_inside": rows_inside(findings, file, answer.quantities),
         "why_no_rows": why_no_rows(findings),
-        "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
-        "result_file": file_of(ds),
-        "inspections": inspections_csv(ds),
-        "model_option": model_option(ds),
-        "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
-        "references": references(ds),
+        "provenance": [name for name in (*provenance(), *hashes) if name in result.dataset.attrs],
+        "result_file": result.file,
+        "inspections": inspections_csv(result),
+        "model_option": result.model_option,
+        "rerun": int((result.dataset["rerun"].values != 0).sum())
+        if "rerun" in result.dataset
+        else 0,
+        "references": references(result),
     }

@@ -5,7 +5,6 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import called
@@ -13,7 +12,7 @@ from uq.assess.densities import correlations
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.scaling import given_others, scalers
 from uq.result.element import Element
-from uq.sampling.designs import DESIGNS
+from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.sampling.listed_values import IntegerRange
 from uq.text.literals import plain
@@ -29,12 +28,12 @@ KNOWN = (
 LISTED = "its values are listed and have neither width nor place"
 
 
-def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] | None:
+def tolerances(rows: Result, elements: Sequence[Element]) -> dict[str, Any] | None:
     """Return the laws of inputs, which of them have sliders, and what scales lives.
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The rows inside the page.
     elements : sequence of Element
         Of these rows.
@@ -44,7 +43,7 @@ def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] 
     dict or None
         None where no input has a slider.
     """
-    if DESIGNS[rows.attrs["design"]].imported:
+    if rows.design.imported:
         return None
     inputs = inputs_of(rows)
     without = {name: why for name in inputs.laws if (why := _why_without(name, inputs))}

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.answer.answer import conclude, regimes_of, without_advice
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.answer.facts import Answer
@@ -31,10 +29,7 @@ from uq.render.trace.citations import Citation, cited
 from uq.render.trace.indices import estimator_of
 from uq.render.trace.origin import Origin
 from uq.render.trace.summary import functions_of, states_of
-from uq.result.elements import analysis_of, independent_rows, named_elements
-from uq.result.nesting import is_nested, one_of_each_sample
-from uq.result.result_file import failed
-from uq.result.weights import has_weights
+from uq.result.result import Result
 from uq.stats.intervals import share_interval
 from uq.stats.uncertainty_exponent import uncertainty_exponent
 from uq.stats.variance_components import nested_shares
@@ -51,70 +46,72 @@ _OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
 }
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the answer: of the quantity or the part alone that a path names."""
-    findings = Findings(ds)
+    findings = Findings(result)
     part, *names = path or ("",)
-    alone = not is_nested(ds)  # a level that decides changes what is said of the regimes
+    alone = not result.is_nested  # a level that decides changes what is said of the regimes
     if part == "quantities" and names and alone:
         known = tuple(quantities(findings, names[0]))
         return answer_json(Answer("", 0, 0, known, (), ()))
     if part == "regimes" and alone:
         return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
     if part in ("rows", "failed"):
-        return answer_json(Answer("", ds.sizes["sample"], int(failed(ds).sum()), (), (), ()))
+        return answer_json(Answer("", len(result), int(result.failed.sum()), (), (), ()))
     whole = conclude if part in ("", "advice") else without_advice
     return answer_json(whole(findings))
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number of the answer comes from."""
     part, *names = path
     if part in ("rows", "failed"):
-        return Origin((cited(status_counts),), ds)
+        return Origin((cited(status_counts),), result)
     if part == "intermingled":
-        return Origin((cited(uncertainty_exponent),), compared_rows(ds))
+        return Origin((cited(uncertainty_exponent),), compared_rows(result))
     if part == "levels":
-        return Origin((cited(switching if "another_regime" in names else nested_shares),), ds)
+        return Origin((cited(switching if "another_regime" in names else nested_shares),), result)
     if part == "enough":
         if "error" in names[-1]:
-            return Origin((cited(compared),), independent_rows(ds))
-        return Origin((cited(found_again), cited(share_interval)), ds)
+            return Origin((cited(compared),), result.independent)
+        return Origin((cited(found_again), cited(share_interval)), result)
     if part == "advice":
-        return Origin((cited(what_if if "tolerances" in names else unsettled),), ds)
+        return Origin((cited(what_if if "tolerances" in names else unsettled),), result)
     if "ranking" in names:
         ranking = value_at(said, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
         if "effects" in names:
-            return Origin((cited(effects),), ds)
-        return Origin((index,), ds, notes=tuple(_one_of_each(ds)))
+            return Origin((cited(effects),), result)
+        return Origin((index,), result, notes=tuple(_one_of_each(result)))
     if "earliest" in names:
-        return Origin((cited(inputs_apart),), ds)
+        return Origin((cited(inputs_apart),), result)
     if "limit" in names:
-        return Origin((cited(limit_of), cited(event_curve), cited(share_interval)), ds)
+        return Origin((cited(limit_of), cited(event_curve), cited(share_interval)), result)
     if "parts" in names or "decided_by" in names:
-        return Origin((cited(event_curve), cited(share_interval)), ds)
-    rows = independent_rows(ds)
+        return Origin((cited(event_curve), cited(share_interval)), result)
+    rows = result.independent
     if part == "regimes":
-        found = summarise(ds, analysis_of(ds)).regimes[names[0]]
+        found = summarise(result, result.analysis).regimes[names[0]]
         return Origin(tuple(map(cited, found.by)), rows)
-    states = states_of(named_elements(rows, names[0])[0])
+    states = states_of(rows.named_elements(names[0])[0])
     return Origin(
-        tuple(dict.fromkeys(_estimators(ds, said["quantities"][names[0]], *names))), rows, states
+        tuple(dict.fromkeys(_estimators(result, said["quantities"][names[0]], *names))),
+        rows,
+        states,
     )
 
 
-def _one_of_each(ds: xr.Dataset) -> Iterator[str]:
+def _one_of_each(result: Result) -> Iterator[str]:
     """Yield that an index rests on fewer rows, where samples have several."""
-    if is_nested(ds):
-        used = one_of_each_sample(ds).sizes["sample"]
+    if result.is_nested:
+        used = len(result.first_rows)
         yield f"the index rests on {grouped(used)} of these rows, the first of each sample"
 
 
-def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
+def _estimators(result: Result, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
     """Yield what computes a number of a promise, a range, an event, or of another seed."""
-    asked = with_bounds(analysis_of(ds, name.partition("[")[0]), Findings(ds))
-    found = summarise(ds, asked).outputs[name]
+    asked = with_bounds(result.analysis_of(name.partition("[")[0]), Findings(result))
+    found = summarise(result, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]
     if part == "another_seed":
         yield cited(found_again)
@@ -126,7 +123,7 @@ def _estimators(ds: xr.Dataset, said: Json, name: str, part: str, *rest: str) ->
         if keys and not said["promise"]["reason"]:
             keys = [("tolerance", "lower")]
     elif part == "range" and "".join(rest).startswith("never"):
-        yield from map(cited, (never_ending, Population if has_weights(ds) else share_interval))
+        yield from map(cited, (never_ending, Population if result.has_weights else share_interval))
         keys = []
     elif part == "promise" and "".join(rest).startswith("share_at"):
         yield cited(piles)

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.convergence import enough, estimates_from, method_shown
 from uq.assess.running_estimates import converging
 from uq.assess.statistics.table import STATISTICS
@@ -13,39 +11,38 @@ from uq.assess.targets import split_name
 from uq.render.trace.citations import cited
 from uq.render.trace.indices import estimator_of
 from uq.render.trace.origin import Origin
-from uq.result.elements import independent_rows
-from uq.result.nesting import first_samples
+from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.keys import Json, Options, Path, value_at
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of running estimates: of the element alone that a path names, if it does.
 
     Only the errors, if it asks for one: every design has them.
     """
     named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
     if path[2:] and path[2] != "estimates":
-        errors = enough(ds, named).to_dict("index")
+        errors = enough(result, named).to_dict("index")
         return {"outputs": {name: errors_json(one) for name, one in errors.items()}}
-    return convergence_json(converging(ds, named))
+    return convergence_json(converging(result, named))
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a running estimate comes from."""
     _, target, kind, *rest = path
     if kind != "estimates":
-        return Origin((cited(enough),), independent_rows(ds))
+        return Origin((cited(enough),), result.independent)
     label, place = rest[0], int(rest[1])
-    rows = first_samples(ds, said["outputs"][target]["estimates"][label][place]["samples"])
+    rows = result.first_samples(said["outputs"][target]["estimates"][label][place]["samples"])
     of = summarise(rows).outputs.get(target)
     for name, statistics in of.parts.items() if of else ():
         for one in statistics:
             if one.label == label:
                 by = tuple(map(cited, one.by or (STATISTICS[name],)))
-                return Origin(by, independent_rows(rows))
-    method = method_shown(ds)
+                return Origin(by, rows.independent)
+    method = method_shown(result)
     assert method is not None
     return Origin((estimator_of(method, label.split()[0]),), rows)
 
@@ -57,7 +54,7 @@ def again(verb: Any, found: Origin, options: Options, path: Path) -> Any:
         return value_at(errors_json(errors), path[2:])
     for name, label, numbers, *_ in estimates_from(found.rows, [path[1]]):
         if (name, label) == (path[1], path[3]):
-            entry = {"samples": int(found.rows["group"].max()) + 1} | estimate_json.numbers(
+            entry = {"samples": int(found.rows.dataset["group"].max()) + 1} | estimate_json.numbers(
                 Estimate(*numbers)
             )
             return value_at(entry, path[5:])

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.fleet import fleet, fleet_of, the_life
 from uq.assess.fleet_json import fleet_json
 from uq.assess.population import Population
@@ -11,12 +9,12 @@ from uq.errors import InputError
 from uq.render.trace.citations import cited
 from uq.render.trace.origin import Origin
 from uq.render.trace.summary import states_of
-from uq.result.elements import independent_rows, named_elements
+from uq.result.result import Result
 from uq.text.keys import Json, Options, Path
 from uq.text.quantities import read_threshold
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of fleets of a size."""
     try:
         size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
@@ -26,13 +24,13 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
         ) from None
     output, by = options.get("output"), list[float]()
     if "by" in options:
-        units = the_life(independent_rows(ds), output).declared.unit
+        units = the_life(result.independent, output).declared.unit
         by = [read_threshold("by", options["by"], "a life", units)]
-    return fleet_json(fleet_of(ds, size, by, allow, output))
+    return fleet_json(fleet_of(result, size, by, allow, output))
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number of a fleet comes from."""
-    rows = independent_rows(ds)
-    states = states_of(named_elements(rows, said["output"])[0])
+    rows = result.independent
+    states = states_of(rows.named_elements(said["output"])[0])
     return Origin((cited(fleet), cited(Population)), rows, states, tuple(said["notes"]))

@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from uq.assess.chosen_targets import chosen
 from uq.assess.design_sample import sample_of
@@ -13,24 +12,22 @@ from uq.assess.sensitivity_json import sensitivity_json
 from uq.indices.methods import METHODS
 from uq.render.trace.citations import Citation, cited
 from uq.render.trace.origin import Origin
-from uq.result.nesting import one_of_each_sample
-from uq.result.ranked_rows import ranked_rows
-from uq.result.regimes import within_regime
+from uq.result.result import Result
 from uq.text.keys import Json, Options, Path
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the indices: of the target alone that a path names, if it names one."""
     named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
-    found = sensitivities(ds, options.get("method"), named, options.get("regime"))
+    found = sensitivities(result, options.get("method"), named, options.get("regime"))
     return sensitivity_json(found)
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where an index comes from."""
     if regime := options.get("regime"):
-        ds = within_regime(ds, regime)
-    rows = one_of_each_sample(ranked_rows(ds))
+        result = result.within_regime(regime)
+    rows = result.ranked.first_rows
     by = (estimator_of(said["method"], *path[2:3]),)
     if path[0] != "outputs":
         return Origin(by, rows)

@@ -2,19 +2,17 @@
 
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.render.trace.citations import cited
 from uq.render.trace.origin import Origin
-from uq.result.elements import independent_rows
+from uq.result.result import Result
 from uq.stats.estimate_json import number
 from uq.text.keys import Json, Options, Path
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return quantiles of the inputs: of their laws as ``stated``, and as ``sampled``."""
-    given, weights = laws_and_values(ds), weights_of_samples(ds)
+    given, weights = laws_and_values(result), weights_of_samples(result)
     found = {}
     for name in path[:1] if set(path[:1]) & set(given) else given:
         one = compare(*given[name], weights)
@@ -26,6 +24,6 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     return found
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number of an input comes from."""
-    return Origin((cited(compare),), independent_rows(ds))
+    return Origin((cited(compare),), result.independent)

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.population import Population
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.epistemic_band import over_shared
@@ -15,7 +13,7 @@ from uq.learning.prior_predictive import strangeness
 from uq.learning.remaining_life import read_times, remaining
 from uq.render.trace.citations import cited
 from uq.render.trace.origin import Origin
-from uq.result.elements import independent_rows
+from uq.result.result import Result
 from uq.stats.importance_weights import effective_rows, tail_shape
 from uq.stats.weighted_means import moments_of_rows
 from uq.text.keys import Json, Options, Path
@@ -29,13 +27,13 @@ _PARTS: dict[str, Callable[..., Any]] = {
 }
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of what inspections say."""
     texts = [options["by"]] if "by" in options else []
-    return learnt_json(learnt(ds, read_times("by", texts, ds)))
+    return learnt_json(learnt(result, read_times("by", texts, result)))
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number that inspections say comes from."""
     by: list[Callable[..., Any]] = [posterior]
     if path[0] == "inputs":
@@ -44,4 +42,4 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
         by += [remaining, over_shared if "over_shared" in path else Population]
     elif path[0] in _PARTS:
         by.append(_PARTS[path[0]])
-    return Origin(tuple(map(cited, by)), independent_rows(ds), notes=tuple(said["notes"]))
+    return Origin(tuple(map(cited, by)), result.independent, notes=tuple(said["notes"]))

@@ -3,10 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import xarray as xr
-
 from uq.render.trace.citations import Citation
-from uq.result.elements import independent_rows
+from uq.result.result import Result
 
 
 @dataclass(frozen=True)
@@ -26,12 +24,12 @@ class Origin:
     """
 
     estimators: tuple[Citation, ...]
-    rows: xr.Dataset
+    rows: Result
     states: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
 
-def rows_behind(ds: xr.Dataset) -> xr.Dataset:
+def rows_behind(result: Result) -> Result:
     """Return the independent rows of a result; all of them where that none is says why."""
-    rows = independent_rows(ds)
-    return rows if rows.sizes["sample"] else ds
+    rows = result.independent
+    return rows if len(rows) else result

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from uq.result.elements import flags
+from uq.result.result import Result
 from uq.text.numbers import counted
 
 
@@ -28,12 +28,12 @@ class Run(NamedTuple):
         return f"{self.first} to {self.last}{by}"
 
 
-def runs_of(rows: xr.Dataset) -> list[Run]:
+def runs_of(rows: Result) -> list[Run]:
     """Return the numbers of some rows of a result as runs, block by block."""
-    numbers, blocks = rows["sample"].values, rows["block"].values
+    numbers, blocks = rows.dataset["row"].values, rows.dataset["block"].values
     return [
         Run(label, *run)
-        for code, label in flags(rows["block"])
+        for code, label in flags(rows.dataset["block"])
         for run in _runs(np.sort(numbers[blocks == code]))
     ]
 

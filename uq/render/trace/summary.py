@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.life_fit import fits_of
 from uq.assess.regime_boundary import BOUNDARY, boundary, boundary_json, compared_rows
 from uq.assess.statistic import Reader, Statistic
@@ -13,8 +11,8 @@ from uq.assess.summary import REGIME, Described, Summary, status_counts, summari
 from uq.assess.summary_json import put, summary_json, written
 from uq.render.trace.citations import cited
 from uq.render.trace.origin import Origin, rows_behind
-from uq.result.elements import Element, analysis_of, independent_rows, named_elements, output_names
-from uq.result.regimes import within_regime
+from uq.result.elements import Element, independent_rows
+from uq.result.result import Result
 from uq.stats.importance_weights import effective_rows, tail_shape
 from uq.stats.uncertainty_exponent import uncertainty_exponent
 from uq.text.keys import Json, Options, Path
@@ -27,12 +25,12 @@ WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
 Functions = tuple[Callable[..., Any], ...]
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of a summary, with the statistics that only the report shows.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result, or the rows that a number rests on.
     options : dict of str to str
         ``regime``.
@@ -43,10 +41,10 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     -------
     dict
     """
-    found = _found(ds, options, path)
+    found = _found(result, options, path)
     whole = summary_json(found)
     if path[:1] == (BOUNDARY,):
-        whole |= boundary_json(boundary(ds))
+        whole |= boundary_json(boundary(result))
     for name, one in found.outputs.items():
         others = [each for each in one.statistics if not each.is_read_by(Reader.JSON)]
         for parent, _, entry in written(others):
@@ -54,36 +52,36 @@ def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     return whole
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number of a summary comes from."""
     if regime := options.get("regime"):
-        ds = within_regime(ds, regime)
+        result = result.within_regime(regime)
     if path[0] in ("samples", "status"):
-        return Origin((cited(status_counts),), ds)
-    rows = rows_behind(ds)
+        return Origin((cited(status_counts),), result)
+    rows = rows_behind(result)
     if path[0] == "rows_used":
         return Origin((cited(independent_rows),), rows)
     if path[0] == BOUNDARY:
-        return Origin((cited(uncertainty_exponent),), compared_rows(ds))
+        return Origin((cited(uncertainty_exponent),), compared_rows(result))
     if path[0] in WEIGHTS:
         return Origin((cited(WEIGHTS[path[0]]),), rows)
-    return in_summary(_found(ds, {}, path), rows, path)
+    return in_summary(_found(result, {}, path), rows, path)
 
 
-def in_summary(found: Summary, rows: xr.Dataset, path: Path) -> Origin:
+def in_summary(found: Summary, rows: Result, path: Path) -> Origin:
     """Return where a share of a category or a number of an output comes from.
 
     Parameters
     ----------
     found : Summary
-    rows : xarray.Dataset
+    rows : Result
         Those that it describes.
     path : tuple of str
     """
     if path[0] in ("regime", "categories"):
         name, label = (REGIME, path[1]) if path[0] == REGIME else path[1:3]
         return Origin(tuple(map(cited, found.shares[name][label].by)), rows)
-    states = states_of(named_elements(rows, path[1])[0])
+    states = states_of(rows.named_elements(path[1])[0])
     by = (fits_of,) if path[2] == "fits" else functions_of(found.outputs[path[1]], path[2:])
     notes = () if found.rows_used else tuple(found.notes)  # why no row is used
     return Origin(tuple(map(cited, by)), rows, states, notes)
@@ -96,14 +94,14 @@ def states_of(element: Element) -> dict[str, int]:
     return {"with a value": int(element.present.sum())} | some
 
 
-def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
-    known, output = output_names(ds), _output(path)
+def _found(result: Result, options: Options, path: Path) -> Summary:
+    known, output = result.output_names, _output(path)
     if path[:1] == ("categories",):
         output = path[1].partition("[")[0] if path[1:] else ""
     elif path and path[0] != "outputs":
         output = next(iter(known))  # counts and regimes need no output
-    analysis = analysis_of(ds, output if output in known else None)
-    return summarise(ds, analysis, regime=options.get("regime"), fits="fits" in path)
+    analysis = result.analysis_of(output if output in known else None)
+    return summarise(result, analysis, regime=options.get("regime"), fits="fits" in path)
 
 
 def functions_of(described: Described, path: Path) -> Functions:

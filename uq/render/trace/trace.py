@@ -3,17 +3,15 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path as File
 from typing import Any
 
 import pandas as pd
-import xarray as xr
 
 from uq.errors import InputError
 from uq.render.trace.citations import Citation
 from uq.render.trace.row_sets import Run, in_words, runs_of
 from uq.render.trace.verbs import VERBS
-from uq.result.result_file import open_result
+from uq.result.result import AnyResult, Result
 from uq.study.provenance import provenance
 from uq.text.keys import key_of, no_such_key, numbers_in, taken_apart, value_at
 
@@ -71,13 +69,12 @@ class Trace:
         return in_words(self.runs)
 
 
-def trace(result: xr.Dataset | str | File, key: str, model: str | None = None) -> pd.Series:
+def trace(result: AnyResult, key: str, model: str | None = None) -> pd.Series:
     """Say where a number of a result comes from, and compute it again.
 
     Parameters
     ----------
-    result : xarray.Dataset or path-like
-        A result, or its file.
+    result : Result, xarray.Dataset or path
     key : str
         Its path in the JSON of its verb, such as ``outputs/life/quantiles/0.05`` of ``uq summary``
         or ``sensitivity/outputs/y/S1/x1``.
@@ -103,39 +100,44 @@ def trace(result: xr.Dataset | str | File, key: str, model: str | None = None) -
     >>> bool(found["value"] == uq.summary(ds).loc["y", "q0.5"]), found["equal"]
     (True, True)
     """
-    ds = result if isinstance(result, xr.Dataset) else open_result(result)
-    found = trace_json(traced(ds, key, model))
+    found = trace_json(traced(Result.of(result), key, model))
     return pd.Series(found, dtype=object, name=found.pop("key"))
 
 
-def traced(ds: xr.Dataset, key: str, model: str | None = None) -> Trace:
+def traced(result: Result, key: str, model: str | None = None) -> Trace:
     """Return where a number of a result comes from; see `trace`."""
     parts = taken_apart(key.strip(), {name: verb.options for name, verb in VERBS.items()})
     verb, path = VERBS[parts.verb], parts.path
     options = parts.options | ({"model": model} if model else {})
     said, numbers = {}, {}
     try:
-        said = verb.says(ds, options, path)
+        said = verb.says(result, options, path)
         numbers = numbers_in(value_at(said, path))
     except (KeyError, InputError):  # no such output
         pass
     if not path or not numbers:
-        raise no_such_key(parts, verb.says(ds, options, ()), VERBS)
-    origin = verb.origin(ds, options, path, said)
-    here = {name: now for name, now in provenance().items() if ds.attrs.get(name) != now}
+        raise no_such_key(parts, verb.says(result, options, ()), VERBS)
+    origin = verb.origin(result, options, path, said)
+    here = {
+        name: now for name, now in provenance().items() if result.dataset.attrs.get(name) != now
+    }
     names = ("code", *provenance())
     return Trace(
         key_of(*path, verb=parts.verb, options=parts.options),
         numbers,
         numbers_in(verb.again(verb, origin, options, path)),
         origin.estimators,
-        origin.rows.sizes["sample"],
-        ds.sizes["sample"],
+        len(origin.rows),
+        len(result),
         runs_of(origin.rows),
         origin.states,
         origin.notes,
-        {name: _plain(ds.attrs[name]) for name in RECORDED if name in ds.attrs},
-        {name: str(ds.attrs[name]) for name in names if name in ds.attrs},
+        {
+            name: _plain(result.dataset.attrs[name])
+            for name in RECORDED
+            if name in result.dataset.attrs
+        },
+        {name: str(result.dataset.attrs[name]) for name in names if name in result.dataset.attrs},
         here,
     )
 

@@ -2,26 +2,24 @@
 
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.summary_json import twin_json
 from uq.assess.two_fidelities import with_twin
 from uq.render.trace.citations import cited
 from uq.render.trace.origin import Origin
 from uq.render.trace.summary import states_of
-from uq.result.elements import independent_rows, named_elements
+from uq.result.result import Result
 from uq.stats.control_variate import controlled_mean, controlled_share
 from uq.text.keys import Json, Options, Path
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the estimates with a twin."""
-    return twin_json(with_twin(ds, options.get("model")))
+    return twin_json(with_twin(result, options.get("model")))
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where an estimate with a twin comes from."""
-    rows = independent_rows(ds)
-    states = states_of(named_elements(rows, path[1])[0]) if path[0] == "outputs" else {}
+    rows = result.independent
+    states = states_of(rows.named_elements(path[1])[0]) if path[0] == "outputs" else {}
     by = controlled_mean if path[2:3] == ("mean",) else controlled_share
     return Origin((cited(by),), rows, states, ("It also rests on rows of the twin alone.",))

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import xarray as xr
-
 from uq.render.trace import (
     answer,
     convergence,
@@ -18,6 +16,7 @@ from uq.render.trace import (
     what_if,
 )
 from uq.render.trace.origin import Origin
+from uq.result.result import Result
 from uq.text.keys import SUMMARY, Json, Options, Path, value_at
 
 
@@ -41,8 +40,8 @@ class Verb(NamedTuple):
         Verb, origin, options, path -> the entry at the path, from the rows of the origin.
     """
 
-    says: Callable[[xr.Dataset, Options, Path], dict[str, Any]]
-    origin: Callable[[xr.Dataset, Options, Path, Json], Origin]
+    says: Callable[[Result, Options, Path], dict[str, Any]]
+    origin: Callable[[Result, Options, Path, Json], Origin]
     options: tuple[str, ...] = ()
     again: Callable[["Verb", Origin, Options, Path], Any] = from_the_rows
 

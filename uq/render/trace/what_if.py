@@ -2,31 +2,29 @@
 
 from typing import Any
 
-import xarray as xr
-
 from uq.assess.what_if import WhatIf, answer, read_changes, what_if, what_if_json
 from uq.render.trace import summary
 from uq.render.trace.citations import cited
 from uq.render.trace.origin import Origin
-from uq.result.elements import independent_rows
+from uq.result.result import Result
 from uq.text.keys import Json, Options, Path
 
 
-def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of a result under the laws that the options set."""
-    return what_if_json(_answer(ds, options))
+    return what_if_json(_answer(result, options))
 
 
-def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number under other laws comes from."""
-    rows = independent_rows(ds)
+    rows = result.independent
     if path[0] in ("samples", "status", "rows_used"):
-        return summary.origin(ds, {}, path, said)
+        return summary.origin(result, {}, path, said)
     if path[0] in ("effective_rows", "pareto_k"):
         return Origin((cited(what_if), cited(summary.WEIGHTS[path[0]])), rows)
-    found = summary.in_summary(_answer(ds, options).summary, rows, path)
+    found = summary.in_summary(_answer(result, options).summary, rows, path)
     return Origin((cited(what_if), *found.estimators), rows, found.states)
 
 
-def _answer(ds: xr.Dataset, options: Options) -> WhatIf:
-    return answer(ds, read_changes([f"{name}={value}" for name, value in options.items()]))
+def _answer(result: Result, options: Options) -> WhatIf:
+    return answer(result, read_changes([f"{name}={value}" for name, value in options.items()]))

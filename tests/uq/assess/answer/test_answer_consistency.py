@@ -73,11 +73,11 @@ def a_start_that_decides():
     levels = {"x1": "own", "x2": "chance"}
     ds = nested_result(levels=levels, samples=400, units=1)
     ended = ds["x2"].values > 0.5
-    ended ^= (np.arange(ds.sizes["sample"]) % 20 == 0) & (ds["x1"].values > 0.5)
+    ended ^= (np.arange(ds.sizes["row"]) % 20 == 0) & (ds["x1"].values > 0.5)
     attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
     attrs |= {"may_be_undefined": 0, "flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
     ds["x2"].attrs["initial"] = 1
-    ds = ds.assign(regime=("sample", ended.astype(np.int8), attrs))
+    ds = ds.assign(regime=("row", ended.astype(np.int8), attrs))
     return asking(ds, outputs=["regime", "y"])
 
 

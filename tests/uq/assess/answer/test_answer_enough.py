@@ -11,6 +11,7 @@ from uq import answer, trace
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
+from uq.result.result import Result
 
 
 def rules(conclusions):
@@ -26,7 +27,7 @@ def test_enough_rows_say_so_with_what_another_seed_would_find():
         conclusions.enough.sentence,
     )
     assert low < conclusions.lead.promise.quantiles[0].value / 86400 < high
-    assert verdict(Findings(ds)) == ["Enough rows: what the study asks is settled."]
+    assert verdict(Findings(Result(ds))) == ["Enough rows: what the study asks is settled."]
     assert conclusions.enough.sentence.split(":")[0] in fragment(conclusions)
 
 
@@ -51,7 +52,7 @@ def test_rows_are_advised_for_what_the_study_is_about_alone():
     (sentence,) = conclusions.enough.others
     assert sentence.startswith("The order of x") and "(meaning of even)" in sentence
     assert "What is not settled besides</summary><ul><li>The order of x" in fragment(conclusions)
-    first, second = verdict(Findings(asked))
+    first, second = verdict(Findings(Result(asked)))
     assert first == "Enough rows for what the study is about."
     assert second.startswith("Not enough rows: the order of x")
     assert "what the study asks is settled" not in repr(conclusions)

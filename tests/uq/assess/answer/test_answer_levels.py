@@ -38,12 +38,12 @@ def of_regimes(share_of_start, samples=400, is_initial=True, of_pairs=False):
     random = np.random.default_rng(1)
     machine, start = ds["x1"].values > 0.5, ds["x2"].values > 0.5
     start ^= of_pairs and ds["x3"].values > 0.5
-    ended = np.where(random.random(ds.sizes["sample"]) < share_of_start, start, machine)
+    ended = np.where(random.random(ds.sizes["row"]) < share_of_start, start, machine)
     attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
     attrs |= {"may_be_undefined": 0, "flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
     if is_initial:
         ds["x2"].attrs["initial"] = 1
-    ds = ds.assign(regime=("sample", ended.astype(np.int8), attrs))
+    ds = ds.assign(regime=("row", ended.astype(np.int8), attrs))
     return asking(ds, outputs=["regime", "y"])
 
 

@@ -164,10 +164,10 @@ def test_a_missing_ranking_is_explained_once():
 
 def test_a_regime_that_no_first_row_of_a_sample_has_is_not_ranked(nested):
     ds = nested[0]
-    rare = np.arange(ds.sizes["sample"]) % 8 == 5  # one of the other rows of each sample
+    rare = np.arange(ds.sizes["row"]) % 8 == 5  # one of the other rows of each sample
     attrs = {"role": "output", "kind": "category", "long_name": "how it ended", "units": "1"}
     attrs |= {"may_be_undefined": 0}
     attrs |= {"flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
-    conclusions = answer(ds.assign(regime=("sample", rare.astype(np.int8), attrs)))
+    conclusions = answer(ds.assign(regime=("row", rare.astype(np.int8), attrs)))
     (rough,) = [regime for regime in conclusions.regimes if regime.said == "rough"]
     assert rough.decided_by == "No ranking of the inputs: no row that it could rest on is rough."

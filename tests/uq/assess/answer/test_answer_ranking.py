@@ -58,7 +58,7 @@ def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):
 def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_it():
     rng = np.random.default_rng(0)
     ds = linear("saltelli", samples=8, replicates=4)
-    ds = with_output(ds, "wild", rng.standard_cauchy(ds.sizes["sample"]).clip(-50, 50))
+    ds = with_output(ds, "wild", rng.standard_cauchy(ds.sizes["row"]).clip(-50, 50))
     conclusions = answer(asking(ds, outputs=["wild"]))
     assert conclusions.lead.ranking.leader is None and conclusions.lead.ranking.rows_factor > 1
     assert "not settled" in conclusions.lead.ranking.sentence

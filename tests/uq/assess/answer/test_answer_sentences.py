@@ -28,6 +28,7 @@ from uq.assess.findings import Findings
 from uq.cli.summary_tables import show_answer
 from uq.contract import Status
 from uq.render.html.answer import fragment
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 
 DAY = 86400.0
@@ -235,11 +236,11 @@ def test_the_rarer_regimes_say_what_decides_them():
 
 @pytest.mark.parametrize("method", ["saltelli", "shapley", "sobol"])
 def test_nothing_is_settled_without_intervals(method):
-    findings = Findings(linear(method, samples=512))
+    findings = Findings(Result(linear(method, samples=512)))
     (sentence,) = verdict(findings)
     assert sentence.startswith("Whether the rows are enough is not known: the rows of a")
     assert sentence.endswith("set replicates = 8.")
-    conclusions = answer(findings.ds)
+    conclusions = answer(findings.result)
     rules = {advice.rule: advice.text for advice in conclusions.advice}
     assert "set replicates = 8" in rules["rows"] and "nothing" not in rules
     ranking = conclusions.lead.ranking

@@ -11,6 +11,7 @@ from uq.assess.findings import Findings
 from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
 from uq.render.figures.figure import lay_out
+from uq.result.result import Result
 
 
 def dressed(ds, model):
@@ -32,7 +33,7 @@ def dressed(ds, model):
 
 
 def figures(ds):
-    findings = Findings(ds)
+    findings = Findings(Result(ds))
     kinds_of = {name: entry for name, entry in FIGURES.items() if "running" not in entry.needs}
     for picture in drawables(kinds_of, findings):
         figure = picture.draw()

@@ -8,10 +8,11 @@ from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
 from uq.render.figures.figure import lay_out
 from uq.render.html.pictures import pictures
+from uq.result.result import Result
 
 
 def captions(ds):
-    return [picture.caption for picture in drawables(FIGURES, Findings(ds))]
+    return [picture.caption for picture in drawables(FIGURES, Findings(Result(ds)))]
 
 
 def test_captions_name_outputs_and_events_in_words():
@@ -42,7 +43,7 @@ def test_outputs_of_one_meaning_have_pictures_that_do_not_share_identifiers():
     ds["z"].attrs["long_name"] = ds["y"].attrs["long_name"]
     first, second = (
         picture
-        for picture in pictures(Findings(ds), "results")
+        for picture in pictures(Findings(Result(ds)), "results")
         if picture.caption == "Value of the function"
     )
     identifiers = [set(picture.html.split('id="')[1:]) for picture in (first, second)]

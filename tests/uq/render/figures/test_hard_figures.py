@@ -12,6 +12,7 @@ from uq.assess.sensitivities import sensitivities
 from uq.indices.index import Null
 from uq.render.figures.figure import lay_out
 from uq.render.figures.words import as_label
+from uq.result.result import Result
 
 
 def profile(places, samples=40):
@@ -20,7 +21,7 @@ def profile(places, samples=40):
     values = np.outer(ds["y"].values, 1 + np.arange(places))
     attrs = ds["profile"].attrs
     ds = ds.drop_vars("profile").assign_coords(profile_index=np.arange(float(places)))
-    ds["profile"] = ("sample", "profile_index"), values
+    ds["profile"] = ("row", "profile_index"), values
     ds["profile"].attrs |= attrs
     return asking(ds, outputs=["profile"])
 
@@ -79,7 +80,7 @@ def test_the_interval_of_one_number_of_samples_is_seen():
 
 def test_limits_that_coincide_are_one_line_of_the_legend():
     ds = linear(samples=100, analysis={"sensitivity": ["rbd-fast"]})
-    result = sensitivities(ds, "rbd-fast", "y").targets["y"]
+    result = sensitivities(Result(ds), "rbd-fast", "y").targets["y"]
     (kind,) = result.indices.nulls
     same = replace(result.indices, nulls={kind: Null(0.1, 0.1)})
     (legend,) = plots.index_bars(ds, "y", found=replace(result, indices=same)).legends
@@ -123,12 +124,12 @@ def test_inputs_of_samples_of_several_rows_say_which_rows_are_drawn():
     assert "30 rows per bin, one of each sample" in words(figure)
     lay_out(figure)
     assert not collisions(figure)
-    assert "sample" not in words(plots.inputs(linear()))
+    assert "row" not in words(plots.inputs(linear()))
 
 
 def test_the_title_of_weighted_inputs_has_room():
     ds = linear(samples=1000)
-    ds = ds.assign(weight=("sample", np.linspace(0.5, 1.5, 1000), {"role": "weight"}))
+    ds = ds.assign(weight=("row", np.linspace(0.5, 1.5, 1000), {"role": "weight"}))
     figure = plots.inputs(ds, names=["x1", "x2"])
     assert "1 000 weighted rows" in words(figure)
     lay_out(figure)

@@ -20,7 +20,7 @@ DAY = 86400.0
 
 def lives(ds):
     """Return a result with lives of 5 to 15 days."""
-    values = np.linspace(5, 15, ds.sizes["sample"]) * DAY
+    values = np.linspace(5, 15, ds.sizes["row"]) * DAY
     return asking(with_output(ds, "day_long", values, "lifetime"), outputs=["day_long"])
 
 
@@ -64,7 +64,7 @@ def test_a_band_that_ends_before_its_line_is_said_to():
 
 def test_elements_that_are_not_drawn_are_counted():
     ds = kinds(samples=16)
-    many = xr.concat([ds["life"].isel(depth=0, drop=True)] * 3, "third").transpose("sample", ...)
+    many = xr.concat([ds["life"].isel(depth=0, drop=True)] * 3, "third").transpose("row", ...)
     ds = ds.drop_vars(["life", "life_censored"]).assign(life=many.assign_attrs(ds["life"].attrs))
     assert "the first and the last of 6 elements" in words(plots.histogram_by_regime(ds, "life"))
     assert "the first" not in words(plots.histogram_by_regime(kinds(samples=16), "life"))
@@ -134,7 +134,7 @@ def test_a_regime_has_its_colour_whichever_others_occur():
     ds = kinds(samples=100)
     both = [line.get_color() for line in plots.pairs(ds).axes[0].lines]
     assert both == list(COLOURS[:2])
-    fast = ds.isel(sample=ds["regime"].values == 1)
+    fast = ds.isel(row=ds["regime"].values == 1)
     (bars,) = plots.histogram_by_regime(fast, "angle").axes[0].patches
     assert bars.get_facecolor()[:3] == pytest.approx(
         [int(COLOURS[1][i : i + 2], 16) / 255 for i in (1, 3, 5)]

@@ -124,7 +124,7 @@ def test_titles_of_indices_are_in_words():
     )
     with pytest.raises(InputError, match=r"'life' is ambiguous; name one of: log\(life\), P"):
         plots.index_bars(ds, "life")
-    flat = with_output(ds, "flat", np.ones(ds.sizes["sample"]))
+    flat = with_output(ds, "flat", np.ones(ds.sizes["row"]))
     with pytest.raises(InputError, match="flat: the same value"):
         plots.index_bars(flat, "flat")
 

@@ -23,6 +23,7 @@ from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
 from uq.render.html.cells import Cell, HtmlTable
 from uq.render.html.page import page
+from uq.result.result import Result
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +34,7 @@ def asked():
 @pytest.fixture(scope="module")
 def text(asked):
     """Return a report with all that there is to say."""
-    return page(asked, "OUT.nc")
+    return page(Result(asked), "OUT.nc")
 
 
 ASKED = {
@@ -75,7 +76,9 @@ def test_a_report_says_all_there_is_to_say(asked, text):
     assert float(summary[1]) == pytest.approx(np.degrees(np.nanmean(ds["angle"])), rel=1e-4)
     drawn = parsed.tags.count("svg")
     sections = {entry.section for entry in FIGURES.values()} - {""}
-    shown = [picture for name in sections for picture in drawables(FIGURES, Findings(ds), name)]
+    shown = [
+        picture for name in sections for picture in drawables(FIGURES, Findings(Result(ds)), name)
+    ]
     assert drawn == len(shown) >= 15
 
 

@@ -15,6 +15,7 @@ from uq.contract import Status
 from uq.files.whole_files import write_result
 from uq.render.html.page import page
 from uq.result import result_file
+from uq.result.result import Result
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
 
@@ -55,7 +56,7 @@ def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
         ended = uq("report", *arguments)
         assert (ended.code, ended.out, ended.err) == (2, "", line.format(folder))
     assert [entry.name for entry in folder.iterdir()] == ["out.nc"] and path.read_bytes() == before
-    assert result_file.open_result(path).sizes["sample"] == 8
+    assert result_file.open_result(path).sizes["row"] == 8
 
 
 def test_names_from_a_file_are_text():
@@ -64,8 +65,8 @@ def test_names_from_a_file_are_text():
     ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
     ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
-    parsed = Page(page(ds, f"{HOSTILE}.nc"))
-    ours = Page(page(linear(samples=64), "out.nc")).tags.count("script")
+    parsed = Page(page(Result(ds), f"{HOSTILE}.nc"))
+    ours = Page(page(Result(linear(samples=64)), "out.nc")).tags.count("script")
     assert parsed.tags.count("script") == ours and "img" not in parsed.tags
     assert not [name for name, _ in parsed.attributes if name.startswith("on")]
     assert parsed.words.count(HOSTILE) >= 6
@@ -74,9 +75,9 @@ def test_names_from_a_file_are_text():
 
 @pytest.mark.slow
 def test_a_large_study_makes_a_small_page():
-    assert len(page(linear(samples=100_000), "OUT.nc")) < 10e6
+    assert len(page(Result(linear(samples=100_000)), "OUT.nc")) < 10e6
 
 
 def test_the_same_result_gives_the_same_text():
     ds = asking(kinds(samples=64), outputs=["angle", "regime"])
-    assert page(ds, "a.nc") == page(ds, "a.nc")
+    assert page(Result(ds), "a.nc") == page(Result(ds), "a.nc")

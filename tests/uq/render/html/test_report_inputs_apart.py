@@ -8,6 +8,7 @@ from explored import cells, drag_handle, ranges
 from uq.assess.earliest import inputs_apart, ranks
 from uq.assess.independent_inputs import independent_inputs
 from uq.result.elements import independent_rows, replicates_of
+from uq.result.result import Result
 from uq.text.literals import toml
 
 DESIGNS = {
@@ -31,11 +32,11 @@ def test_inputs_of_the_brushed_rows_are_those_of_python(shown, design):
     _, (low, high) = ranges(browser)
     rows = independent_rows(ds)
     chosen = (rows["y"].values >= low) & (rows["y"].values <= high)
-    columns = independent_inputs(rows)
+    columns = independent_inputs(Result(rows))
     listed = browser.value(LINES.replace("NaN", "'NaN'"))
     numbers_by_input = {name: np.array(numbers, dtype=float) for name, *numbers in listed}
     ranked = {name: ranks(values) for name, values in columns.items()}
-    apart = inputs_apart(rows, np.flatnonzero(chosen), ranked, replicates_of(rows))
+    apart = inputs_apart(Result(rows), np.flatnonzero(chosen), ranked, replicates_of(rows))
     for name, (median, others, mean, *_) in numbers_by_input.items():
         assert median == pytest.approx(np.median(columns[name][chosen]), rel=1e-12)
         assert others == pytest.approx(np.median(columns[name][~chosen]), rel=1e-12)
@@ -76,7 +77,7 @@ def test_of_many_inputs_those_that_differ_most_are_in_sight(shown):
     study = ds.attrs["study"].replace("uncertain = {", f"uncertain = {{{laws}")
     for i, name in enumerate(names):
         values = np.random.default_rng(i).random(400)
-        ds = ds.assign({name: ("sample", values, ds["x1"].attrs)})
+        ds = ds.assign({name: ("row", values, ds["x1"].attrs)})
     browser = shown(ds.assign_attrs(study=study))
     drag_handle(browser, "y", 1, 150)
     cells(browser)

@@ -16,13 +16,14 @@ from uq.assess.findings import Findings
 from uq.render.html.page import page
 from uq.render.html.paths import shortened
 from uq.render.html.pictures import HEAVIEST_SVG, picture, pictures
+from uq.result.result import Result
 
 BY_REGIME = 'aria-label="Rows by regime, against the inputs that best separate the regimes"'
 
 
 def test_a_study_about_the_regimes_is_headed_by_its_rows_by_regime():
     def headed(outputs):
-        text = page(kinds(samples=64, analysis={"outputs": outputs}), "OUT.nc")
+        text = page(Result(kinds(samples=64, analysis={"outputs": outputs})), "OUT.nc")
         assert text.count(BY_REGIME) == 1
         return BY_REGIME in text[text.index('id="answer"') : text.index('id="explore"')]
 
@@ -50,7 +51,7 @@ def test_a_life_curve_of_many_rows_is_no_image():
     ds = with_output(linear(samples=4000), "life", np.linspace(1, 9, 4000) ** 3, "lifetime")
     drawn = next(
         picture_of_life
-        for picture_of_life in pictures(Findings(asking(ds, outputs=["life"])), "results")
+        for picture_of_life in pictures(Findings(Result(asking(ds, outputs=["life"]))), "results")
     )
     assert drawn.of.name == "life" and not drawn.is_image and len(drawn.html) < 100_000
 

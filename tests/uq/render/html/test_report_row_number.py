@@ -9,6 +9,7 @@ from computed import linear
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside
 from uq.result.elements import independent_rows
+from uq.result.result import Result
 
 BOX = "document.querySelector('#explorer form input')"
 HINT = "document.querySelector('#explorer form [role=status]').innerText"
@@ -55,7 +56,7 @@ def test_a_wrong_number_says_what_is_allowed(shown, number):
 
 def test_a_row_that_the_page_does_not_hold_has_its_command(shown):
     ds = linear(samples=30_000)
-    inside = rows_inside(Findings(ds), "many.nc")
+    inside = rows_inside(Findings(Result(ds)), "many.nc")
     numbers = np.frombuffer(base64.b64decode(inside["numbers"]), "<i4").tolist()
     browser = shown(ds)
     absent = min(set(range(30_000)) - set(numbers))
@@ -70,7 +71,7 @@ def test_a_row_that_the_page_does_not_hold_has_its_command(shown):
 def test_a_row_beside_those_of_statistics_has_its_command(shown):
     ds = linear("saltelli", samples=64)
     browser = shown(ds)
-    beside = set(ds["sample"].values.tolist()) - set(independent_rows(ds)["sample"].values.tolist())
+    beside = set(ds["row"].values.tolist()) - set(independent_rows(ds)["row"].values.tolist())
     ask(browser, str(max(beside)))
     card = browser.value(CARD)
     assert "those that count in its statistics" in card and "Inputs" not in card

@@ -7,7 +7,7 @@ import pytest
 from computed import kinds, linear
 from explored import cells, drag_handle, place_of_a_point, ranges
 
-from uq.assess.life_quantiles import ended_by, life_quantiles, quantile_estimate
+from uq.assess.counted_rows import CountedRows
 from uq.result.elements import elements_of, replicates_of
 from uq.stats.intervals import share_interval
 
@@ -45,7 +45,7 @@ def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
         (chosen, hits | True), cells(browser)["quantile/0.1"], strict=True
     ):
         some = replace(element, values=element.values[rows], censored=element.censored[rows])
-        expected = quantile_estimate(some, 0.1, None if part is None else part[rows])
+        expected = CountedRows(some, None if part is None else part[rows]).quantile(0.1)
         assert numbers_of_cell == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
     sentence = browser.value("document.querySelector('.said').textContent")
     assert sentence.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
@@ -95,8 +95,12 @@ def test_censored_lives_have_the_numbers_of_python(shown, design):
     for time in (1.4, 9.0):
         assert first.unknown_sides(time).any()
         (here,) = shown_cells[f"{first.name}/{time:g}"]
-        assert here == pytest.approx(ended_by(first, time, part)[1].numbers, nan_ok=True)
-    for name, quantile in life_quantiles(first, {"0.1": 0.1, "0.5": 0.5}, part).items():
+        assert here == pytest.approx(
+            CountedRows(first, part).ended_by(time)[1].numbers, nan_ok=True
+        )
+    for name, quantile in (
+        (repr(p), CountedRows(first, part).life_quantile(p)) for p in (0.1, 0.5)
+    ):
         (here,) = shown_cells[f"quantile/{name}"]
         assert here == pytest.approx(quantile.numbers, nan_ok=True)
 

@@ -24,6 +24,7 @@ from uq.learning.posterior_result import as_unit
 from uq.render.html.page import page
 from uq.render.trace.trace import trace_json, traced
 from uq.render.trace.verbs import VERBS
+from uq.result.result import Result
 from uq.text.keys import key_of, paths_of_numbers, taken_apart, value_at
 
 MEDIAN = "outputs/life/quantiles/0.5"
@@ -54,12 +55,12 @@ def slow(*case):
 def check(ds, verb, options=None, every=1):
     """Trace the numbers of a verb, all of them or one of so many."""
     options = options or {}
-    whole = VERBS[verb].says(ds, options, ())
+    whole = VERBS[verb].says(Result(ds), options, ())
     paths = list(paths_of_numbers(whole))[::every]
     assert paths
     for path in paths:
         key = key_of(*path, verb=verb, options=options)
-        traced_number = traced(ds, key)
+        traced_number = traced(Result(ds), key)
         entry = value_at(whole, path)
         wanted = entry if isinstance(entry, dict) else {"value": entry}
         assert traced_number.equal and traced_number.key == key
@@ -122,15 +123,19 @@ def test_options_are_part_of_a_key():
 )
 def test_weighted_rows_are_traced_to_estimators_of_weighted_rows(make, path, estimator):
     ds, key = make(), "what-if[uncertain.x1.upper=0.8]/"
-    what_if, *others = traced(ds, key + path).estimators
+    what_if, *others = traced(Result(ds), key + path).estimators
     assert what_if.code.endswith("what_if") and others[0].code.endswith(estimator)
-    plain = [step.code for step in traced(ds, path).estimators] if "effective" not in path else []
+    plain = (
+        [step.code for step in traced(Result(ds), path).estimators]
+        if "effective" not in path
+        else []
+    )
     assert not {function.code for function in others} & {*plain}
 
 
 def test_numbers_of_a_design_without_statistics_are_traced():
     check(linear("morris", 8), "summary")
-    traced_number = traced(linear("morris", 8), "outputs/y/mean")
+    traced_number = traced(Result(linear("morris", 8)), "outputs/y/mean")
     assert (
         traced_number.numbers == {"value": None}
         and traced_number.rows_used == traced_number.rows == 40
@@ -144,11 +149,11 @@ def test_numbers_of_a_design_without_statistics_are_traced():
 def test_the_error_of_the_rows_is_that_of_the_rows_used():
     ds = crossed()
     ds = with_output(ds, "y_error", np.where(ds["block"] == 1, 1e6, ds["x1"]))
-    traced_number = traced(ds, "convergence/outputs/y/own_error")
+    traced_number = traced(Result(ds), "convergence/outputs/y/own_error")
     used = ds["x1"].values[np.isin(ds["block"], [0, 5])]
     assert traced_number.equal and traced_number.numbers["value"] == pytest.approx(used.mean())
     for key in ("answer/enough/own_error", "answer/enough/sampling_error"):
-        answered = traced(with_output(ds, "y_error", 10 * ds["x1"].values), key)
+        answered = traced(Result(with_output(ds, "y_error", 10 * ds["x1"].values)), key)
         assert answered.equal and answered.rows_used == len(used)
 
 
@@ -172,7 +177,7 @@ _CONTRIBUTION = ("ranking", "contributions", "0", "inputs")
 
 def test_values_of_options_may_have_commas():
     law = '{distribution = "uniform", lower = 0.1, upper = 0.9}'
-    assert traced(linear(), f"what-if[uncertain.x1={law}]/outputs/y/mean").equal
+    assert traced(Result(linear()), f"what-if[uncertain.x1={law}]/outputs/y/mean").equal
     of = {name: verb.options for name, verb in VERBS.items()}
     for verb, options in (
         ("what-if", {"dependence.rank_correlation": "[[1, 0.5], [0.5, 1]]", "uncertain.x.sd": "1"}),
@@ -184,7 +189,7 @@ def test_values_of_options_may_have_commas():
 
 def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
     ds = linear("fast", 65, 2)
-    traced_number = traced(ds, "convergence/outputs/y/sampling_error")
+    traced_number = traced(Result(ds), "convergence/outputs/y/sampling_error")
     assert (
         traced_number.equal
         and traced_number.numbers["value"] == api.enough(ds).loc["y", "sampling"]
@@ -195,7 +200,9 @@ def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
 def test_numbers_of_an_inspected_unit_are_traced_and_equal(every):
     after = update(wear(150, units=2, rate="shared"), measured(5e5, 8e5))
     check(as_unit(after, "B"), "summary", every=every)
-    assert traced(as_unit(after, "A"), MEDIAN).numbers != traced(after, MEDIAN).numbers
+    assert (
+        traced(Result(as_unit(after, "A")), MEDIAN).numbers != traced(Result(after), MEDIAN).numbers
+    )
 
 
 def keys_in(text):
@@ -215,18 +222,18 @@ def test_the_numbers_of_each_sentence_lead_to_themselves():
     } < {*keys}
     assert any("/share" in key for key in keys) and any("/contributions/" in key for key in keys)
     for key in keys:
-        assert traced(ds, key).equal, key
+        assert traced(Result(ds), key).equal, key
     rest = re.sub(r"<span data-trace=.*?</span>|<style>.*?</style>", "", text, flags=re.DOTALL)
     assert "\N{NO-BREAK SPACE}%" in text and "\N{NO-BREAK SPACE}%" not in rest
 
 
 def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     ds = crossed()
-    text = page(ds, "out.nc")
+    text = page(Result(ds), "out.nc")
     keys = keys_in(text)
     assert len(keys) == len(set(keys)) > 15
     for key in keys:
-        assert traced(ds, key).equal, key
+        assert traced(Result(ds), key).equal, key
     assert "outputs/y/thresholds/5.0/above" in keys
     assert "sensitivity[method=sobol]/outputs/y/S1/x1" in keys
     assert {"status/ok", "outputs/y/mean", "outputs/y/failed"} <= set(keys)
@@ -235,7 +242,7 @@ def test_every_number_of_a_report_leads_to_itself(no_other_figures):
 
 def test_the_rows_are_those_that_the_number_rests_on():
     ds = crossed()
-    traced_number = traced(ds, "outputs/y/quantiles/0.5")
+    traced_number = traced(Result(ds), "outputs/y/quantiles/0.5")
     independent = np.isin(ds["block"].values, [0, 5])
     assert (
         (traced_number.rows_used, traced_number.rows)
@@ -248,9 +255,9 @@ def test_the_rows_are_those_that_the_number_rests_on():
     lost = int(ds["status"].values[independent].astype(bool).sum())
     assert traced_number.states == {"with a value": 128 - lost, "failed": lost}
     whole = (ds["status"].values.reshape(-1, 6) == 0).all(axis=1).sum()
-    states = traced(ds, "sensitivity/outputs/y/S1/x1").states
+    states = traced(Result(ds), "sensitivity/outputs/y/S1/x1").states
     assert states["in groups with a value in each row"] == 6 * whole
-    last = traced(ds, "convergence/outputs/y/estimates/mean/0/value")
+    last = traced(Result(ds), "convergence/outputs/y/estimates/mean/0/value")
     assert last.rows_used == 128 and last.equal
 
 
@@ -281,9 +288,9 @@ def test_numbers_of_weighted_rows_are_traced_too():
     ds = update(wear(samples=2000, analysis={"thresholds": {"life": [5.2e5]}}), measured(5e5))
     check(ds, "summary", every=4)
     check(ds, "answer", every=11)
-    assert traced(ds, "effective_rows").estimators[0].code.endswith("effective_rows")
+    assert traced(Result(ds), "effective_rows").estimators[0].code.endswith("effective_rows")
     with pytest.raises(InputError, match="not with rows that inspections have weighted"):
-        traced(ds, "sensitivity/rows_used")
+        traced(Result(ds), "sensitivity/rows_used")
 
 
 @pytest.mark.parametrize("size", [5e-324, 1e300])
@@ -291,7 +298,7 @@ def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
     ds = with_output(linear(), "v", np.random.default_rng(0).uniform(-1, 1, 64) * size)
     check(ds, "summary", every=7)
     check(ds, "answer", every=13)
-    assert "outputs/v/quantiles/0.5" in page(ds, "out.nc")
+    assert "outputs/v/quantiles/0.5" in page(Result(ds), "out.nc")
     assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
 
 
@@ -301,7 +308,7 @@ def test_neither_the_model_nor_its_code_is_needed(uq, write_study, no_other_figu
     uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
     ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
     for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
-        document = trace_json(traced(ds, key))
+        document = trace_json(traced(Result(ds), key))
         assert (
             document["equal"] and document["code"] == "0" and "numpy" in document["versions_here"]
         )
@@ -331,27 +338,27 @@ def test_a_number_of_a_large_result_is_traced_in_seconds(key):
     start = time.process_time()
     if key.endswith("mistyped"):
         with pytest.raises(InputError, match="no such key"):
-            traced(ds, key)
+            traced(Result(ds), key)
     else:
-        assert traced(ds, key).equal
+        assert traced(Result(ds), key).equal
     assert time.process_time() - start < 10.0
 
 
 def test_names_with_a_slash_have_keys_of_their_own():
     ds = with_output(linear(), "a/b", linear()["y"].values)
     ds = with_output(ds, "a", linear()["x1"].values)
-    traced_number = traced(ds, "outputs/a~1b/mean")
+    traced_number = traced(Result(ds), "outputs/a~1b/mean")
     assert traced_number.equal and traced_number.numbers["value"] == linear()["y"].values.mean()
     with pytest.raises(InputError, match="no such key 'outputs/a/b/mean'; did you mean"):
-        traced(ds, "outputs/a/b/mean")
+        traced(Result(ds), "outputs/a/b/mean")
 
 
 def test_a_key_as_long_as_a_book_is_refused_in_a_line():
     for key in ("outputs/" + "a" * 9999, "sensitivity[a=" + "b" * 9999 + "]/x", "outputs/\ny/\n"):
         with pytest.raises(InputError) as refusal:
-            traced(linear(), key)
+            traced(Result(linear()), key)
         assert len(str(refusal.value)) < 600 and "\n" not in str(refusal.value)
-    assert traced(linear(), "  outputs/y/mean\n").equal  # as copied
+    assert traced(Result(linear()), "  outputs/y/mean\n").equal  # as copied
 
 
 @pytest.mark.parametrize(
@@ -373,16 +380,16 @@ def test_a_key_as_long_as_a_book_is_refused_in_a_line():
 )
 def test_a_mistyped_key_is_one_line_with_the_nearest(key, words):
     with pytest.raises(InputError) as refusal:
-        traced(crossed(), key)
+        traced(Result(crossed()), key)
     assert words in str(refusal.value) and "\n" not in str(refusal.value)
 
 
 def test_a_result_without_a_sound_row_is_traced_too():
     ds = linear(settings={"fail_above": 0.0, "fail_how": "raise"})
-    document = trace_json(traced(ds, "outputs/y/mean"))
+    document = trace_json(traced(Result(ds), "outputs/y/mean"))
     assert document["value"] is None and document["equal"]
     assert document["rows"]["states"] == {"with a value": 0, "failed": 64}
-    assert traced(ds, "status/raised").numbers == {"value": 64}
+    assert traced(Result(ds), "status/raised").numbers == {"value": 64}
     json.dumps(document, allow_nan=False)
 
 
@@ -391,7 +398,7 @@ def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, writ
     check(ds, "answer", every=101)
     check(crossed(), "answer", every=17)
     key = "answer/quantities/life[side=left,depth=0.5]/promise"
-    numbers, quantities = traced(ds, key).numbers, api.answer(ds).quantities
+    numbers, quantities = traced(Result(ds), key).numbers, api.answer(ds).quantities
     promise = next(
         quantity for quantity in quantities if quantity.name == "life[side=left,depth=0.5]"
     ).promise

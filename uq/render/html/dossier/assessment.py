@@ -9,11 +9,6 @@ from uq.render.html.dossier.items import Item
 from uq.render.html.inputs import fixed_inputs, input_tables
 from uq.render.html.pictures import pictures
 from uq.render.html.references import references
-from uq.result.commands import model_option
-from uq.result.elements import analysis_of, shown_outputs, study_file_of
-from uq.result.nesting import is_nested
-from uq.result.variables import outputs_of
-from uq.result.weights import has_weights
 from uq.study.file import Tied
 from uq.study.provenance import provenance
 from uq.text.numbers import quantity
@@ -21,21 +16,21 @@ from uq.text.numbers import quantity
 
 def context(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what the assessment is for."""
-    study = study_file_of(findings.ds).study
+    study = findings.result.study.study
     yield Item("Purpose", text=[study.description] if study.description else [])
     yield Item("Decision that it supports, and the rules that apply to it")
 
 
 def information(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what a reader needs to repeat the assessment."""
-    ds = findings.ds
-    name, model = study_file_of(ds).study.name, model_option(ds)
+    result = findings.result
+    name, model = result.study.study.name, result.model_option
     yield Item(
         "Result",
         facts=[
             ("file", file),
-            ("rows", str(ds.sizes["sample"])),
-            ("SHA-256 of the study", str(ds.attrs["study_sha256"])),
+            ("rows", str(len(result))),
+            ("SHA-256 of the study", str(result.dataset.attrs["study_sha256"])),
         ],
     )
     yield Item(
@@ -44,7 +39,7 @@ def information(findings: Findings, file: str) -> Iterator[Item]:
             "The study file is in the appendix. On the same processor and versions the numbers"
             " are equal to the bit, on others up to rounding."
         ],
-        code=f"uq run {name}.toml --samples {ds.attrs['samples']}{model}\n"
+        code=f"uq run {name}.toml --samples {result.dataset.attrs['samples']}{model}\n"
         f"uq verify {quote(file)}{model}",
     )
     yield Item(
@@ -60,11 +55,11 @@ def information(findings: Findings, file: str) -> Iterator[Item]:
 
 def quantities(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what is asked for."""
-    ds = findings.ds
-    asked, declared = analysis_of(ds), outputs_of(ds)
+    result = findings.result
+    asked, declared = result.analysis, result.outputs
     lines = [
         (Cell(name), Cell(one.meaning), Cell(one.unit), Cell(one.kind), Cell(", ".join(one.dims)))
-        for name in shown_outputs(ds, asked)
+        for name in result.shown_outputs(asked)
         for one in [declared[name]]
     ]
     header = ("output", "meaning", "unit", "kind", "one for each")
@@ -83,13 +78,13 @@ def quantities(findings: Findings, file: str) -> Iterator[Item]:
 
 def software(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what is known of the software."""
-    attrs = findings.ds.attrs
+    attrs = findings.result.dataset.attrs
     here = [(name, str(attrs[name])) for name in provenance() if name in attrs]
     yield Item("Versions and processor", facts=here)
     yield Item("Quality assurance programme")
     note = "The tests of vibrolife are part of its source, not of a result."
     yield Item("Verification against known solutions", notes=[note])
-    command = f"uq verify {quote(file)}{model_option(findings.ds)}"
+    command = f"uq verify {quote(file)}{findings.result.model_option}"
     note = f"'{command}' computes rows again and compares them to the bit."
     yield Item("Rows computed again", notes=[note])
     yield Item("Validation against observations")
@@ -97,12 +92,12 @@ def software(findings: Findings, file: str) -> Iterator[Item]:
 
 def models(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what is known of the model."""
-    attrs = findings.ds.attrs
+    attrs = findings.result.dataset.attrs
     named = ("model", "model_version", "code")
     facts = [(name.replace("_", " "), str(attrs[name])) for name in named if name in attrs]
     yield Item("Model", facts=facts)
-    yield Item("Sources", text=references(findings.ds) or ())
-    settings = study_file_of(findings.ds).settings
+    yield Item("Sources", text=references(findings.result) or ())
+    settings = findings.result.study.settings
     given = [(name, str(value)) for name, value in settings.items()]
     yield Item("Numerical settings", facts=given, text=[] if given else ["The model's defaults."])
     yield Item("Uncertainty of the form of the model")
@@ -110,12 +105,12 @@ def models(findings: Findings, file: str) -> Iterator[Item]:
 
 def inputs(findings: Findings, file: str) -> Iterator[Item]:
     """Yield the laws of the inputs."""
-    ds = findings.ds
-    study = study_file_of(ds)
-    laws, *correlations = input_tables(ds)
+    result = findings.result
+    study = result.study
+    laws, *correlations = input_tables(result)
     yield Item("Laws and their sources", tables=[laws])
     independent = [] if correlations else ["The laws are independent."]
-    if has_weights(ds):
+    if result.has_weights:
         independent.append("Given the inspections, the inputs need not be independent.")
     yield Item("Dependence", text=independent, tables=correlations)
     levels = [
@@ -123,10 +118,12 @@ def inputs(findings: Findings, file: str) -> Iterator[Item]:
         for name, one in study.uncertain.items()
         for origin in [study.uncertain[one.equals] if isinstance(one, Tied) else one]
     ]
-    shared = [HtmlTable("Level of each input", ("input", "level"), levels)] if is_nested(ds) else []
+    shared = (
+        [HtmlTable("Level of each input", ("input", "level"), levels)] if result.is_nested else []
+    )
     yield Item("Variability between units, and what all units share", tables=shared)
-    learnt = str(ds.attrs.get("inspections", ""))
+    learnt = str(result.dataset.attrs.get("inspections", ""))
     yield Item("Inspections from which the laws were learnt", code=learnt)
-    fixed = fixed_inputs(ds)
+    fixed = fixed_inputs(result)
     yield Item("Fixed inputs", tables=[] if fixed is None else [fixed])
     yield Item("Inputs as drawn", pictures=list(pictures(findings, "inputs")))

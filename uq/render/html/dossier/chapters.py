@@ -3,13 +3,12 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
-import xarray as xr
-
 from uq.assess.findings import Findings
 from uq.render.html.dossier import assessment, results
 from uq.render.html.dossier.items import Item
 from uq.render.html.dossier.outline import DOCUMENTS, OUTLINE, Heading
 from uq.render.html.layout import laid_out
+from uq.result.result import Result
 
 Source = Callable[[Findings, str], Iterator[Item]]
 
@@ -37,12 +36,12 @@ class Chapter(NamedTuple):
     items: list[Item]
 
 
-def chapters(ds: xr.Dataset, file: str) -> list[Chapter]:
+def chapters(result: Result, file: str) -> list[Chapter]:
     """Return what a result provides, in the order of the outline.
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
         A result.
     file : str
         The name of its file.
@@ -51,10 +50,12 @@ def chapters(ds: xr.Dataset, file: str) -> list[Chapter]:
     -------
     list of Chapter
     """
-    findings = Findings(ds)
+    findings = Findings(result)
     return [Chapter(one, list(CONTENTS[one.name](findings, file))) for one in OUTLINE]
 
 
-def dossier(ds: xr.Dataset, name: str) -> str:
+def dossier(result: Result, name: str) -> str:
     """Return the dossier of a result as HTML; as `uq.render.html.page.page` returns its report."""
-    return laid_out("dossier/dossier.html", ds, chapters=chapters(ds, name), documents=DOCUMENTS)
+    return laid_out(
+        "dossier/dossier.html", result, chapters=chapters(result, name), documents=DOCUMENTS
+    )

@@ -28,9 +28,7 @@ from uq.render.html.outcomes import (
 )
 from uq.render.html.pictures import pictures
 from uq.render.trace.citations import cited
-from uq.result.elements import analysis_of
-from uq.result.nesting import is_nested, nesting_of, size_in_words
-from uq.result.result_file import failed
+from uq.result.nesting import size_in_words
 from uq.sampling.designs import DESIGNS
 from uq.text.keys import key_of
 
@@ -40,11 +38,11 @@ COVERAGE = 0.9
 
 def propagation(findings: Findings, file: str) -> Iterator[Item]:
     """Yield how the laws were propagated, and how rows ended."""
-    ds, summary = findings.ds, findings.summary
-    attrs = ds.attrs
+    result, summary = findings.result, findings.summary
+    attrs = result.dataset.attrs
     rows = [("rows", str(summary.samples)), ("independent rows", str(summary.rows_used))]
-    if is_nested(ds):
-        place = nesting_of(ds)
+    if result.is_nested:
+        place = result.nesting
         rows.append(("samples", size_in_words(place.samples, place.units, place.repeats)))
     yield Item(
         "Design",
@@ -55,20 +53,20 @@ def propagation(findings: Findings, file: str) -> Iterator[Item]:
             *rows,
         ],
     )
-    lost, most = int(failed(ds).sum()), 100 * analysis_of(ds).max_failed
+    lost, most = int(result.failed.sum()), 100 * result.analysis.max_failed
     yield Item(
         "Rows that could not be computed",
         text=[
             f"{lost} of {summary.samples} rows failed; the study allows {most:g} %. They are left"
             " out of every statistic, and tolerance bounds count them as the worst value."
         ],
-        tables=[status_table(ds, summary)],
+        tables=[status_table(result, summary)],
     )
 
 
 def convergence(findings: Findings, file: str) -> Iterator[Item]:
     """Yield whether the rows are enough."""
-    found = convergence_of(findings, outcomes(findings.ds, findings.summary))
+    found = convergence_of(findings, outcomes(findings.result, findings.summary))
     yield Item("Verdict", text=verdict(findings))
     refused = [found.refused] if found.refused else []
     notes = [*found.warnings, *refused]
@@ -98,7 +96,7 @@ def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
 
 def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what is known of the quantities of interest."""
-    found = outcomes(findings.ds, findings.summary)
+    found = outcomes(findings.result, findings.summary)
     of_jcgm = _coverage_intervals(findings)
     yield Item(
         "Estimate, standard uncertainty and coverage interval",
