@@ -114,8 +114,8 @@ def browser(tmp_path_factory):
     """Return a tab of a browser."""
     if CHROMIUM is None:
         pytest.skip("chromium is not installed: the report can only be tested in a browser")
-    with tab(tmp_path_factory.mktemp("browser")) as one:
-        yield one
+    with tab(tmp_path_factory.mktemp("browser")) as chromium:
+        yield chromium
 
 
 @pytest.fixture

@@ -28,8 +28,8 @@ SIDE_BY_SIDE = 12
 def test_the_platform_knows_no_machine():
     guilty = {
         (name, other)
-        for name, found in edges("uq").items()
-        for other in found
+        for name, imports in edges("uq").items()
+        for other in imports
         if other.split(".")[0] in ("models", "tests", "benchmarks")
     }
     assert not guilty
@@ -38,8 +38,8 @@ def test_the_platform_knows_no_machine():
 def test_a_model_imports_nothing_of_the_platform_but_the_contract():
     guilty = {
         (name, other)
-        for name, found in edges("models").items()
-        for other in found
+        for name, imports in edges("models").items()
+        for other in imports
         if other.split(".")[0] == "uq" and other.split(".")[:2] != ["uq", "contract"]
     }
     assert not guilty
@@ -50,8 +50,8 @@ def test_models_know_neither_dask_nor_files_nor_xarray():
     foreign = {"dask", "distributed", "netCDF4", "pydantic", "typer", "rich", "SALib"}
     guilty = {
         (name, other)
-        for name, found in edges("models").items()
-        for other in found
+        for name, imports in edges("models").items()
+        for other in imports
         if other.split(".")[0]
         in (foreign if "explore" in name.split(".") else foreign | allowed_in_explore)
     }
@@ -61,11 +61,11 @@ def test_models_know_neither_dask_nor_files_nor_xarray():
 def test_one_machine_does_not_import_another():
     shared = "numerics"
     guilty = set()
-    for name, found in edges("models").items():
-        own = name.split(".")[1:2]
-        for other in found:
+    for name, imports in edges("models").items():
+        machine = name.split(".")[1:2]
+        for other in imports:
             parts = other.split(".")
-            if parts[0] == "models" and len(parts) > 1 and parts[1:2] not in (own, [shared]):
+            if parts[0] == "models" and len(parts) > 1 and parts[1:2] not in (machine, [shared]):
                 guilty.add((name, other))
     assert not guilty
 
@@ -132,8 +132,8 @@ def test_each_package_says_what_to_read(machine):
         package = path.parent if path.name != "__init__.py" else path.parent.parent
         name = path.stem if path.name != "__init__.py" else path.parent.name
         if package != HOUSE / "models":
-            said = ast.get_docstring(ast.parse((package / "__init__.py").read_text()))
-            silent |= set() if re.search(rf"\b{name}\b", said) else {path}
+            docstring = ast.get_docstring(ast.parse((package / "__init__.py").read_text()))
+            silent |= set() if re.search(rf"\b{name}\b", docstring) else {path}
     assert silent == set()
 
 
@@ -176,13 +176,46 @@ def test_a_worker_imports_no_more_than_it_needs():
 def test_no_circle_of_imports(package):
     graph = edges(package, when_loaded=True)
     needs = {
-        name: {module for other in found if (module := _module_of(other, graph))}
-        for name, found in graph.items()
+        name: {module for other in imports if (module := _module_of(other, graph))}
+        for name, imports in graph.items()
     }
     assert set(TopologicalSorter(needs).static_order()) == set(graph)
 
 
-def _module_of(dotted, known):
+def _module_of(dotted, modules):
     """Return the module that an import names, be it the module itself or a name in it."""
     candidates = (dotted, dotted.rpartition(".")[0])
-    return next((name for name in candidates if name in known), None)
+    return next((name for name in candidates if name in modules), None)
+
+
+WITHOUT_A_NOUN = {"one", "found", "known", "said", "own"}
+"""Names that do not tell what they hold: a variable is called by the noun of the field."""
+
+NAMED = ("benchmarks", "models", "tests") + tuple(
+    f"uq/{package}"
+    for package in ("cli", "explore", "files", "indices", "learning", "machines")
+    + ("result", "sampling", "stats", "study", "text")
+)
+"""Folders whose variables are all named for what they hold."""
+
+
+@pytest.mark.parametrize("folder", NAMED)
+def test_variables_are_named_for_what_they_hold(folder):
+    nameless = [
+        f"{path.relative_to(HOUSE)}:{node.lineno}: {name}"
+        for path in sorted((HOUSE / folder).rglob("*.py"))
+        if re.search(rf"\b({'|'.join(WITHOUT_A_NOUN)})\b", text := path.read_text())
+        for node in ast.walk(ast.parse(text))
+        if (name := _named_by(node)) in WITHOUT_A_NOUN
+    ]
+    assert nameless == []
+
+
+def _named_by(node):
+    """Return the name that a node gives to a variable, an argument, a function or an import."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+            return name
+        case ast.FunctionDef(name=name) | ast.alias(asname=name) | ast.ExceptHandler(name=name):
+            return name
+    return None

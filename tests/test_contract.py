@@ -31,7 +31,7 @@ def but_slowly(*names):
     """Take each model; these among the slow tests."""
     return pytest.mark.parametrize(
         "model",
-        [pytest.param(one, marks=[pytest.mark.slow] * (one in names)) for one in model_names()],
+        [pytest.param(name, marks=[pytest.mark.slow] * (name in names)) for name in model_names()],
         indirect=True,
         scope="module",
     )
@@ -252,12 +252,12 @@ def test_scales_are_exact(model, far):
             if output.has_censored_flag:
                 censored = columns[censored_name(name)].reshape(life.shape).astype(bool)
             unit = life / of
-            known = np.where(censored, np.nan, unit)
-            level = np.nanmax(known, axis=1, keepdims=True, initial=-np.inf)
+            unit_life = np.where(censored, np.nan, unit)
+            level = np.nanmax(unit_life, axis=1, keepdims=True, initial=-np.inf)
             level = np.where(level == -np.inf, np.nan, level)
             with np.errstate(invalid="ignore"):  # never over never
-                same = (known == level) | (np.abs(known / level - 1) < 1e-12)
-            assert (same | np.isnan(known)).all(), name
+                same = (unit_life == level) | (np.abs(unit_life / level - 1) < 1e-12)
+            assert (same | np.isnan(unit_life)).all(), name
             # A row that is cut at the horizon has a life of at least that, whatever its scale.
             assert (~censored | np.isnan(level) | (unit <= level * (1 + 1e-12))).all(), name
         if kept and output.has_censored_flag:

@@ -81,7 +81,7 @@ R2 = IndexKind("R2", "squared correlation (R2)", "variance")
 
 def squared_correlation(sample):
     r = {name: np.corrcoef(x, sample.values)[0, 1] for name, x in sample.inputs.items()}
-    return Indices({R2: {name: Estimate(one**2, 0.0, 1.0) for name, one in r.items()}})
+    return Indices({R2: {name: Estimate(estimate**2, 0.0, 1.0) for name, estimate in r.items()}})
 
 
 @pytest.fixture
@@ -152,9 +152,11 @@ def test_a_study_of_both_is_run_and_shown(
     np.testing.assert_allclose(ds["x1"][1::2], 1 - ds["x1"][::2])
     values = sensitivity(ds)["R2"].sel(output="y").values
     assert values == pytest.approx(np.arange(1, 5) ** 2 / 30, abs=0.2)
-    found = json.loads(uq("sensitivity", "out.nc", "--json").out)
-    assert found["method"] == "correlation"
-    assert [one["value"] for one in found["outputs"]["y"]["R2"].values()] == list(values)
+    document = json.loads(uq("sensitivity", "out.nc", "--json").out)
+    assert document["method"] == "correlation"
+    assert [estimate["value"] for estimate in document["outputs"]["y"]["R2"].values()] == list(
+        values
+    )
     assert f"x4  {values[3]:.3f}  0.000 to 1.000" in uq("sensitivity", "out.nc").out
     text = page(Result(ds), "out.nc")
     assert "mirrored: pairs of opposite points" in text
@@ -175,8 +177,8 @@ def _geometric_mean(element, context):
         logarithms = np.log(element.at_least)
         reach = 1.96 * logarithms.std() / np.sqrt(len(logarithms))
         value = logarithms.mean()
-        found = Estimate(*np.exp([value, value - reach, value + reach]).tolist())
-        yield Statistic(("geometric_mean",), "geometric mean", found, element.units)
+        estimate = Estimate(*np.exp([value, value - reach, value + reach]).tolist())
+        yield Statistic(("geometric_mean",), "geometric mean", estimate, element.units)
 
 
 def test_a_statistic_is_one_entry_of_a_table(no_other_figures, uq, write_study, monkeypatch):

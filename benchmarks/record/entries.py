@@ -115,8 +115,8 @@ def _traced(name: str, folder: Path) -> Entries:
     reported("report", file, "-o", "report.html", folder=folder)
     page = (folder / "report.html").read_text()
     keys += sorted({*re.findall(r'data-trace="(inputs/[^"\n]*)', page)})
-    found = forked(partial(_print_traces, file, keys), folder)
-    yield from zip(keys, map(outcome_of, json.loads(str(found["out"]))), strict=True)
+    traces = forked(partial(_print_traces, file, keys), folder)
+    yield from zip(keys, map(outcome_of, json.loads(str(traces["out"]))), strict=True)
 
 
 def _print_traces(file: str, keys: list[str]) -> None:

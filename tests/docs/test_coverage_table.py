@@ -24,15 +24,15 @@ def big():
 
 
 def test_truths_are_those_of_many_rows(big):
-    known, upper = problems.jump(), big["regime"].values == 1
+    truths, upper = problems.jump(), big["regime"].values == 1
     y, life = big["jump"].values, big["life"].values
     near = 4 / np.sqrt(ROWS)
-    assert upper.mean() == pytest.approx(known["share"], abs=near)
-    assert y.mean() == pytest.approx(known["mean"], abs=near * y.std())
+    assert upper.mean() == pytest.approx(truths["share"], abs=near)
+    assert y.mean() == pytest.approx(truths["mean"], abs=near * y.std())
     for name, rows in (("upper", upper), ("lower", ~upper)):
-        assert y[rows].mean() == pytest.approx(known["within"][name], abs=2 * near)
+        assert y[rows].mean() == pytest.approx(truths["within"][name], abs=2 * near)
     between = np.where(upper, y[upper].mean(), y[~upper].mean()).var() / y.var()
-    assert between == pytest.approx(known["between"], abs=near)
+    assert between == pytest.approx(truths["between"], abs=near)
     for p in (0.05, 0.5, 0.95):
         for values, ppf in (
             (y, problems.jump_ppf),
@@ -48,30 +48,30 @@ def test_truths_are_those_of_many_rows(big):
 
 
 def test_indices_of_the_jump_are_those_of_many_rows(big):
-    known, y = problems.jump(), big["jump"].values
+    truths, y = problems.jump(), big["jump"].values
     upper = (big["regime"].values == 1).astype(float)
     for name in ("x1", "x2", "x3"):
         parts = np.array_split(np.argsort(big[name].values), 400)
-        for values, truth in ((y, known["S1"]), (upper, known["event"]["S1"])):
+        for values, truth in ((y, truths["S1"]), (upper, truths["event"]["S1"])):
             first = np.var([values[part].mean() for part in parts]) / values.var()
             assert first == pytest.approx(truth[name], abs=0.01)
 
 
 def test_indices_of_the_life_are_those_of_many_rows(big):
     life = big["never"].values
-    known = known_indices.life_truths()
+    truths = known_indices.life_truths()
     targets = {
         "log(life)": np.log(big["life"].values),
         "rank(never)": stats.rankdata(life) / len(life),
         "rate(never)": 1 / life,
         "P(never<1.0)": (life < 1.0).astype(float),
     }
-    assert set(targets) == set(known)
+    assert set(targets) == set(truths)
     for name, values in targets.items():
         for kind, of in (("S1", big["r1"]), ("ST", big["r2"] + big["r3"])):
             parts = np.array_split(np.argsort(of.values), 400)
             share = np.var([values[part].mean() for part in parts]) / values.var()
-            assert known[name][kind] == pytest.approx(
+            assert truths[name][kind] == pytest.approx(
                 share if kind == "S1" else 1 - share, abs=0.01
             )
 
@@ -107,11 +107,13 @@ def test_each_table_of_the_page_stands_folded_in_a_chapter():
     page = Path("docs/coverage.md").read_text()
     contents = re.findall(r"^\| \[(.*?)\]\(", page, re.MULTILINE)
     chapters = re.split(r"^## ", page, flags=re.MULTILINE)[1:]
-    assert list(CHAPTERS) == contents == [one.partition("\n")[0] for one in chapters]
-    for title, one in zip(contents, chapters, strict=True):
-        problems = re.findall(r"<summary>(.*?)(?: \([^()]* than stated\))?</summary>\n\n\|", one)
+    assert list(CHAPTERS) == contents == [chapter.partition("\n")[0] for chapter in chapters]
+    for title, chapter in zip(contents, chapters, strict=True):
+        problems = re.findall(
+            r"<summary>(.*?)(?: \([^()]* than stated\))?</summary>\n\n\|", chapter
+        )
         assert {chapter_of(html.unescape(problem)) for problem in problems} == {title}
-        assert len(problems) == one.count("\n| --- ") >= 1
+        assert len(problems) == chapter.count("\n| --- ") >= 1
 
 
 @pytest.mark.parametrize(
@@ -140,9 +142,9 @@ def test_truths_of_the_random_model_are_those_of_many_rows():
     study = problems.study_of("saltelli", 2**14, 1, noise.NAME, dict.fromkeys(("x1", "x2"), law))
     y = problems.computed(study)["y"].values.reshape(-1, 5)
     a, ab_1, ab_2, b, again = ((y - y.mean()) / y[:, [0, 3]].std()).T
-    for one, name in ((ab_1, "x1"), (ab_2, "x2")):
-        assert np.mean(b * (one - a)) == pytest.approx(noise.TRUTH["S1"][name], abs=0.03)
-        assert np.mean((a - one) ** 2) / 2 == pytest.approx(noise.TRUTH["ST"][name], abs=0.03)
+    for mixed, name in ((ab_1, "x1"), (ab_2, "x2")):
+        assert np.mean(b * (mixed - a)) == pytest.approx(noise.TRUTH["S1"][name], abs=0.03)
+        assert np.mean((a - mixed) ** 2) / 2 == pytest.approx(noise.TRUTH["ST"][name], abs=0.03)
     assert np.mean((a - again) ** 2) / 2 == pytest.approx(noise.SHARE, abs=0.03)
 
 

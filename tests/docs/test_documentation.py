@@ -44,7 +44,11 @@ ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completio
 ELSEWHERE = ("docs/clusters.md", "docs/gallery.md", "docs/guide/learning.md")
 """Pages whose Python needs a cluster or inspections, or is run by a test of its own."""
 EXAMPLES = sorted(
-    {found.__module__ for name in public.__all__ if isfunction(found := getattr(public, name))}
+    {
+        public_function.__module__
+        for name in public.__all__
+        if isfunction(public_function := getattr(public, name))
+    }
 )
 
 
@@ -56,8 +60,8 @@ def blocks(name, language):
 @pytest.mark.parametrize("module", ["generated.markdown", "uq.contract", *EXAMPLES])
 def test_examples_in_docstrings_run(module, folder):
     shutil.copytree(HOUSE / "studies", "studies")
-    found = doctest.testmod(importlib.import_module(module), extraglobs={"uq": public})
-    assert found.failed == 0
+    results = doctest.testmod(importlib.import_module(module), extraglobs={"uq": public})
+    assert results.failed == 0
 
 
 def test_there_are_examples():
@@ -81,7 +85,7 @@ def test_links_to_headings_lead_to_one(name):
 def slugs(text):
     """Return the anchors of the headings of a page, as GitHub and myst-parser make them."""
     headings = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
-    return {re.sub(r"[^\w -]", "", one.lower()).replace(" ", "-") for one in headings}
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 @every_source
@@ -91,15 +95,15 @@ def test_directives_stand_for_something(name):
 
 @every_source
 def test_commands_and_their_options_exist(name):
-    known = generated.commands()
+    verbs = generated.commands()
     code = re.findall(r"`(uq [^`\n]+)`", SOURCES[name])
     lines = [line for block in blocks(name, "sh") for line in block.splitlines()]
     for command in (*code, *(line for line in lines if line.startswith("uq "))):
         verb, *rest = command.partition("#")[0].split()[1:]
         if verb == "VERB" or verb in ROOT_OPTIONS:
             continue
-        assert verb in known, command
-        options = {text for option in known[verb].params for text in option.opts} | {"--help"}
+        assert verb in verbs, command
+        options = {text for option in verbs[verb].params for text in option.opts} | {"--help"}
         assert {word for word in rest if word.startswith("--")} <= options, command
 
 
@@ -143,8 +147,8 @@ def test_python_shown_compiles_and_names_what_there_is(name):
         compile(block, name, "exec")
         assert set(re.findall(r"\buq\.(\w+)\(", block)) <= set(public.__all__)
         for module, names in re.findall(r"^from ((?:uq|models)\.\S+) import (.*)$", block, re.M):
-            found = vars(importlib.import_module(module))
-            assert set(re.split(r", *", names)) <= found.keys()
+            members = vars(importlib.import_module(module))
+            assert set(re.split(r", *", names)) <= members.keys()
 
 
 RUN = [name for name in SOURCES if blocks(name, "python") and name not in ELSEWHERE]
@@ -196,10 +200,10 @@ def test_functions_named_exist(name):
 def definitions(tree, before=""):
     """Return the names of the functions and classes of a module, those within classes too."""
     kinds = (ast.FunctionDef, ast.ClassDef)
-    found = {before + node.name: node for node in tree.body if isinstance(node, kinds)}
-    for name, node in list(found.items()):
-        found |= definitions(node, f"{name}.") if isinstance(node, ast.ClassDef) else {}
-    return found
+    nodes = {before + node.name: node for node in tree.body if isinstance(node, kinds)}
+    for name, node in list(nodes.items()):
+        nodes |= definitions(node, f"{name}.") if isinstance(node, ast.ClassDef) else {}
+    return nodes
 
 
 def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch, write_study):
@@ -264,7 +268,7 @@ def test_the_answer_that_the_readme_quotes_is_the_one_that_is_printed():
     quoted, printed = map(numbers, texts)
     assert len(quoted) > 10
     assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
-    quoted_words, printed_words = (re.sub(r"\d+(\.\d+)?", "#", one).split() for one in texts)
+    quoted_words, printed_words = (re.sub(r"\d+(\.\d+)?", "#", text).split() for text in texts)
     assert quoted_words == printed_words, "run: python docs/first_answer.py"
 
 
@@ -279,7 +283,7 @@ def test_the_study_that_the_readme_shows_is_the_one_that_it_runs():
 
 
 def numbers(text):
-    return [float(one) for one in re.findall(r"\d+(?:\.\d+)?", text)]
+    return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", text)]
 
 
 def test_every_key_and_every_law_is_described():
@@ -297,7 +301,11 @@ def test_the_citation_is_that_of_this_version():
     assert citation["version"] == project["version"]
     assert citation["license"] == project["license"]
     cited = " ".join(text for name in generated.machines() for text in find_model(name).references)
-    assert [one["title"] for one in citation["references"] if one["title"] not in cited] == []
+    assert [
+        reference["title"]
+        for reference in citation["references"]
+        if reference["title"] not in cited
+    ] == []
     assert len(citation["references"]) == len(generated.machines())
 
 

@@ -28,8 +28,8 @@ def phone(tmp_path_factory):
     folder = tmp_path_factory.mktemp("phone")
     formulas.write_font(folder / "math.woff")
     shutil.copy(HOUSE / "docs" / "_static" / "pages.css", folder)
-    with tab(tmp_path_factory.mktemp("browser")) as one:
-        yield one, folder
+    with tab(tmp_path_factory.mktemp("browser")) as chromium:
+        yield chromium, folder
 
 
 @pytest.mark.slow
@@ -48,16 +48,24 @@ def test_formulas_fit_on_a_phone_in_the_font_of_the_pages(phone, path):
     assert len(blocks) >= 3 and max(browser.value(right)) <= WIDE
     assert browser.value("[...document.fonts].map(font => font.status)") == ["loaded"]
     assert browser.complaints() == []
-    assert {Path(one).name for one in browser.requests()} == {"page.html", "pages.css", "math.woff"}
+    assert {Path(address).name for address in browser.requests()} == {
+        "page.html",
+        "pages.css",
+        "math.woff",
+    }
 
 
 @pytest.mark.slow
 def test_the_font_has_every_letter_of_every_formula():
-    known = {code for start, end in formulas.CHARACTERS for code in range(start, end)}
+    covered_letters = {code for start, end in formulas.CHARACTERS for code in range(start, end)}
     for path in (HOUSE / "docs").rglob("*.md"):
         text = pages.expanded(path.read_text(encoding="utf-8"))
         for tex in _INLINE.findall(re.sub(r"`[^`\n]*`|^```.*?^```", "", text, flags=re.M | re.S)):
             written = re.sub("<.*?>", "", formulas.inline(tex))
             letters = {int(code, 16) for code in re.findall("&#x(.*?);", written)}
             letters |= set(map(ord, re.sub("&#x.*?;", "", written)))
-            assert letters <= known, (path, tex, [chr(code) for code in letters - known])
+            assert letters <= covered_letters, (
+                path,
+                tex,
+                [chr(code) for code in letters - covered_letters],
+            )

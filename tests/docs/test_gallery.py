@@ -14,7 +14,7 @@ from uq import plots
 
 HOUSE = Path(__file__).parents[2]
 
-EXAMPLES = {one.name: one for one in gallery.EXAMPLES}
+EXAMPLES = {example.name: example for example in gallery.EXAMPLES}
 FEWER = {
     "beam-depths": 8,
     "beam-lifetime": 600,
@@ -28,10 +28,10 @@ FEWER = {
 def test_the_gallery_holds_every_kind_of_figure_and_no_file_is_left_over():
     functions = {
         name
-        for name, found in vars(plots).items()
-        if isfunction(found) and found.__module__.endswith(("_plot", "_plots"))
+        for name, member in vars(plots).items()
+        if isfunction(member) and member.__module__.endswith(("_plot", "_plots"))
     }
-    drawn = {re.findall(r"uq\.plots\.(\w+)\(", one.code)[-1] for one in EXAMPLES.values()}
+    drawn = {re.findall(r"uq\.plots\.(\w+)\(", example.code)[-1] for example in EXAMPLES.values()}
     assert drawn == functions
     assert set(plots.FIGURES) <= EXAMPLES.keys()
     assert {path.stem for path in gallery.FOLDER.glob("*.svg")} == EXAMPLES.keys()
@@ -41,11 +41,11 @@ def test_the_gallery_holds_every_kind_of_figure_and_no_file_is_left_over():
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_lines_of_an_example_draw(name, tmp_path_factory, monkeypatch):
-    one = EXAMPLES[name]
+    example = EXAMPLES[name]
     folder = tmp_path_factory.getbasetemp() / "gallery"
     folder.mkdir(exist_ok=True)
     monkeypatch.chdir(folder)
-    if one.study and not os.path.exists(f"results/{one.study}.nc"):
-        study = uq.load_study(HOUSE / f"studies/{one.study}.toml")
-        uq.run(study.with_samples(FEWER[one.study]))
-    assert isinstance(gallery.drawn(one), Figure)
+    if example.study and not os.path.exists(f"results/{example.study}.nc"):
+        study = uq.load_study(HOUSE / f"studies/{example.study}.toml")
+        uq.run(study.with_samples(FEWER[example.study]))
+    assert isinstance(gallery.drawn(example), Figure)

@@ -54,10 +54,10 @@ def test_the_ball_of_notebook_06_meets_its_formula(monkeypatch):
     fall = np.sqrt(2 * 1.5 / 9.81)
     for restitution in (0.3, 0.8):
         inputs = {"height": 1.5, "restitution": restitution}
-        one = uq.simulate(ball, inputs, {"smallest_rise": 1e-15})
+        motion = uq.simulate(ball, inputs, {"smallest_rise": 1e-15})
         exact = fall * (1 + restitution) / (1 - restitution)
-        assert one["time_to_rest"].item() == pytest.approx(exact, rel=1e-7)
-        assert float(one["time"][-1]) == pytest.approx(exact, rel=1e-7)
+        assert motion["time_to_rest"].item() == pytest.approx(exact, rel=1e-7)
+        assert float(motion["time"][-1]) == pytest.approx(exact, rel=1e-7)
     never = uq.simulate(ball, {"restitution": 1.0})
     assert np.isposinf(never["time_to_rest"].item())
     late = uq.simulate(ball, {"restitution": 0.999}, {"most_bounces": 5}).isel(row=0)

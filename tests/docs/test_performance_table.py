@@ -18,10 +18,10 @@ def test_the_readme_shows_three_figures_of_the_page():
 
 def test_a_benchmark_replaces_its_own_figures_alone(folder, monkeypatch):
     monkeypatch.setattr(figures, "FOLDER", folder / "kept")
-    for name, own in KEPT.items():
+    for name, new_figures in KEPT.items():
         figures.keep(name, [Figure("old", "peer", 1.0)])
-        figures.keep(name, own)
-    assert {one.benchmark: one.figures for one in figures.kept()} == KEPT
+        figures.keep(name, new_figures)
+    assert {benchmark.benchmark: benchmark.figures for benchmark in figures.kept()} == KEPT
     page = table.page(figures.kept())
     assert "| b | heyoka | 3.25 times as fast |" in page
     assert "| c | an import | 1.5 times as long |" in page

@@ -17,8 +17,8 @@ SMALLEST = 12.0  # letters are drawn with 11 points
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("machine", generated.machines())
 def test_a_machine_fits_on_a_phone_with_letters_that_can_be_read(machine, tmp_path):
-    for one in (HOUSE / "docs" / "_static").iterdir():
-        shutil.copy(one, tmp_path)
+    for path in (HOUSE / "docs" / "_static").iterdir():
+        shutil.copy(path, tmp_path)
     shutil.copy(HOUSE / "docs" / "pictures" / f"{machine}.svg", tmp_path)
     page = tmp_path / "page.html"
     page.write_text(

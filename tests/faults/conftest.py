@@ -80,9 +80,9 @@ def start(context, folder):
         return started[-1]
 
     yield begin
-    for one in started:
-        if one.process.is_alive():
-            one.kill()
+    for command in started:
+        if command.process.is_alive():
+            command.kill()
 
 
 @pytest.fixture

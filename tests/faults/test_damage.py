@@ -39,16 +39,22 @@ def one_bit_flipped(content):
 
 @pytest.mark.parametrize(
     "damage",
-    [*(pytest.param(one, marks=pytest.mark.slow) for one in (truncated, emptied)), one_bit_flipped],
+    [
+        *(
+            pytest.param(damage_kind, marks=pytest.mark.slow)
+            for damage_kind in (truncated, emptied)
+        ),
+        one_bit_flipped,
+    ],
 )
 def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, injected, damage):
     kept[1].write_bytes(damage(kept[1].read_bytes()))
     words = damage.__name__.replace("_", " ")
     injected(f"chunk file {'with ' * (damage is one_bit_flipped)}{words}")
     first, _, stop = kept[1].stem.partition("-")[2].partition("-")
-    code, said = call("run", study, *MODEL[:-1])
+    code, output = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(sentence("damaged", rows=ROWS, count=int(stop) - int(first)))
+    assert output.startswith(sentence("damaged", rows=ROWS, count=int(stop) - int(first)))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -83,9 +89,9 @@ def test_a_journal_that_was_cut_loses_its_last_record_only(
     last = len(records) - (bytes_cut > 1)
     blocks = [block for record in records[1:last] for block in record["blocks"]]
     rows = sum(stop - start for start, stop in blocks)
-    code, said = call("run", study, *MODEL[:-1])
+    code, output = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(sentence("done", output=OUT, done=rows, rows=1500))
+    assert output.startswith(sentence("done", output=OUT, done=rows, rows=1500))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -101,25 +107,25 @@ def test_a_record_that_was_changed_does_not_count(study, undisturbed, kept, call
 
 
 def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call, injected):
-    code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE="9000")
+    code, output = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE="9000")
     assert code == 1
-    assert said.count("\n") == 1
-    assert said.startswith(sentence("unwritten", place=ROWS, why="File too large; "))
-    assert said.endswith(" of 1500 rows are kept, and " + sentence("resumes"))
+    assert output.count("\n") == 1
+    assert output.startswith(sentence("unwritten", place=ROWS, why="File too large; "))
+    assert output.endswith(" of 1500 rows are kept, and " + sentence("resumes"))
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
     injected("file-size limit", 2)
     almost = str(len(undisturbed) - 5000)  # more than all chunk files take together
-    code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE=almost)
+    code, output = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE=almost)
     assert code == 1
-    assert said.count("\n") == 1
-    assert said.startswith(sentence("unwritten", place=OUT, why=""))  # in the merge this time
-    assert said.endswith("; the rows are kept, and " + sentence("resumes"))
+    assert output.count("\n") == 1
+    assert output.startswith(sentence("unwritten", place=OUT, why=""))  # in the merge this time
+    assert output.endswith("; the rows are kept, and " + sentence("resumes"))
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
-    code, said = call("run", study, *MODEL[:-1])
+    code, output = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(sentence("done", output=OUT, done=1500, rows=1500))
+    assert output.startswith(sentence("done", output=OUT, done=1500, rows=1500))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -139,21 +145,21 @@ def disk(folder):
 def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call, disk, injected):
     out, rows, filler = (disk / name for name in ("out.nc", "out.nc.rows", "filler"))
     filler.write_bytes(bytes(900_000))
-    code, said = call("run", study, *MODEL, "-o", out)
+    code, output = call("run", study, *MODEL, "-o", out)
     assert (code, list(disk.iterdir())) == (2, [filler])  # nothing was computed
-    assert said.startswith(f"{out}: the result takes about 0 MB, and {disk} has 0 MB left")
+    assert output.startswith(f"{out}: the result takes about 0 MB, and {disk} has 0 MB left")
     filler.unlink()
     run = start("run", study, *MODEL, "-o", out, "--chunk-rows", "40", UQ_TEST_SECONDS="0.002")
     until(lambda: list(rows.glob("*.rows")))
     with contextlib.suppress(OSError), filler.open("wb", buffering=0) as file:
         while True:  # meanwhile somebody else needs the disk
             file.write(bytes(1000))
-    code, said = run.wait()
+    code, message = run.wait()
     injected("full disk", 2)  # with the refusal above
     assert code == 1
-    assert said.count("\n") == 1
-    assert said.startswith(sentence("unwritten", place=rows, why="No space left on device; "))
-    assert said.endswith(" of 1500 rows are kept, and " + sentence("resumes"))
+    assert message.count("\n") == 1
+    assert message.startswith(sentence("unwritten", place=rows, why="No space left on device; "))
+    assert message.endswith(" of 1500 rows are kept, and " + sentence("resumes"))
     assert not out.exists()
     assert {path.suffix for path in rows.iterdir()} == {"", ".rows"}
     filler.unlink()
@@ -171,11 +177,11 @@ def test_a_read_only_folder_is_refused(study, undisturbed, call, injected):
         there.write_bytes(undisturbed)
         closed.chmod(0o555)
         for output in (closed / "out.nc", closed / "new" / "out.nc"):
-            code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
-            assert code == 2, said
+            code, message = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
+            assert code == 2, message
             injected("read-only folder")
             why = "Permission denied; choose another place with -o"
-            assert said == f"{output}: cannot write in {closed}: {why}\n"
+            assert message == f"{output}: cannot write in {closed}: {why}\n"
         model = (*MODEL[:2], "--quiet")
         refused = call("extend", there, "--samples", "1600", *model, **as_nobody)
         assert refused == (

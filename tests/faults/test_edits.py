@@ -28,9 +28,9 @@ def test_another_study_is_refused_with_what_changed(
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     study.write_text(study.read_text().replace(old, new, 1))
     injected("study edited between runs")
-    code, said = call("run", study, *MODEL)
+    code, output = call("run", study, *MODEL)
     assert code == 2
-    assert said == sentence("another study", rows=ROWS, change=change)
+    assert output == sentence("another study", rows=ROWS, change=change)
     assert before == {path.name for path in ROWS.iterdir()}
     assert call("run", study, *MODEL, "--fresh")[0] == 0
 
@@ -39,9 +39,9 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, i
     under_way(study).kill()
     injected("study edited between runs", 2)
     study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
-    code, said = call("run", study, *MODEL[:-1])
+    code, output = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: ") and " of 1500 rows " in said
+    assert output.startswith(f"{OUT}: ") and " of 1500 rows " in output
     assert OUT.read_bytes() != undisturbed  # it holds the new text
     study.write_text(study.read_text().removesuffix("# a comment\nquantiles = [0.5]\n"))
     assert "already complete" in call("run", study, *MODEL[:-1])[1]
@@ -58,9 +58,9 @@ def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_w
     under_way(study).kill()  # it went on, with more
     injected("study edited between runs", 3)
     study.write_text(few)
-    code, said = call("run", study, *MODEL)
+    code, output = call("run", study, *MODEL)
     assert code == 2
-    assert said.startswith(sentence("fewer", rows=ROWS, change="samples = 1500, now 900"))
+    assert output.startswith(sentence("fewer", rows=ROWS, change="samples = 1500, now 900"))
     study.write_text(many)
     assert call("run", study, *MODEL)[0] == 0
     assert OUT.read_bytes() == undisturbed
@@ -90,9 +90,9 @@ def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, 
     under_way(study).kill()
     study.write_text(study.read_text().replace("samples = 800", "samples = 900"))
     injected("study edited between runs")
-    code, said = call("run", study, *MODEL)
+    code, output = call("run", study, *MODEL)
     assert code == 2
-    assert sentence("cannot be extended", design="latin-hypercube") in said
+    assert sentence("cannot be extended", design="latin-hypercube") in output
 
 
 @pytest.mark.slow
@@ -111,9 +111,9 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     assert before == {path.name for path in ROWS.iterdir()}
     assert call("run", study, *options, "--mixed", "--quiet") == (0, "")
     old, new = uq.open_result(OUT).attrs["code"].split("; ")
-    code, said = call("verify", OUT, *options[:2])
+    code, output = call("verify", OUT, *options[:2])
     assert code == 0
-    assert f"code  {old}; {new} made it, " in said
+    assert f"code  {old}; {new} made it, " in output
     printed = sentence("other code shown", output=OUT, model="patient")
     assert call("run", study, *options, "--quiet") == (0, printed)
     assert call("run", study, *options, "--quiet", "--mixed") == (0, "")

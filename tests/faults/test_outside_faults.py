@@ -86,7 +86,9 @@ def started_by(driver):
         return {
             "driver": [driver],
             "worker": workers,
-            "program": [one for worker in workers for one in worker.children(recursive=True)],
+            "program": [
+                process for worker in workers for process in worker.children(recursive=True)
+            ],
         }
     return {}
 
@@ -127,7 +129,7 @@ def test_kills_leave_no_trace(files, kind, injected):
         if server:
             server.kill()
     injected(f"{kind}: driver, worker or what computes a row killed", KILLS)
-    assert not [one for one in seen if running(one)]
+    assert not [process for process in seen if running(process)]
     assert not list(Path().glob("slow.rows/*"))
 
 
@@ -141,10 +143,10 @@ def complete(command, victims, chance, server, seen):
         if not running(driver):
             driver.wait()
             driver = start(*command, "-o", "own.nc")
-        found = started_by(driver)
-        seen.update(one for some in found.values() for one in some)
+        children = started_by(driver)
+        seen.update(process for some in children.values() for process in some)
         if victims and time.monotonic() > strike:
-            targets = [one for one in found.get(victims[-1], ()) if running(one)]
+            targets = [process for process in children.get(victims[-1], ()) if running(process)]
             if victims[-1] == "server":
                 server.kill()
                 server.start()

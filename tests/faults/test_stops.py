@@ -66,9 +66,9 @@ def test_kills_during_the_merge(write_study, start, call, injected, kills):
             OUT.unlink()
     injected("SIGKILL during the merge", caught)
     shutil.copytree(ROWS, "copy")
-    code, said = call("run", study, *options[:2])
+    code, output = call("run", study, *options[:2])
     assert code == 0
-    assert sentence("done", output=OUT, done=200_000, rows=200_000) in said
+    assert sentence("done", output=OUT, done=200_000, rows=200_000) in output
     assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
     # Killed just before the rows are removed: they are of no use any more.
     shutil.copytree("copy", ROWS)
@@ -105,12 +105,12 @@ def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder
     kept = json.loads(call("status", OUT, "--json")[1])["done"]
     study.write_text(wanting(0.5, plain))  # known at the first look, which is past
     injected("[design] until edited between runs", 2)
-    code, said = call("run", study, *MODEL[:-1])
+    code, output = call("run", study, *MODEL[:-1])
     assert code == 0
     ended = uq.open_result(OUT)
     size = ended.sizes["row"]
     assert size == min(look for look in LOOKS if look >= kept)
-    assert f"reached at interim estimate {1 + LOOKS.index(size)} of" in " ".join(said.split())
+    assert f"reached at interim estimate {1 + LOOKS.index(size)} of" in " ".join(output.split())
     for name in ("x1", "x2", "y", "z", "status"):
         assert ended[name].values.tobytes() == whole[name].values[:size].tobytes()
     study.write_text(plain)  # no wish any more: all rows
@@ -128,13 +128,13 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     until(lambda: kept().rows > 100)
     run.send(number)
     injected("Ctrl-C" if number == signal.SIGINT else "SIGTERM")
-    code, said = run.wait()
+    code, message = run.wait()
     assert code == 128 + number
     done = json.loads(call("status", OUT, "--json")[1])["done"]
-    assert said == sentence("interrupted", done=done, rows=1500, place=ROWS)
-    code, said = call("run", study, *MODEL[:-1])
+    assert message == sentence("interrupted", done=done, rows=1500, place=ROWS)
+    code, output = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(sentence("done", output=OUT, done=done, rows=1500))
+    assert output.startswith(sentence("done", output=OUT, done=done, rows=1500))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -148,11 +148,11 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     assert sum(run_status["status"].values()) == run_status["done"]
     assert run_status["rate"] > 0
     os.kill(run.process.pid, signal.SIGSTOP)  # it lives, and does not end while the next one starts
-    code, said = call("run", study, *MODEL)
+    code, output = call("run", study, *MODEL)
     assert code == 2
     injected("lock of a living process")
     host = run_status["process"]["host"]
-    assert said == sentence("in use", rows=ROWS, pid=run.process.pid, host=host)
+    assert output == sentence("in use", rows=ROWS, pid=run.process.pid, host=host)
     run.kill()
     assert (ROWS / "lock").exists()  # stale, and recognised as such
     injected("lock of a dead process")
@@ -182,10 +182,10 @@ def test_a_lock_of_another_host_is_respected(study, under_way, call, injected):
     under_way(study).kill()
     (ROWS / "lock").write_text("1\nelsewhere\n")
     injected("lock of another computer")
-    code, said = call("run", study, *MODEL)
+    code, output = call("run", study, *MODEL)
     assert code == 2
     where = {"pid": 1, "host": "elsewhere", "lock": ROWS / "lock"}
-    assert said == sentence("in use elsewhere", rows=ROWS, **where)
+    assert output == sentence("in use elsewhere", rows=ROWS, **where)
     (ROWS / "lock").unlink()
     assert call("run", study, *MODEL)[0] == 0
 

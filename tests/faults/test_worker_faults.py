@@ -18,14 +18,14 @@ from uq.result.workload import workload_of
 
 def processes(module):
     """Return the living processes, started by this one, that run a module."""
-    found = []
+    child_processes = []
     for child in psutil.Process().children(recursive=True):
         try:
             if module in child.cmdline() and child.status() != psutil.STATUS_ZOMBIE:
-                found.append(child)
+                child_processes.append(child)
         except psutil.NoSuchProcess:
             pass
-    return found
+    return child_processes
 
 
 def wait_for(condition):

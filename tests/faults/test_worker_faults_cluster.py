@@ -57,14 +57,14 @@ class Cluster:
         return process
 
     def end(self, process=None):
-        for one in [process] if process else self.started:
+        for stopped in [process] if process else self.started:
             with contextlib.suppress(psutil.NoSuchProcess):
-                family = psutil.Process(one.pid).children(recursive=True)
-                one.kill()
+                family = psutil.Process(stopped.pid).children(recursive=True)
+                stopped.kill()
                 for child in family:
                     with contextlib.suppress(psutil.NoSuchProcess):
                         child.kill()
-            one.wait(PATIENCE)
+            stopped.wait(PATIENCE)
 
 
 @pytest.fixture
@@ -81,8 +81,8 @@ def start(folder):
         return clusters[-1]
 
     yield call
-    for one in clusters:
-        one.end()
+    for cluster in clusters:
+        cluster.end()
 
 
 @pytest.fixture

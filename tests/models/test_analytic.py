@@ -58,16 +58,16 @@ def test_g_function_has_its_closed_form_moments_and_indices():
     variance = np.prod(1 + partial) - 1
     assert moments(G_FUNCTION, x, w) == pytest.approx((1.0, variance), rel=1e-10)
     for i in range(8):
-        found = first_order_variance(G_FUNCTION, x, w, i)
-        assert found == pytest.approx(partial[i], rel=1e-10)
+        partial_variance = first_order_variance(G_FUNCTION, x, w, i)
+        assert partial_variance == pytest.approx(partial[i], rel=1e-10)
 
 
 def test_linear_has_its_closed_form_moments_and_indices():
     x, w = grid(0.5 + 0.5 / np.sqrt(3) * np.array([-1.0, 1.0]), np.ones(2), 4)
     assert moments(LINEAR, x, w) == pytest.approx((5.0, 30 / 12), rel=1e-12)
     for i in range(4):
-        found = first_order_variance(LINEAR, x, w, i)
-        assert found == pytest.approx((i + 1) ** 2 / 12, rel=1e-12)
+        variance = first_order_variance(LINEAR, x, w, i)
+        assert variance == pytest.approx((i + 1) ** 2 / 12, rel=1e-12)
 
 
 def test_a_life_is_depth_over_rate_and_never_below_the_threshold():

@@ -73,12 +73,12 @@ def test_three_orders_of_compilation_give_the_same_bits(tmp_path):
         for rows in order:
             compute(tmp_path / f"cache-{number}", kept, rows)
     for study in vibrator | mole | beam:
-        one, *others = [
+        arrays, *others = [
             np.load(tmp_path / f"kept-{number}" / f"{study}.npz") for number in range(len(orders))
         ]
         for other in others:
-            for name in one:
-                assert one[name].tobytes() == other[name].tobytes(), (study, name)
+            for name in arrays:
+                assert arrays[name].tobytes() == other[name].tobytes(), (study, name)
 
 
 def narrow():

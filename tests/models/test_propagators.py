@@ -32,8 +32,8 @@ def after(carried, rows, *parts):
     return [out[i] for i in range(len(rows))]
 
 
-def same_bits(one, other):
-    return all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, other, strict=True))
+def same_bits(state, other):
+    return all(np.array_equal(a, b, equal_nan=True) for a, b in zip(state, other, strict=True))
 
 
 def test_it_has_the_functions_of_a_propagator(carried):
@@ -82,9 +82,9 @@ def test_in_parts_it_comes_where_it_comes_in_one_go(carried):
     whole = after(carried, carried.rows, PERIODS)
     parts = after(carried, carried.rows, first, PERIODS - first)
     assert carried.in_parts or same_bits(parts, whole)
-    for one, other in zip(parts, whole, strict=True):
-        size = carried.sizes(one[None])
-        apart = (one - other)[: len(size)][size > 0] / size[size > 0]
+    for part, other in zip(parts, whole, strict=True):
+        size = carried.sizes(part[None])
+        apart = (part - other)[: len(size)][size > 0] / size[size > 0]
         assert np.abs(apart).max() <= carried.in_parts
 
 
@@ -93,7 +93,7 @@ def test_the_monodromy_is_the_derivative_of_the_advance(carried):
     _, system, state = next(begun(carried, carried.rows[1:2]))
     carried.advance(system, state, 20)
     before = state.copy()
-    found = carried.monodromy(system, state, 2)[0]
+    matrix = carried.monodromy(system, state, 2)[0]
     assert np.array_equal(state, before)
     sizes, both = carried.sizes(state), np.zeros(2, int)
     rng = np.random.default_rng(8)
@@ -104,7 +104,7 @@ def test_the_monodromy_is_the_derivative_of_the_advance(carried):
         carried.advance(system.take(both), ends, 2)
         expected = (ends[0] - ends[1])[: len(change)] / 2
         wanted = sizes > 0
-        apart = (found @ change - expected)[wanted] / sizes[wanted]
+        apart = (matrix @ change - expected)[wanted] / sizes[wanted]
         assert np.abs(apart).max() < carried.close * np.abs(expected[wanted] / sizes[wanted]).max()
 
 
@@ -113,8 +113,8 @@ def followed(request):
     return FOLLOWED[request.param]
 
 
-def apart(followed, one, other):
-    return np.abs((followed.numbers(one) - followed.numbers(other)) / followed.scales).max()
+def apart(followed, state, other):
+    return np.abs((followed.numbers(state) - followed.numbers(other)) / followed.scales).max()
 
 
 def test_it_has_the_functions_of_a_reference_propagator(followed):
@@ -140,19 +140,22 @@ def test_it_goes_on_as_if_it_had_never_stopped_and_samples_the_way(followed):
     for stop, sample in zip(stops, whole.samples, strict=True):
         state = followed.propagate(state, stop - begin, 1e-11).state
         begin = stop
-        found = sample[: len(followed.scales)]
+        scaled_state = sample[: len(followed.scales)]
         np.testing.assert_allclose(
-            found / followed.scales, followed.numbers(state) / followed.scales, rtol=0, atol=1e-7
+            scaled_state / followed.scales,
+            followed.numbers(state) / followed.scales,
+            rtol=0,
+            atol=1e-7,
         )
 
 
 def test_its_error_shrinks_with_the_tolerance(followed):
     start = followed.propagator.start(followed.params, followed.system)
-    known, *others = (
+    accurate, *others = (
         followed.propagate(start, followed.seconds, tolerance).state
         for tolerance in (1e-13, 1e-9, 1e-6)
     )
-    near, far = (apart(followed, known, other) for other in others)
+    near, far = (apart(followed, accurate, other) for other in others)
     assert near < 0.1 * far < 1e-3
 
 

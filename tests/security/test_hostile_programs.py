@@ -20,10 +20,10 @@ from uq.study.installed_models import model_at
 
 def running_in(folder):
     """Yield the processes whose current folder is that of a row, or was."""
-    for one in psutil.process_iter():
+    for process in psutil.process_iter():
         with suppress(psutil.NoSuchProcess, psutil.AccessDenied):
-            if one.cwd().startswith(f"{folder}/pad.rows/") and one.status() != "zombie":
-                yield one
+            if process.cwd().startswith(f"{folder}/pad.rows/") and process.status() != "zombie":
+                yield process
 
 
 HOSTILE = {
@@ -84,10 +84,10 @@ def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkey
 
 def test_of_many_failed_rows_little_is_kept(folder, monkeypatch):
     monkeypatch.setattr(row_folders, "_MOST_KEPT", 5000)
-    with suppress(ValueError), Folders(folder / "rows").row([1.0]) as one:
+    with suppress(ValueError), Folders(folder / "rows").row([1.0]) as row_folder:
         for i in range(9):
-            (one / f"large{i}").write_bytes(bytes(1000))
-        (one / "small").write_bytes(bytes(10))
+            (row_folder / f"large{i}").write_bytes(bytes(1000))
+        (row_folder / "small").write_bytes(bytes(10))
         raise ValueError
     (kept,) = (folder / "rows").iterdir()
     assert (kept / "small").is_file() and 4000 < row_folders.size_of(kept) <= 5000
@@ -121,11 +121,11 @@ def test_a_lost_row_keeps_its_folder_without_large_files(uq, write_program, fold
     _, ds = run_program(uq, "--row-limit", "0.5", "--samples", "2")
     label, words = LOST[line]
     assert {Status(code).label for code in ds["status"].values} == {label}
-    said = ds["status"].attrs[f"example_{label.replace('-', '_')}"]
-    assert words in said
-    assert Path(said.rpartition("; see ")[2], "small").is_file()
-    kept = [one.name for one in (folder / "pad.rows").iterdir()]
-    assert len(kept) == 2 and all(one.startswith("failed-") for one in kept)
+    sentence = ds["status"].attrs[f"example_{label.replace('-', '_')}"]
+    assert words in sentence
+    assert Path(sentence.rpartition("; see ")[2], "small").is_file()
+    kept = [path.name for path in (folder / "pad.rows").iterdir()]
+    assert len(kept) == 2 and all(name.startswith("failed-") for name in kept)
     assert not list((folder / "pad.rows").rglob("large"))
 
 
@@ -173,5 +173,5 @@ def test_a_process_that_leaves_takes_no_folder_from_another(folder, monkeypatch)
         return real(*arguments, **options)
 
     monkeypatch.setattr(tempfile, "mkdtemp", mkdtemp)
-    with Folders(folder / "rows").row([1.0]) as one:
-        assert one.is_dir()
+    with Folders(folder / "rows").row([1.0]) as row_folder:
+        assert row_folder.is_dir()

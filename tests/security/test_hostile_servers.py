@@ -24,8 +24,8 @@ def hostile():
     sockets = []
 
     def serve(answers):
-        one = socket.create_server(("127.0.0.1", 0))
-        sockets.append(one)
+        listener = socket.create_server(("127.0.0.1", 0))
+        sockets.append(listener)
         counts = dict.fromkeys(answers, 0)
 
         def handle(connection):
@@ -50,17 +50,17 @@ def hostile():
         def accept():
             while True:
                 try:
-                    connection, _ = one.accept()
+                    connection, _ = listener.accept()
                     threading.Thread(target=handle, args=(connection,), daemon=True).start()
                 except OSError:
                     return
 
         threading.Thread(target=accept, daemon=True).start()
-        return f"http://127.0.0.1:{one.getsockname()[1]}/m"
+        return f"http://127.0.0.1:{listener.getsockname()[1]}/m"
 
     yield serve
-    for one in sockets:
-        one.close()
+    for listener in sockets:
+        listener.close()
 
 
 INFO = {
@@ -98,8 +98,8 @@ def test_a_server_that_answers_nonsense_costs_a_status(uq, hostile, what):
     ds = package.open_result("own.nc")
     lost = ds["status"].values != Status.OK
     assert lost.any() and not lost.all()
-    said = " ".join(v for k, v in ds["status"].attrs.items() if k.startswith("example"))
-    assert words in said
+    sentence = " ".join(v for k, v in ds["status"].attrs.items() if k.startswith("example"))
+    assert words in sentence
     assert (ds["y"].values[~lost] == 1.5).all()
 
 

@@ -16,8 +16,8 @@ class Tally:
 
     def add(self, name, truth, low, high):
         """Count one interval; one that was not given has None."""
-        known = low is not None and high is not None
-        self.held.setdefault(name, []).append(low <= truth <= high if known else None)
+        has_interval = low is not None and high is not None
+        self.held.setdefault(name, []).append(low <= truth <= high if has_interval else None)
 
     def check(self, conservative=()):
         """Print the table and fail where a coverage is off.
@@ -26,7 +26,7 @@ class Tally:
         """
         wrong = []
         for name, held in self.held.items():
-            given = [one for one in held if one is not None]
+            given = [is_covered for is_covered in held if is_covered is not None]
             line = f"{self.title:40} {name:26} {np.mean(given):6.1%} of {len(given)}"
             print(line)
             most, least_given = (1.0, 0.8) if name in conservative else (0.99, 0.95)

@@ -68,9 +68,11 @@ def test_the_version_and_the_errors_are_those_of_the_package():
 def test_what_an_editor_reads_is_what_is_there():
     """The stub of the package names each thing once, where it is defined."""
     stub = ast.parse(Path(uq.__file__).with_suffix(".pyi").read_text())
-    named = [one for node in stub.body if isinstance(node, ast.ImportFrom) for one in node.names]
-    assert [one.name for one in named] == [one.asname for one in named]
-    assert sorted(one.name for one in named) == uq.__all__
+    named = [
+        alias for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    ]
+    assert [imported.name for imported in named] == [imported.asname for imported in named]
+    assert sorted(imported.name for imported in named) == uq.__all__
 
 
 def test_no_module_bears_the_name_of_a_function():
@@ -146,7 +148,7 @@ def test_a_verb_imports_only_what_it_needs(verbs, allowed, write_study, folder):
         uq.run("wear.toml", "wear.nc", workers=0)
     command = [sys.executable, "-c", IMPORTED_BY, verbs]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    found = [line for line in ended.stderr.splitlines() if line.startswith("loaded:")]
-    for line in found:
+    loaded_lines = [line for line in ended.stderr.splitlines() if line.startswith("loaded:")]
+    for line in loaded_lines:
         assert DEAR & set(line.removeprefix("loaded: ").split()) == allowed
-    assert len(found) == len(verbs.split(","))
+    assert len(loaded_lines) == len(verbs.split(","))

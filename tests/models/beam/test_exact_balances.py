@@ -72,8 +72,8 @@ def test_work_rates_of_settled_orbits(omega, rates):
     """In k_c X0^2 w0; which site is the heavy one depends on the start."""
     setup = set_up(at_omega(omega))
     work = setup.advance(4000).work[0, -1]
-    found = np.sort(work / (2 * np.pi / omega))[::-1]
-    np.testing.assert_allclose(found, rates, rtol=3e-7)
+    work_rates = np.sort(work / (2 * np.pi / omega))[::-1]
+    np.testing.assert_allclose(work_rates, rates, rtol=3e-7)
 
 
 @pytest.mark.slow
@@ -87,5 +87,5 @@ def test_means_of_aperiodic_motion(omega, gap, mean, error):
     setup.advance(1000)
     batches = setup.advance(40_000).work[0].reshape(40, 1000, 2).mean(axis=(1, 2))
     batches /= 2 * np.pi / omega
-    own = batches.std(ddof=1) / np.sqrt(len(batches))
-    assert abs(batches.mean() - mean) < 4 * np.hypot(own, error)
+    sampling_error = batches.std(ddof=1) / np.sqrt(len(batches))
+    assert abs(batches.mean() - mean) < 4 * np.hypot(sampling_error, error)

@@ -45,18 +45,20 @@ def exact_frequencies(p, count):
 
 
 def frequencies(p, elements, count=None):
-    return one(p, elements, count).frequency[0]
+    return modes_of_one(p, elements, count).frequency[0]
 
 
-def one(p, elements, count=None):
+def modes_of_one(p, elements, count=None):
     arrays = (np.array([value]) for value in p[:5])
     return modes(*arrays, elements, count)
 
 
 def test_the_exact_equation_gives_the_textbook_cantilever():
     """Blevins' roots lambda L of cos cosh = -1."""
-    found = exact_frequencies(RIGID._replace(lateral_support_stiffness=1e15), 3)
-    wave_numbers = np.sqrt(found * np.sqrt(RIGID.mass_per_length / RIGID.flexural_rigidity))
+    frequencies_found = exact_frequencies(RIGID._replace(lateral_support_stiffness=1e15), 3)
+    wave_numbers = np.sqrt(
+        frequencies_found * np.sqrt(RIGID.mass_per_length / RIGID.flexural_rigidity)
+    )
     np.testing.assert_allclose(
         wave_numbers * RIGID.length, [1.87510407, 4.69409113, 7.85475744], rtol=3e-5
     )
@@ -82,9 +84,9 @@ def test_modes_match_the_assembled_matrices(elements):
     p = Params()
     beam = assemble(p, elements)
     square, shape = eigh(beam.stiffness, beam.mass)
-    found = one(p, elements)
-    np.testing.assert_allclose(found.frequency[0], np.sqrt(square), rtol=1e-9)
-    np.testing.assert_allclose(found.tip[0], np.abs(shape[beam.tip]), rtol=1e-9, atol=1e-8)
+    beam_modes = modes_of_one(p, elements)
+    np.testing.assert_allclose(beam_modes.frequency[0], np.sqrt(square), rtol=1e-9)
+    np.testing.assert_allclose(beam_modes.tip[0], np.abs(shape[beam.tip]), rtol=1e-9, atol=1e-8)
 
 
 def test_the_fundamental_is_exact_on_a_fine_mesh():

@@ -46,12 +46,12 @@ def test_further_starts_change_nothing_but_the_error():
 
 
 def test_a_mirror_image_is_another_response():
-    found = compute({}, starts=8)
-    apart = abs(np.diff(found["work_rate"])[0])
-    assert found["work_rate_error"] == pytest.approx([apart, apart], rel=0.01)
+    outputs = compute({}, starts=8)
+    apart = abs(np.diff(outputs["work_rate"])[0])
+    assert outputs["work_rate_error"] == pytest.approx([apart, apart], rel=0.01)
 
 
 def test_rest_between_the_stops_is_another_response():
-    found = compute(RESTING, starts=1)
-    assert found["work_rate"].min() > 0
-    assert (found["work_rate_error"] >= found["work_rate"]).all()
+    outputs = compute(RESTING, starts=1)
+    assert outputs["work_rate"].min() > 0
+    assert (outputs["work_rate_error"] >= outputs["work_rate"]).all()

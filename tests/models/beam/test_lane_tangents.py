@@ -2,27 +2,16 @@
 
 import numpy as np
 import pytest
+from nominal_beams import nominal, prepared
 
 from models.beam import exact, lanes
 from models.beam.explore.lyapunov import exponents, lyapunov_exponent
 from models.beam.lanes.tangents import carry
 from models.beam.parameters import Params, Settings
 from models.beam.response.settling import settle
-from models.beam.structure.modal import beams
 from models.numerics.blocks import LANES
 
 FUNDAMENTAL = 57.1042 / 9.900  # [Hz]
-
-
-def nominal(n=1, **values):
-    fields = {**Params._field_defaults, **values}
-    return Params(*(np.broadcast_to(np.asarray(v, float), (n,)).copy() for v in fields.values()))
-
-
-def prepared(propagator, p, **settings):
-    s = Settings(**settings)
-    ((_, system),) = propagator.groups(beams(p, s), s)
-    return system
 
 
 def rattling(propagator, p, periods=40, **settings):
@@ -88,9 +77,9 @@ def test_multipliers_are_those_of_the_exact_propagator_but_for_the_step():
     for propagator, steps in ((lanes, 100), (lanes, 200), (lanes, 400)):
         system, state, gaps = rattling(propagator, p, 1500, steps_per_period=steps)
         sizes.append(np.abs(np.linalg.eigvals(propagator.monodromy(system, state, gaps, 1))).max())
-    known = 0.98859  # of the paper's robust case, by the exact propagator
-    assert np.abs(np.array(sizes) - known)[2] < 2e-5
-    assert np.abs(np.array(sizes) - known)[0] < 5e-4
+    expected = 0.98859  # of the paper's robust case, by the exact propagator
+    assert np.abs(np.array(sizes) - expected)[2] < 2e-5
+    assert np.abs(np.array(sizes) - expected)[0] < 5e-4
 
 
 def test_a_row_has_the_same_tangent_alone_and_anywhere_among_others():
@@ -119,14 +108,14 @@ def test_the_exponent_of_a_stable_orbit_is_that_of_its_largest_multiplier():
 
 
 @pytest.mark.parametrize(
-    ("params", "settings", "said"),
+    ("params", "settings", "message"),
     [
         (Params(random_force_level=1e-3), Settings(), "random load"),
         (Params(), Settings(propagator="exact"), "fast propagator"),
     ],
 )
-def test_what_has_no_exponent_is_said(params, settings, said):
-    with pytest.raises(ValueError, match=said):
+def test_what_has_no_exponent_is_said(params, settings, message):
+    with pytest.raises(ValueError, match=message):
         lyapunov_exponent(params, settings)
 
 
@@ -137,18 +126,18 @@ def test_the_exponent_of_chaos_is_the_rate_at_which_exact_neighbours_part():
     exponent, error = exponents(system, state, gaps, 4096)
     assert exponent[0] > 5 * error[0]
 
-    system, one, gaps = rattling(exact, p, 500)
+    system, perturbed, gaps = rattling(exact, p, 500)
     distance, stretch, looks = 1e-6, 2, 640
-    other = one.copy()
+    other = perturbed.copy()
     other[:, 0] += distance
     logs = np.zeros(looks)
     for k in range(looks):
-        for state in (one, other):
+        for state in (perturbed, other):
             exact.advance(system, state, gaps.copy(), np.zeros((1, 2)), stretch)
-        apart = (other - one)[:, :-2]
+        apart = (other - perturbed)[:, :-2]
         grown = np.linalg.norm(apart)
         logs[k] = np.log(grown / distance) / stretch * p.forcing_frequency[0]
-        other = one.copy()
+        other = perturbed.copy()
         other[:, :-2] += apart * distance / grown
     rates = logs.reshape(40, -1).mean(axis=1)
     spread = np.hypot(error[0], rates.std(ddof=1) / np.sqrt(len(rates)))

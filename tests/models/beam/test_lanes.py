@@ -2,26 +2,16 @@
 
 import numpy as np
 import pytest
+from nominal_beams import nominal, prepared
 from scipy.linalg import expm
 
 from models.beam import exact, lanes
 from models.beam.lanes.recurrence import mode_step
 from models.beam.lanes.systems import COMPLIANCE, LADDER, gains
-from models.beam.parameters import Params, Settings
+from models.beam.parameters import Settings
 from models.beam.response.settling import settle
 from models.beam.structure.modal import beams
 from models.numerics.blocks import LANES
-
-
-def nominal(n=1, **values):
-    fields = {**Params._field_defaults, **values}
-    return Params(*(np.broadcast_to(np.asarray(v, float), (n,)).copy() for v in fields.values()))
-
-
-def prepared(propagator, p, **settings):
-    s = Settings(**settings)
-    ((_, system),) = propagator.groups(beams(p, s), s)
-    return system
 
 
 def at_rest(propagator, system, n=1):

@@ -151,8 +151,8 @@ def test_jacobian_of_the_return_map_is_its_derivative():
 
     u = np.append(phase, point[1:])
     expected = np.stack([(mapped(u + e) - mapped(u - e)) / (2 * h) for e in h * np.eye(2 * m)], 1)
-    found = return_map(beam, point, phase, gaps).jacobian
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
+    jacobian = return_map(beam, point, phase, gaps).jacobian
+    np.testing.assert_allclose(jacobian, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
 
 
 def test_off_the_section_there_is_no_return():

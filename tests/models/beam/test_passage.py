@@ -47,19 +47,19 @@ def test_tangents_are_the_derivatives_of_the_propagator(case):
     beam = tuning.at(tuning.forcing)
     n = tuning.size
     state, gaps = setup.state[0, :n], setup.gaps[0]
-    found = passage(beam, state, gaps, periods=periods)
-    assert found.contacts.sum() > 0
+    flow = passage(beam, state, gaps, periods=periods)
+    assert flow.contacts.sum() > 0
 
-    np.testing.assert_array_equal(found.state, after(beam, setup, state, gaps, periods))
+    np.testing.assert_array_equal(flow.state, after(beam, setup, state, gaps, periods))
     by_state = differences(lambda e: after(beam, setup, state + e, gaps, periods), n)
     by_gaps = differences(lambda e: after(beam, setup, state, gaps + e, periods), 2)
     by_forcing = differences(
         lambda e: after(tuning.at(tuning.forcing * np.exp(e[0])), setup, state, gaps, periods), 1
     )
     for tangents, expected in (
-        (found.tangents[:, :n], by_state),
-        (found.tangents[:, n : n + 2], by_gaps),
-        (found.tangents[:, n + 2 :], by_forcing),
+        (flow.tangents[:, :n], by_state),
+        (flow.tangents[:, n : n + 2], by_gaps),
+        (flow.tangents[:, n + 2 :], by_forcing),
     ):
         size = np.abs(expected).max()
         assert size > 0.01
@@ -94,10 +94,12 @@ def test_monodromy_of_many_beams_leaves_their_states_and_bookkeeping_alone():
     n = 2 * setup.system.modal.shape[1]
     assert matrix.shape == (2, state.shape[1], state.shape[1])
     assert not matrix[:, n:].any() and not matrix[:, :, n:].any()
-    one = exact.monodromy(setup.system, setup.state, setup.gaps, 1)
+    one_period = exact.monodromy(setup.system, setup.state, setup.gaps, 1)
     setup.advance(1)
     next_one = exact.monodromy(setup.system, setup.state, setup.gaps, 1)
-    np.testing.assert_allclose(next_one @ one, matrix, rtol=0, atol=1e-11 * np.abs(matrix).max())
+    np.testing.assert_allclose(
+        next_one @ one_period, matrix, rtol=0, atol=1e-11 * np.abs(matrix).max()
+    )
 
 
 def test_a_tuned_beam_is_that_of_its_frequency():
@@ -105,21 +107,21 @@ def test_a_tuned_beam_is_that_of_its_frequency():
     tuned = Tuning(setup.modal).at(other.modal.forcing[0])
     state = np.random.default_rng(3).normal(size=44) / 10
     direct = passage(Beam.of(other.system.phases[0]), state, setup.gaps[0])
-    found = passage(tuned, state, setup.gaps[0])
-    np.testing.assert_allclose(found.state, direct.state, rtol=0, atol=1e-11)
-    np.testing.assert_allclose(found.tangents[:, :46], direct.tangents[:, :46], rtol=0, atol=1e-10)
+    flow = passage(tuned, state, setup.gaps[0])
+    np.testing.assert_allclose(flow.state, direct.state, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(flow.tangents[:, :46], direct.tangents[:, :46], rtol=0, atol=1e-10)
 
 
 def test_what_is_met_on_the_way_is_what_the_record_says():
     setup = set_up(at_omega(5.61))
     setup.advance(300)
     beam = Beam.of(setup.system.phases[0])
-    found = passage(beam, setup.state[0, :44], setup.gaps[0], periods=3)
+    flow = passage(beam, setup.state[0, :44], setup.gaps[0], periods=3)
     record = setup.advance(3)
-    np.testing.assert_allclose(found.work, record.work[0].sum(axis=0), rtol=1e-13)
-    np.testing.assert_allclose(found.peak, record.peak[0], rtol=1e-13)
-    assert found.contacts.tolist() == [3, 3]
-    assert (found.impacts > 0).all()
+    np.testing.assert_allclose(flow.work, record.work[0].sum(axis=0), rtol=1e-13)
+    np.testing.assert_allclose(flow.peak, record.peak[0], rtol=1e-13)
+    assert flow.contacts.tolist() == [3, 3]
+    assert (flow.impacts > 0).all()
 
 
 @pytest.mark.parametrize(("side", "depth"), [(0, 1e-3), (0, 1e-6), (1, 1e-6), (1, -1e-3)])
@@ -131,8 +133,8 @@ def test_clearance_is_the_distance_of_the_tips_turn_from_a_stop(side, depth):
     gaps[side] = amplitude * (1 - depth)
     steady = setup.system.modal[0]
     state = np.concatenate([steady.real, -steady.imag])
-    found = passage(Beam.of(setup.system.phases[0]), state, gaps)
+    flow = passage(Beam.of(setup.system.phases[0]), state, gaps)
     tolerance = 10 * np.sqrt(max(depth, 0)) + 1e-9
-    assert found.clearance / amplitude == pytest.approx(abs(depth), rel=tolerance)
-    assert found.contacts[side] == (depth > 0)
-    assert found.contacts[1 - side] == 0
+    assert flow.clearance / amplitude == pytest.approx(abs(depth), rel=tolerance)
+    assert flow.contacts[side] == (depth > 0)
+    assert flow.contacts[1 - side] == 0

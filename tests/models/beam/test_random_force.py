@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from random_load import LEVEL, PURE, nominal, prepared, started
+from nominal_beams import nominal
+from random_load import LEVEL, PURE, prepared, started
 from scipy.integrate import quad, solve_ivp
 from scipy.signal import welch
 from scipy.stats import kstest
@@ -90,18 +91,18 @@ def analytic_deviation(p):
 def test_without_contact_the_tip_varies_as_the_integral_of_the_spectrum_says(low):
     n = 64
     p = nominal(n, mass_damping=20.0, random_force_low=low, **PURE)
-    known = analytic_deviation(p)
+    expected = analytic_deviation(p)
     b, system = prepared(lanes, p)
     sure = tip_deviation(b.load, b.forcing, b.oscillators)
-    assert sure == pytest.approx(np.full(n, known), rel=2e-3)
+    assert sure == pytest.approx(np.full(n, expected), rel=2e-3)
     assert (free_reach(b) == 9 * sure).all()
     state, gaps = started(lanes, system, p, 1e6)
     lanes.advance(system, state, gaps, np.zeros((n, 2)), 100)
     x = lanes.advance(system, state, gaps, np.zeros((n, 2)), 2000).strobe[:, :, 0]
     squares = (x**2).mean(axis=1)
     error = squares.std(ddof=1) / np.sqrt(n)
-    assert error < 0.02 * known**2
-    assert squares.mean() == pytest.approx(known**2, abs=3 * error + 0.01 * known**2)
+    assert error < 0.02 * expected**2
+    assert squares.mean() == pytest.approx(expected**2, abs=3 * error + 0.01 * expected**2)
 
 
 # The propagators
@@ -167,10 +168,10 @@ def test_exact_is_an_independent_integration_of_the_beam_under_the_same_force():
     y[0] = p.initial_displacement[0] / p.initial_gap[0]
     for begin in range(periods):
         span = 2 * np.pi / forcing * np.array([begin, begin + 1])
-        found = solve_ivp(
+        solution = solve_ivp(
             motion, span, y, "DOP853", rtol=1e-10, atol=1e-10, max_step=span[0] + 1e-3
         )
-        y = found.y[:, -1]
+        y = solution.y[:, -1]
         z, v = np.split(y, 2)
         assert record.strobe[0, begin] == pytest.approx([z.sum(), v.sum() / forcing], abs=1e-7)
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from random_load import LEVEL, PURE, nominal, prepared, started
+from nominal_beams import nominal
+from random_load import LEVEL, PURE, prepared, started
 
 from models.beam import MODEL, lanes
 from models.beam.lanes import propagator
@@ -27,13 +28,13 @@ def test_a_random_response_is_aperiodic_and_its_error_covers_what_other_seeds_gi
     p = nominal(n, mass_damping=20.0, **{**PURE, "random_force_level": 1e-2})
     _, system = prepared(lanes, p)
     state, gaps = started(lanes, system, p)
-    found = settle(lanes, system, state, gaps)
-    assert all(REGIMES[r] == "aperiodic" for r in found.regime)
-    assert (found.period == 0).all() and (found.peak > 0).all()
-    relative = found.error / found.work
+    response = settle(lanes, system, state, gaps)
+    assert all(REGIMES[r] == "aperiodic" for r in response.regime)
+    assert (response.period == 0).all() and (response.peak > 0).all()
+    relative = response.error / response.work
     assert 0.05 < np.median(relative) < 0.115 and (relative < 0.25).all()
-    off = np.abs(found.work - found.work.mean())
-    assert 0.8 < (off < found.error).mean() < 0.98
+    off = np.abs(response.work - response.work.mean())
+    assert 0.8 < (off < response.error).mean() < 0.98
 
 
 def test_a_random_load_too_weak_to_touch_does_no_work_and_wears_for_ever():
@@ -90,8 +91,8 @@ def test_a_band_without_width_is_said_and_harms_no_other_row(propagator):
 
 def test_a_trajectory_shows_the_random_force_of_its_seed():
     p = Params(random_force_level=LEVEL, mass_damping=60.0)
-    one, other = (MODEL.simulate(p, Settings(), seed).quantities for seed in (3, 4))
-    (_, _, f), (_, _, g) = one["random_force"], other["random_force"]
+    quantities, other = (MODEL.simulate(p, Settings(), seed).quantities for seed in (3, 4))
+    (_, _, f), (_, _, g) = quantities["random_force"], other["random_force"]
     assert f.std() == pytest.approx(np.sqrt(LEVEL * 198), rel=0.3)
     assert (f != g).any()
     assert "random_force" not in MODEL.simulate(Params(), Settings(), 3).quantities

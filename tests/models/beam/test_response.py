@@ -49,9 +49,9 @@ def test_known_periodic_work_rates_are_met_within_two_per_mille(frequency, heavy
 
 @pytest.mark.parametrize("frequency", [32.3591, 57.1042])
 def test_more_steps_come_closer_to_the_known_work_rates(frequency):
-    known = {32.3591: [3.394367, 3.919359], 57.1042: [29.56878, 82.55679]}[frequency]
+    expected = {32.3591: [3.394367, 3.919359], 57.1042: [29.56878, 82.55679]}[frequency]
     _, rate = settled(nominal(forcing_frequency=frequency), steps_per_period=1600)
-    assert sorted(rate) == pytest.approx(known, rel=5e-4)
+    assert sorted(rate) == pytest.approx(expected, rel=5e-4)
 
 
 @pytest.mark.slow
@@ -195,8 +195,8 @@ def test_a_row_settles_alike_alone_and_among_others():
     assert len(np.unique(together[4])) > 1
     for row in (0, 17, n - 1):
         alone = settle_rows(np.array([row]))
-        for some, one in zip(together, alone, strict=True):
-            assert np.array_equal(some[row], one[0], equal_nan=True)
+        for some, alone_row in zip(together, alone, strict=True):
+            assert np.array_equal(some[row], alone_row[0], equal_nan=True)
 
 
 @pytest.mark.slow

@@ -26,57 +26,57 @@ def compute(values, settings=ANY):
 
 
 def test_what_the_steps_do_to_an_orbit_is_part_of_its_error():
-    found, _ = compute(STEPPED)
-    off = np.abs(np.sort(found["work_rate"]) - [0.06493068, 0.06602658])
-    assert (found["work_rate_error"] < 0.02 * found["work_rate"]).all()
-    assert (off <= found["work_rate_error"]).all()
+    outputs, _ = compute(STEPPED)
+    off = np.abs(np.sort(outputs["work_rate"]) - [0.06493068, 0.06602658])
+    assert (outputs["work_rate_error"] < 0.02 * outputs["work_rate"]).all()
+    assert (off <= outputs["work_rate_error"]).all()
 
 
 def test_a_response_that_the_start_decides_by_a_hair_says_so():
-    found, _ = compute(GRAZING)
-    off = np.abs(np.sort(found["work_rate"]) - [0.00449281, 0.00479233])
-    assert (off <= found["work_rate_error"]).all()
+    outputs, _ = compute(GRAZING)
+    off = np.abs(np.sort(outputs["work_rate"]) - [0.00449281, 0.00479233])
+    assert (off <= outputs["work_rate_error"]).all()
 
 
 def test_light_damping_does_not_keep_a_row_from_being_looked_at_again():
-    found, _ = compute(LIGHT)
-    assert (found["work_rate_error"] > found["work_rate"]).all()
+    outputs, _ = compute(LIGHT)
+    assert (outputs["work_rate_error"] > outputs["work_rate"]).all()
 
 
 def test_a_response_that_dwells_in_its_states_says_so():
-    found, _ = compute(SWITCHING)
-    assert (np.abs(found["work_rate"] - 0.042) <= found["work_rate_error"]).all()
+    outputs, _ = compute(SWITCHING)
+    assert (np.abs(outputs["work_rate"] - 0.042) <= outputs["work_rate_error"]).all()
 
 
 def test_a_beam_that_may_come_to_rest_is_followed_until_it_does():
-    found, status = compute(TRANSIENT)
+    outputs, status = compute(TRANSIENT)
     assert status == Status.OK
-    assert REGIMES[found["regime"]] == "no-impact"
-    assert (found["work_rate"] == 0).all()
+    assert REGIMES[outputs["regime"]] == "no-impact"
+    assert (outputs["work_rate"] == 0).all()
 
 
 @pytest.mark.parametrize("damping", [0.06, 0.2])
 def test_light_damping_takes_a_longer_look(damping):
-    found, status = compute({"mass_damping": damping, "stiffness_damping": 4e-7})
+    outputs, status = compute({"mass_damping": damping, "stiffness_damping": 4e-7})
     assert status == Status.OK
-    assert (found["work_rate"] > 0).all()
-    assert (found["work_rate_error"] < found["work_rate"]).all()
+    assert (outputs["work_rate"] > 0).all()
+    assert (outputs["work_rate_error"] < outputs["work_rate"]).all()
 
 
 def test_an_orbit_that_wear_makes_unstable_is_left_at_once():
     """Else a life whose gaps grow in 2048 periods is 18 % too long, in 1024 periods 30 %."""
     settings = Settings(depths=(1.25e-4, 2.5e-4), accuracy=0.04)
-    found, _ = compute(DELAYED, settings)
-    assert found["first_time_to_depth"] == pytest.approx([858032, 1286817], rel=0.04)
+    outputs, _ = compute(DELAYED, settings)
+    assert outputs["first_time_to_depth"] == pytest.approx([858032, 1286817], rel=0.04)
 
 
 def within(name, settings, tight, count):
     """Return the share of lives within their stated errors."""
     rows = row_block(load_study(STUDIES / f"{name}.toml"), 0, count)
-    found, _ = MODEL.batch(rows.x, rows.seed, settings)
-    known, _ = MODEL.batch(rows.x, rows.seed, tight)
-    off = np.abs(found["first_time_to_depth"] - known["first_time_to_depth"])
-    return np.mean(off <= found["first_time_to_depth_error"])
+    outputs, _ = MODEL.batch(rows.x, rows.seed, settings)
+    reference, _ = MODEL.batch(rows.x, rows.seed, tight)
+    off = np.abs(outputs["first_time_to_depth"] - reference["first_time_to_depth"])
+    return np.mean(off <= outputs["first_time_to_depth_error"])
 
 
 @pytest.mark.slow
@@ -96,8 +96,8 @@ def test_nine_in_ten_worn_depths_lie_within_the_accuracy_of_lives():
     for accuracy in (0.05, 0.006):
         settings = Settings(depths=(2.5e-4, 5e-4), instants=instants, accuracy=accuracy)
         depths[accuracy] = MODEL.batch(x, seed, settings)[0]["worn_depth"]
-    known = depths[0.006]
-    on_the_way = (known > 1e-6) & (known < 5e-4)
-    off = np.abs(depths[0.05] / known - 1)[on_the_way]
+    reference = depths[0.006]
+    on_the_way = (reference > 1e-6) & (reference < 5e-4)
+    off = np.abs(depths[0.05] / reference - 1)[on_the_way]
     assert len(off) > 100
     assert np.mean(off <= 0.05) >= 0.9

@@ -82,31 +82,31 @@ def test_wear_begins_at_once_from_the_settled_response(regime):
 
 @pytest.mark.parametrize("period", [3, 5, 6, 7])
 def test_the_work_of_an_orbit_is_averaged_over_whole_turns(period):
-    found = lives(Turns(period), [1.0], regime=PERIODIC)
-    assert found.time[0, :, 0] == pytest.approx(1.0, rel=1e-9)
-    assert (found.history.regime[0, :LONGEST_PERIOD] == PERIODIC).all()
+    wear = lives(Turns(period), [1.0], regime=PERIODIC)
+    assert wear.time[0, :, 0] == pytest.approx(1.0, rel=1e-9)
+    assert (wear.history.regime[0, :LONGEST_PERIOD] == PERIODIC).all()
 
 
 def test_a_step_ends_when_the_response_has_followed():
     """A rate of x^2 makes the life g/(1 + g)."""
-    found = lives(Lagging(lambda gaps: gaps**2), [1.0], accuracy=0.02)
-    assert found.time[0, :, 0] == pytest.approx(0.5, rel=1e-3)
+    wear = lives(Lagging(lambda gaps: gaps**2), [1.0], accuracy=0.02)
+    assert wear.time[0, :, 0] == pytest.approx(0.5, rel=1e-3)
 
 
 @pytest.mark.parametrize("law", [Irreversible, Unstable])
 def test_a_branch_is_left_where_it_ends_and_not_where_a_step_does(law):
     law = law(lambda gaps: BEFORE + 0 * gaps)
-    found = lives(law, [1.0], accuracy=0.01)
-    assert (np.abs(found.time[0, :, 0] - THROUGH) <= found.error[0, :, 0]).all()
-    assert (found.error[0, :, 0] <= 0.01 * THROUGH).all()
+    wear = lives(law, [1.0], accuracy=0.01)
+    assert (np.abs(wear.time[0, :, 0] - THROUGH) <= wear.error[0, :, 0]).all()
+    assert (wear.error[0, :, 0] <= 0.01 * THROUGH).all()
     assert max(law.jumps) < 0.6  # the step before the change is repeated, not the whole life
 
 
 def test_gaps_grow_in_steps_again_where_an_aperiodic_response_has_become_an_orbit():
     law = Rattling(lambda gaps: 1.0 + 0 * gaps)
-    found = lives(law, [1.0], accuracy=0.02)
-    assert (np.abs(found.time[0, :, 0] - 1) <= found.error[0, :, 0]).all()
-    seen = found.history.regime[0]
+    wear = lives(law, [1.0], accuracy=0.02)
+    assert (np.abs(wear.time[0, :, 0] - 1) <= wear.error[0, :, 0]).all()
+    seen = wear.history.regime[0]
     seen = seen[seen >= 0]
     assert seen[0] == seen[-1] == SYMMETRIC and (seen == APERIODIC).sum() > 2
     assert law.periods < PERIODS / 0.02 / 3

@@ -19,8 +19,8 @@ def settled():
     time, seen = simulate(SEVEN, Settings(tolerance=1e-10))
     last = time >= 3.0
     motion = {name: values[last] for name, (_, _, values) in seen.items()}
-    one = {name: float(values[0]) for name, values in outputs.items()}
-    return 7 * one["impacts_per_period"], one, time[last], motion
+    row = {name: float(values[0]) for name, values in outputs.items()}
+    return 7 * row["impacts_per_period"], row, time[last], motion
 
 
 def forces(motion):

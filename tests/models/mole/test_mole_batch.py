@@ -112,9 +112,11 @@ def test_a_bar_at_rest_has_not_settled_while_the_current_grows(frequency, rtol):
     """Also where averages are those of a window, without a common period."""
     slow = SLOW | {"control_frequency": frequency}
     settled = compute(Settings(), slow)
-    known = compute(Settings(transient=20_000), slow)
-    np.testing.assert_allclose(settled["electrical_power"], known["electrical_power"], rtol=rtol)
-    assert known["electrical_power"] > 1.6 or frequency != 50.0
+    reference = compute(Settings(transient=20_000), slow)
+    np.testing.assert_allclose(
+        settled["electrical_power"], reference["electrical_power"], rtol=rtol
+    )
+    assert reference["electrical_power"] > 1.6 or frequency != 50.0
 
 
 def test_a_bar_at_rest_takes_the_power_of_the_current_that_has_grown():
@@ -219,9 +221,9 @@ def test_transient_and_duration_are_kept():
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_averages_hardly_depend_on_the_tolerance(tolerance):
     names = ("progression_rate", "impact_work_rate", "electrical_power", "peak_contact_force")
-    one, other = at(5.0, 7.0, 8.0), at(5.0, 7.0, 8.0, tolerance=tolerance)
+    loose, other = at(5.0, 7.0, 8.0), at(5.0, 7.0, 8.0, tolerance=tolerance)
     for name in names:
-        np.testing.assert_allclose(other[name], one[name], rtol=2e-6)
+        np.testing.assert_allclose(other[name], loose[name], rtol=2e-6)
 
 
 def over_the_bounds(n, seed):

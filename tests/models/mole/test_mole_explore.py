@@ -37,8 +37,8 @@ def test_a_history_is_that_of_the_exact_propagator(formulation):
         time = float(ds["time"][place])
         end = exact.propagate(q, exact.start(p, q), time, 1e-11).state.y
         names = ("displacement", "velocity", "mole_velocity", "current")
-        found = [ds[name].values[place] for name in names]
-        np.testing.assert_allclose(found, end[:4], atol=1e-7)
+        state = [ds[name].values[place] for name in names]
+        np.testing.assert_allclose(state, end[:4], atol=1e-7)
         assert ds["mole_displacement"].values[place] == pytest.approx(end[5], abs=1e-8)
 
 
@@ -59,8 +59,8 @@ def test_a_section_holds_the_states_of_the_exact_propagator_as_the_relay_closes(
         motion = exact.propagate(q, state, k / p.control_frequency, 1e-11)
         state = motion.state
         highest.append(motion.highest)
-    found = [ds[name].values[-1] for name in STATES[:4]]
-    np.testing.assert_allclose(found, state.y[:4], atol=1e-6)
+    section_state = [ds[name].values[-1] for name in STATES[:4]]
+    np.testing.assert_allclose(section_state, state.y[:4], atol=1e-6)
     # The exact propagator stops just before the relay closes.
     jump = np.sin(tau * 50 * 5 / 8 + 0.3) if formulation == "physical" else 0.0
     assert ds["voltage"].values[-1] == pytest.approx(state.y[4] + 82.02 * jump, abs=1e-4)
@@ -107,10 +107,10 @@ def test_two_starts_of_the_paper_lead_to_two_closed_curves():
 def test_points_that_a_run_does_not_reach_are_unknown(monkeypatch):
     monkeypatch.setattr("models.mole.lanes.propagator.BUDGET", 2000)
     ds = poincare_section(Params(), SETTINGS, periods=40, dropped=0)
-    known = np.isfinite(ds["displacement"].values)
-    assert known[0]
-    assert not known[-1]
-    assert (np.diff(known.astype(int)) <= 0).all()
+    is_reached = np.isfinite(ds["displacement"].values)
+    assert is_reached[0]
+    assert not is_reached[-1]
+    assert (np.diff(is_reached.astype(int)) <= 0).all()
 
 
 def test_a_diagram_shows_each_frequency_as_if_alone():

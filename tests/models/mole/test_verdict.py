@@ -45,8 +45,8 @@ def test_each_verdict_needs_evidence(exponent, scatter, alone, expected):
     """Exponent and scatter of a batch are those of a control period."""
     sides = np.tile([1.0, -1.0, -1.0, 1.0], 5)
     growth = 7 * (exponent + scatter * sides)[None]
-    found = verdicts(growth, np.array([140.0]), np.array([alone]))
-    assert found.tolist() == [expected]
+    regimes = verdicts(growth, np.array([140.0]), np.array([alone]))
+    assert regimes.tolist() == [expected]
 
 
 def test_codes_of_files_written_before_keep_their_meaning():
@@ -85,8 +85,8 @@ def test_a_look_does_not_depend_on_its_neighbours():
     some = [ALONE, Params(), ALONE._replace(initial_displacement=-0.03), Params(stop_gap=0.06)]
     settings = {"formulation": "as-printed", "transient": 100, "duration": 20}
     together = compute(*some, **settings)
-    for i, one in enumerate(some):
-        for name, value in compute(one, **settings).items():
+    for i, row in enumerate(some):
+        for name, value in compute(row, **settings).items():
             np.testing.assert_array_equal(value[0], together[name][i], err_msg=name)
 
 

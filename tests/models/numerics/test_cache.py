@@ -146,9 +146,9 @@ def test_a_package_from_outside_may_use_a_machine(house):
 
 def test_an_edit_of_what_they_share_reaches_all(house):
     packages = ("house.beam", "house.mole", "plant")
-    assert [result(one) for one in packages] == 3 * [(3.0, False)]
+    assert [result(package) for package in packages] == 3 * [(3.0, False)]
     edit(house / "house/numerics/shared.py", "1.0 * x", "2.0 * x")
-    assert [result(one) for one in packages] == [(6.0, False), (6.0, False), (3.0, False)]
+    assert [result(package) for package in packages] == [(6.0, False), (6.0, False), (3.0, False)]
 
 
 def test_what_a_factory_makes_belongs_to_what_it_was_made_for(house):
@@ -166,7 +166,8 @@ def fields_of_arguments(source):
         node
         for node in ast.walk(ast.parse(source))
         if isinstance(node, ast.FunctionDef)
-        and {"kernel", "lean", "inlined"} & {ast.unparse(one) for one in node.decorator_list}
+        and {"kernel", "lean", "inlined"}
+        & {ast.unparse(decorator) for decorator in node.decorator_list}
     )
     for function in kernels:
         arguments = {argument.arg for argument in function.args.args}
@@ -181,7 +182,9 @@ def fields_of_arguments(source):
 
 def test_kernels_that_machines_share_read_no_field_of_an_argument():
     """It could be that of a machine's tuple, whose edits leave the shared kernel as it is."""
-    found = [one for path in NUMERICS.glob("*.py") for one in fields_of_arguments(path.read_text())]
-    assert found == []
+    fields = [
+        field for path in NUMERICS.glob("*.py") for field in fields_of_arguments(path.read_text())
+    ]
+    assert fields == []
     reading = "@kernel\ndef rate(y, p):\n    return y.size * p[0].stiffness"
     assert [*fields_of_arguments(reading)] == ["rate: p[0].stiffness"]

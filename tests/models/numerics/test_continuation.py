@@ -73,11 +73,11 @@ def test_folds_are_passed_and_located(function, size):
             break
     assert points[-1].state[0] < -1.5
     fold = 1 / np.sqrt(3)
-    found = turns(function, points)
-    np.testing.assert_allclose([a.state[0] for a, _ in found], [fold, -fold], atol=1e-6)
+    folds = turns(function, points)
+    np.testing.assert_allclose([a.state[0] for a, _ in folds], [fold, -fold], atol=1e-6)
     extreme = 2 / 3 * fold
-    np.testing.assert_allclose([a.parameter for a, _ in found], [extreme, -extreme], atol=1e-12)
-    for a, b in found:
+    np.testing.assert_allclose([a.parameter for a, _ in folds], [extreme, -extreme], atol=1e-12)
+    for a, b in folds:
         assert np.linalg.norm(b.state - a.state) <= 1e-7 * size**1.5
 
 

@@ -11,7 +11,7 @@ RNG = np.random.default_rng(8)
 
 
 @pytest.mark.parametrize(
-    ("name", "known", "low", "high"),
+    ("name", "reference", "low", "high"),
     [
         ("exp", math.exp, -700, 700),
         ("expm1", math.expm1, -5, 5),
@@ -19,9 +19,9 @@ RNG = np.random.default_rng(8)
         ("log1p", math.log1p, -0.9, 9),
     ],
 )
-def test_they_have_the_bits_of_the_c_library(name, known, low, high):
+def test_they_have_the_bits_of_the_c_library(name, reference, low, high):
     x = RNG.uniform(low, high, (3, 500))
-    expected = [[known(value) for value in row] for row in x.tolist()]
+    expected = [[reference(value) for value in row] for row in x.tolist()]
     np.testing.assert_array_equal(getattr(elementary, name)(x), expected)
 
 

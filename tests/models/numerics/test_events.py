@@ -16,14 +16,14 @@ def ends(cubic):
 
 @pytest.mark.parametrize("root", [1e-6, 0.2, 0.5, 0.999])
 def test_a_crossing_is_found(root):
-    found = 0
+    crossings = 0
     for _ in range(50):
         # Falls through its one root in (0, 1): the other two are a complex pair.
         cubic = Polynomial([root, -1.0]) * Polynomial([RNG.uniform(0.3, 2), 0, 1])
         cubic = cubic(Polynomial([0.0, 1.0])) * RNG.uniform(0.1, 10)
         assert crossing(*ends(cubic)) == pytest.approx(root, abs=1e-8)
-        found += 1
-    assert found == 50
+        crossings += 1
+    assert crossings == 50
 
 
 def test_the_lowest_point_is_found():

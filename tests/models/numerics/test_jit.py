@@ -84,14 +84,14 @@ def test_the_instruction_set_is_chosen_before_numba_is_imported():
 
 
 def test_options_are_compared_as_numba_compares_them():
-    one, other = Flags(), Flags()
-    assert one == other and hash(one) == hash(other)
-    one.nrt, one.error_model = True, "numpy"
-    assert one != other
-    assert one.values() == {name: getattr(one, name) for name in Flags.options}
+    flags, other = Flags(), Flags()
+    assert flags == other and hash(flags) == hash(other)
+    flags.nrt, flags.error_model = True, "numpy"
+    assert flags != other
+    assert flags.values() == {name: getattr(flags, name) for name in Flags.options}
     other.nrt, other.error_model = True, "numpy"
     other.boundscheck = Flags.options["boundscheck"].default
-    assert one == other and hash(one) == hash(other)
+    assert flags == other and hash(flags) == hash(other)
 
 
 def test_no_source_asks_for_more():

@@ -59,13 +59,13 @@ def test_values_and_slopes():
 
 def test_plain_python_agrees_to_the_bit():
     plain = series._plain(LANES)
-    one = numbers()
-    other = one.copy()
-    multiply(one, TERMS - 1)
+    values = numbers()
+    other = values.copy()
+    multiply(values, TERMS - 1)
     last = (TERMS - 1) * LANES
     plain.products(other, TERMS, A, B + last, OUT, C + last, MORE)
-    np.testing.assert_array_equal(one, other)
-    evaluate(one)
+    np.testing.assert_array_equal(values, other)
+    evaluate(values)
     plain.value(other, TERMS, A, AT, OUT)
     plain.value_and_slope(other, TERMS, B, AT, MORE, OUT + LANES)
-    np.testing.assert_array_equal(one, other)
+    np.testing.assert_array_equal(values, other)

@@ -12,8 +12,8 @@ def test_values_and_products_are_those_of_lapack(size):
     matrix, row = rng.normal(size=(40, size, size)), rng.normal(size=size)
     matrix += matrix.transpose(0, 2, 1)
     values, products = eigenvalues(matrix, row)
-    known, vectors = np.linalg.eigh(matrix)
-    np.testing.assert_allclose(values, known[:, ::-1], rtol=0, atol=1e-13 * size)
+    reference, vectors = np.linalg.eigh(matrix)
+    np.testing.assert_allclose(values, reference[:, ::-1], rtol=0, atol=1e-13 * size)
     expected = np.abs(row @ vectors)[:, ::-1]
     np.testing.assert_allclose(np.abs(products), expected, rtol=0, atol=1e-10)
 
@@ -32,9 +32,9 @@ def test_what_is_diagonal_or_has_equal_values_is_no_special_case():
 def test_large_values_are_right_beside_tiny_ones():
     rng = np.random.default_rng(7)
     turn, _ = np.linalg.qr(rng.normal(size=(12, 12)))
-    known = 10.0 ** -np.arange(12.0)
-    values, _ = eigenvalues((turn * known @ turn.T)[None], np.ones(12))
-    np.testing.assert_allclose(values[0], known, rtol=1e-14, atol=1e-15)
+    expected = 10.0 ** -np.arange(12.0)
+    values, _ = eigenvalues((turn * expected @ turn.T)[None], np.ones(12))
+    np.testing.assert_allclose(values[0], expected, rtol=1e-14, atol=1e-15)
 
 
 def test_a_matrix_that_is_not_finite_harms_no_other():

@@ -36,13 +36,13 @@ def forests(vertices, largest):
     """Return all sets of trees of so many vertices together, none with more than `largest`."""
     if vertices == 0:
         return [()]
-    found = []
+    all_forests = []
     for size in range(1, min(vertices, largest) + 1):
         for count in range(1, vertices // size + 1):
             some = combinations_with_replacement(sorted(trees(size)), count)
             others = forests(vertices - count * size, size - 1)
-            found += [first + rest for first, rest in product(some, others)]
-    return found
+            all_forests += [first + rest for first, rest in product(some, others)]
+    return all_forests
 
 
 def size(tree):

@@ -32,8 +32,8 @@ def quantities(p, w):
 def moment(p, w):
     """Return K by equation (5), and by the general formula."""
     k = cf.synchronising_moment(p.unbalance_1, w, quantities(p, w)[-1])
-    one, two = vibratory_moments(p, w, np.pi / 2)
-    return k, (two - one)[0]
+    moment_1, moment_2 = vibratory_moments(p, w, np.pi / 2)
+    return k, (moment_2 - moment_1)[0]
 
 
 def test_synchronising_moment_of_a_free_body_is_exact():
@@ -64,8 +64,8 @@ def test_conveyor_follows_from_the_general_formula():
             mount_mass=180.0,
         )
         closed = cf.conveyor_moment(5.0, 150.0, p.body_mass, 180.0 + 200.0, k, k_z)
-        one, two = vibratory_moments(p, 150.0, np.pi / 2)
-        assert closed == pytest.approx((two - one)[0], rel=1e-6)
+        moment_1, moment_2 = vibratory_moments(p, 150.0, np.pi / 2)
+        assert closed == pytest.approx((moment_2 - moment_1)[0], rel=1e-6)
 
 
 def slopes(p, w):
@@ -121,8 +121,8 @@ def test_negative_moment_locks_around_pi():
     assert cf.disphasing_of_motors(1.0, 40.0, -100.0) == pytest.approx(-np.pi + np.arcsin(0.4))
     p = unequal(SYMMETRIC._replace(mount_rotational_stiffness=2e6), 0.5)
     state = disphasing(p)
-    one, two = vibratory_moments(p, state.speed, np.pi / 2)
-    closed = cf.disphasing_of_motors(0.5, slopes(p, state.speed[0]), (two - one)[0])
+    moment_1, moment_2 = vibratory_moments(p, state.speed, np.pi / 2)
+    closed = cf.disphasing_of_motors(0.5, slopes(p, state.speed[0]), (moment_2 - moment_1)[0])
     assert closed < -np.pi / 2
     assert state.angle[0] == pytest.approx(closed, rel=0.01)
 
@@ -167,19 +167,19 @@ def test_elastic_mount_of_a_set_without_mass(direction):
 def test_equal_mounts_both_ways_cancel():
     b, w = 0.0002, 156.0
     for psi in (0.2, -1.0):
-        one = cf.disphasing_of_mounts(b, w, (3e7, psi))
+        angle = cf.disphasing_of_mounts(b, w, (3e7, psi))
         both = cf.disphasing_of_mounts(b, w, (3e7, psi), (3e7, psi + np.pi / 2))
-        assert abs(one) > 0.1 and abs(both) < 1e-12
+        assert abs(angle) > 0.1 and abs(both) < 1e-12
         across = cf.disphasing_of_mounts(b, w, (3e7, psi + np.pi / 2))
-        assert np.sign(across) == -np.sign(one)
+        assert np.sign(across) == -np.sign(angle)
 
 
 def test_equal_mounts_both_ways_cancel_in_the_general_formula():
     # Each alone turns dphi; to first order in the flexibility the general formula adds up to 0.
     p = UNDAMPED._replace(mount_stiffness=1e11, unbalanced_mass=1.0)
-    one, two = (disphasing(p._replace(mount_angle=a)).angle[0] for a in (0.4, 0.4 + np.pi / 2))
-    assert abs(one) > 1e-4
-    assert abs(one + two) < 2e-3 * abs(one)
+    angle, turned = (disphasing(p._replace(mount_angle=a)).angle[0] for a in (0.4, 0.4 + np.pi / 2))
+    assert abs(angle) > 1e-4
+    assert abs(angle + turned) < 2e-3 * abs(angle)
 
 
 def test_rotational_mount_that_flips_the_vibrators():

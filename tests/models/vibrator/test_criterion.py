@@ -17,12 +17,12 @@ def test_its_slope_is_the_vibratory_moment():
     p = plausible(rows, seed=1, **CONSERVATIVE)
     rng = np.random.default_rng(2)
     w, dphi = rng.uniform(50.0, 200.0, rows), rng.uniform(-np.pi, np.pi, rows)
-    one, two = vibratory_moments(p, w, dphi)
+    moment_1, moment_2 = vibratory_moments(p, w, dphi)
     e = 1e-3
     slope = (integral(p, w, dphi + e) - integral(p, w, dphi - e)) / (2 * np.sin(e))
-    size = abs(integral(p, w, dphi)) + abs(one)
-    assert np.all(abs(one + slope) < 1e-8 * size)
-    assert np.all(abs(two - slope) < 1e-8 * size)
+    size = abs(integral(p, w, dphi)) + abs(moment_1)
+    assert np.all(abs(moment_1 + slope) < 1e-8 * size)
+    assert np.all(abs(moment_2 - slope) < 1e-8 * size)
 
 
 def test_its_minimum_is_where_identical_motors_lock():

@@ -68,12 +68,12 @@ def risen(state):
 def test_they_are_those_of_the_plain_algebra():
     state = states()
     state[9, ::4] = -state[7, ::4] * np.linspace(0.5, 1.5, LANES // 4)  # bearings of either sign
-    found, _ = risen(state)
+    accelerations, _ = risen(state)
     for i in range(LANES):
         expected = np.empty(5)
-        one = type(MACHINES)._make(float(field[i]) for field in MACHINES)
-        rigid_motion.acceleration(one, np.ascontiguousarray(state[:, i]), expected)
-        np.testing.assert_allclose(found[:, i], expected, rtol=1e-11)
+        one_machine = type(MACHINES)._make(float(field[i]) for field in MACHINES)
+        rigid_motion.acceleration(one_machine, np.ascontiguousarray(state[:, i]), expected)
+        np.testing.assert_allclose(accelerations[:, i], expected, rtol=1e-11)
 
 
 @pytest.mark.parametrize("variable", range(10))
@@ -89,8 +89,8 @@ def test_derivatives_are_those_of_the_accelerations(variable):
     (z if variable < 5 else v)[variable % 5] = 1.0 if variable < 5 else STEP
     z[0] += MACHINES.support_offset * z[2]
     v[0] += MACHINES.support_offset * v[2]
-    found, (_, w) = np.empty((5, LANES)), risen(state)
-    _changes(CONSTANTS, w, np.empty(FACTORS), np.empty(SUPPORTS), z, v, found)
-    found[0] -= MACHINES.support_offset * found[2]
-    off = np.abs(found / STEP**2 - expected)
+    differences, (_, w) = np.empty((5, LANES)), risen(state)
+    _changes(CONSTANTS, w, np.empty(FACTORS), np.empty(SUPPORTS), z, v, differences)
+    differences[0] -= MACHINES.support_offset * differences[2]
+    off = np.abs(differences / STEP**2 - expected)
     assert np.all(off < 1e-7 * np.abs(expected).max(axis=0))

@@ -42,15 +42,15 @@ def test_they_are_those_of_the_trajectory(trajectories, settings, off):
     """Up to the start of the search for the orbit, after it, in the last second, and at its end."""
     time = trajectories[0].time
     at = [3, len(time) // 50, len(time) // 3, len(time) * 2 // 3, len(time) - 9, len(time) - 1]
-    found, status = compute(MACHINES, instants=tuple(time[at].tolist()), **settings)
+    outputs, status = compute(MACHINES, instants=tuple(time[at].tolist()), **settings)
     assert (status == Status.OK).all()
-    assert found["regime"].tolist() == [0, 0, 3, 4]
+    assert outputs["regime"].tolist() == [0, 0, 3, 4]
     for i, trajectory in enumerate(trajectories):
         for name, quantity in OUTPUTS.items():
-            known = np.interp(time[at], trajectory.time, trajectory.quantities[quantity][2])
-            apart = found[name][i] - known
+            expected = np.interp(time[at], trajectory.time, trajectory.quantities[quantity][2])
+            apart = outputs[name][i] - expected
             if name == "run_up_angle":
-                assert (np.abs(found[name]) <= np.pi).all()
+                assert (np.abs(outputs[name]) <= np.pi).all()
                 apart = np.angle(np.exp(1j * apart))
             scale = 1.0 if name == "run_up_angle" else 157.0
             assert np.abs(apart).max() < off * scale, (i, name)

@@ -66,8 +66,8 @@ def largest(end):
 def test_it_is_the_spectral_radius(kind, decades):
     """In units that differ by up to so many decades."""
     units = 10.0 ** np.linspace(-decades / 2, decades / 2, COLUMNS)
-    found = largest(with_passage(matrices(kind), units))
-    np.testing.assert_allclose(found, RADII, rtol=1e-9)
+    radii = largest(with_passage(matrices(kind), units))
+    np.testing.assert_allclose(radii, RADII, rtol=1e-9)
 
 
 def test_of_a_map_that_forgets_everything_it_is_0():

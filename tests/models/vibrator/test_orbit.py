@@ -228,9 +228,9 @@ def test_motors_that_cannot_synchronise_have_no_orbit():
 def test_a_machine_has_the_same_bits_in_any_company():
     p = plausible(37, seed=3, **RIGID)._replace(gravity=np.arange(37) % 3 * 5.0)
     constants, (state, period) = pack(systems(p).rigid), guess(p)
-    found = np.isfinite(period)
+    is_finite = np.isfinite(period)
     together = orbit.find_orbits(constants, state, period, 24)
-    assert together.converged[found].sum() > 30
+    assert together.converged[is_finite].sum() > 30
     order = np.random.default_rng(4).permutation(37)
     shuffled = orbit.find_orbits(constants[order], state[order], period[order], 24)
     for got, expected in zip(shuffled, together, strict=True):

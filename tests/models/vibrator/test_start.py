@@ -62,12 +62,12 @@ def test_angles_are_accurate_over_all_bounds():
     )
     exists = averaged.disphasing(p).stable
     m = prepared(Params._make(field[exists] for field in p))
-    known = propose(m, 0)
-    assert known.exists.sum() > 10
-    for i in np.flatnonzero(known.exists):
-        state, period = known.orbits.state[[i]], known.orbits.period[[i]]
-        fine = find_orbits(m.constants[[i]], state, period, 4 * known.steps[i])
-        assert fine.converged and abs(wrapped(fine.angle[0] - known.disphasing[i])) < 1e-6
+    proposed = propose(m, 0)
+    assert proposed.exists.sum() > 10
+    for i in np.flatnonzero(proposed.exists):
+        state, period = proposed.orbits.state[[i]], proposed.orbits.period[[i]]
+        fine = find_orbits(m.constants[[i]], state, period, 4 * proposed.steps[i])
+        assert fine.converged and abs(wrapped(fine.angle[0] - proposed.disphasing[i])) < 1e-6
 
 
 def test_theory_and_simulation_agree_at_small_angles():
@@ -82,9 +82,9 @@ def test_the_start_is_that_of_the_exact_propagator():
     m = systems(p)
     times = np.arange(1, 8001) * 5e-4
     for i in range(3):
-        one = m.row(i)
+        machine = m.row(i)
         motion = propagator.propagate(
-            one, propagator.start(row(p, i), one), 4.0, 1e-10, times=times
+            machine, propagator.start(row(p, i), machine), 4.0, 1e-10, times=times
         )
         angle = motion.samples[:, 3] - motion.samples[:, 4]
         off = np.abs(wrapped(angle - out.disphasing[i]))
@@ -100,11 +100,11 @@ def test_the_orbit_is_where_a_long_run_ends():
     out, _ = outcomes(p)
     m = systems(p)
     for i in range(2):
-        one = m.row(i)
+        machine = m.row(i)
         period = 2 * np.pi / out.speed[i]
         times = 60.0 + period * np.arange(64) / 64
         motion = propagator.propagate(
-            one, propagator.start(row(p, i), one), 61.0, 1e-11, times=times
+            machine, propagator.start(row(p, i), machine), 61.0, 1e-11, times=times
         )
         states = motion.samples
         mean = wrapped((states[:, 3] - states[:, 4]).mean())
@@ -116,7 +116,7 @@ def test_the_orbit_is_where_a_long_run_ends():
         lever = sin * p.support_half_spacing[i] * states[:, 2]
         assert out.stroke_left[i] == pytest.approx(np.ptp(along - lever) / 2, rel=3e-3)
         assert out.stroke_right[i] == pytest.approx(np.ptp(along + lever) / 2, rel=3e-3)
-        rigid = one.rigid
+        rigid = machine.rigid
         for power, torque, slip, top, w in (
             (out.power_1, rigid.torque_1, rigid.slip_1, rigid.synchronous_speed_1, states[:, 8]),
             (out.power_2, rigid.torque_2, rigid.slip_2, rigid.synchronous_speed_2, states[:, 9]),
@@ -132,8 +132,8 @@ def test_a_row_has_the_same_bits_alone_and_among_others():
     together, _ = outcomes(p, run_up=8.0)
     for i in (0, 7, 9, 39):
         alone, _ = outcomes(Params._make(field[i : i + 1] for field in p), run_up=8.0)
-        for name, one, all_ in zip(alone._fields, alone, together, strict=True):
-            assert np.array_equal(one[0], all_[i], equal_nan=True), name
+        for name, value, all_ in zip(alone._fields, alone, together, strict=True):
+            assert np.array_equal(value[0], all_[i], equal_nan=True), name
 
 
 def test_motors_too_unlike_never_lock():
@@ -227,10 +227,10 @@ def fold_of_synchronous_orbits(p):
             breakdown_speed_1=trial.synchronous_speed_1 - 31.0,
             breakdown_speed_2=trial.synchronous_speed_2 - 31.0,
         )
-        known = search(prepared(trial), speed, angle, np.ones(1, bool), 0)
-        if known.exists[0]:
+        orbits = search(prepared(trial), speed, angle, np.ones(1, bool), 0)
+        if orbits.exists[0]:
             apart += step
-            angle, speed = known.disphasing, 2 * np.pi / known.orbits.period
+            angle, speed = orbits.disphasing, 2 * np.pi / orbits.orbits.period
         else:
             step /= 2
     return apart

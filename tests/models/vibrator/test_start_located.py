@@ -115,9 +115,9 @@ def switched_on(**settings):
     [({}, 2e-5, 3e-4), ({"steps_per_turn": 24}, 5e-6, 1e-4), ({"propagator": "exact"}, 1e-6, 2e-5)],
 )
 def test_start_up_is_that_of_the_reference(settings, seconds, share):
-    found = switched_on(**settings)
+    outputs = switched_on(**settings)
     for name, limits in (
         ("synchronisation_time", {"rtol": 0, "atol": seconds}),
         ("max_excursion", {"rtol": share, "atol": 0}),
     ):
-        np.testing.assert_allclose(found[name], REFERENCE[name], **limits, err_msg=name)
+        np.testing.assert_allclose(outputs[name], REFERENCE[name], **limits, err_msg=name)

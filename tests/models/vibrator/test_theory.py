@@ -40,11 +40,11 @@ def test_the_state_balances_all_torques():
     p = plausible(400, seed=3)
     state = disphasing(p)
     assert 0.9 < state.stable.mean() < 1
-    found = np.flatnonzero(state.exists)
+    rows = np.flatnonzero(state.exists)
     moments = vibratory_moments(p, state.speed, state.angle)
     net, motor = net_torques(p, state.speed)
     for torque, moment in zip(net, moments, strict=True):
-        np.testing.assert_allclose(torque[found], -moment[found], rtol=1e-9, atol=1e-8)
+        np.testing.assert_allclose(torque[rows], -moment[rows], rtol=1e-9, atol=1e-8)
     powers = np.stack([state.power_1, state.power_2])
     np.testing.assert_allclose(powers, state.speed * np.stack(motor), rtol=1e-9)
     alpha = abs(steady_motion(p, state.speed, state.angle).alpha)
@@ -55,21 +55,22 @@ def test_the_motors_feed_the_dampers_and_bearings_alone():
     p = plausible(50, seed=4)
     state = disphasing(p)
     for i in np.flatnonzero(state.exists):
-        one, w = at(p, i), state.speed[i]
+        machine, w = at(p, i), state.speed[i]
         bearings = w**3 * (
-            one.bearing_constant_1 * one.unbalance_1 + one.bearing_constant_2 * one.unbalance_2
+            machine.bearing_constant_1 * machine.unbalance_1
+            + machine.bearing_constant_2 * machine.unbalance_2
         )
-        loss = twin(one, w, state.angle[i]).loss + bearings
+        loss = twin(machine, w, state.angle[i]).loss + bearings
         assert state.power_1[i] + state.power_2[i] == pytest.approx(loss, rel=1e-8)
 
 
 def test_stability_is_that_of_the_averaged_equations():
     p = over_the_bounds(20_000, seed=5)
     state = disphasing(p)
-    found = np.flatnonzero(state.exists)
-    p = Params._make(field[found] for field in p)
-    w, dphi, n = state.speed[found], state.angle[found], len(found)
-    assert 0.5 < state.stable[found].mean() < 0.95
+    rows = np.flatnonzero(state.exists)
+    p = Params._make(field[rows] for field in p)
+    w, dphi, n = state.speed[rows], state.angle[rows], len(rows)
+    assert 0.5 < state.stable[rows].mean() < 0.95
     inertia = (
         p.rotor_inertia[:, None]
         + np.stack([p.unbalance_1, p.unbalance_2], 1) ** 2 / (p.unbalanced_mass[:, None])
@@ -93,7 +94,7 @@ def test_stability_is_that_of_the_averaged_equations():
     clear = abs(growth.real).min(axis=1) > 1e-4 * abs(growth).max(axis=1)
     assert clear.mean() > 0.8
     stable = growth.real.max(axis=1) < 0
-    assert np.array_equal(stable[clear], state.stable[found][clear])
+    assert np.array_equal(stable[clear], state.stable[rows][clear])
 
 
 TABLE_1 = [
@@ -207,16 +208,16 @@ def test_any_machine_within_the_bounds_gets_an_answer():
     for field in state:
         if field.dtype != bool:
             assert np.array_equal(np.isfinite(field), state.exists)
-    found = state.exists
-    assert np.all((state.angle[found] > -np.pi) & (state.angle[found] <= np.pi))
-    assert np.all((state.speed[found] > 0) & (state.angular_amplitude[found] >= 0))
+    exists = state.exists
+    assert np.all((state.angle[exists] > -np.pi) & (state.angle[exists] <= np.pi))
+    assert np.all((state.speed[exists] > 0) & (state.angular_amplitude[exists] >= 0))
     moments, (net, motor) = (
         vibratory_moments(p, state.speed, state.angle),
         (net_torques(p, state.speed)),
     )
     size = abs(np.array(motor)) + abs(np.array(moments)).sum(axis=0)
     off = abs(np.array(net) + np.array(moments)) / size
-    assert np.all(off[:, found] < 1e-8)
+    assert np.all(off[:, exists] < 1e-8)
 
 
 def test_a_row_does_not_depend_on_its_neighbours():
@@ -224,8 +225,8 @@ def test_a_row_does_not_depend_on_its_neighbours():
     whole = disphasing(p)
     for i in (0, 7, 19):
         alone = disphasing(at(p, i))
-        for field, one in zip(whole, alone, strict=True):
-            assert field[i : i + 1].tobytes() == one.tobytes()
+        for field, value in zip(whole, alone, strict=True):
+            assert field[i : i + 1].tobytes() == value.tobytes()
 
 
 def test_feed_gravity_gives_the_deck_its_throw():

@@ -92,8 +92,8 @@ def test_every_machine_within_the_bounds_ends_with_a_status():
         if name != "feed_mass" and np.isfinite(bounds).all():
             x[:, j] = rng.uniform(*bounds, len(x))
     out, status = compute(x)
-    known = np.isin(status, [Status.OK, Status.OUT_OF_BUDGET, Status.NON_FINITE])
-    assert known.all()
+    is_stated = np.isin(status, [Status.OK, Status.OUT_OF_BUDGET, Status.NON_FINITE])
+    assert is_stated.all()
     assert np.mean(status == Status.NON_FINITE) < 0.01
     sound = status != Status.NON_FINITE
     assert (out["regime"][sound] >= 0).all()

@@ -56,49 +56,53 @@ def _denied_limit(event, x, hits):
         event.limited,
     ).groups()
     unwanted = 1 - hits if few == "more" else hits
-    known, at = np.isfinite(hits), event.limit.at / event.over_unit.per  # in the unit of `x`
-    beyond = known & ((x > at) if event.limit.is_lower else (x < at))
+    is_defined, at = np.isfinite(hits), event.limit.at / event.over_unit.per  # in the unit of `x`
+    beyond = is_defined & ((x > at) if event.limit.is_lower else (x < at))
     if (
         share != ("95" if few == "more" else "5")
         or beyond.sum() < 30
-        or beyond.sum() == known.sum()
+        or beyond.sum() == is_defined.sum()
     ):
         yield event.limited
         return
-    shown = [float(one) for one in place[1:] if one is not None]
-    if not any(abs(one - at) <= 0.006 * abs(one) for one in shown):
+    shown = [float(number) for number in place[1:] if number is not None]
+    if not any(abs(number - at) <= 0.006 * abs(number) for number in shown):
         yield event.limited
-    outer = x[known].max() if event.limit.is_lower else x[known].min()
+    outer = x[is_defined].max() if event.limit.is_lower else x[is_defined].min()
     if len(shown) > 1 and not any(abs(end - outer) <= 0.006 * abs(end) for end in shown):
         yield event.limited
     if unwanted[beyond].mean() >= 0.05:
         yield event.limited
-    if unwanted[beyond].mean() >= unwanted[known & ~beyond].mean():
+    if unwanted[beyond].mean() >= unwanted[is_defined & ~beyond].mean():
         yield event.limited
 
 
-def denied_advice(ds, advice, found):
+def denied_advice(ds, advice, conclusions):
     if advice.rule == "rows" and advice.rows is not None:
         wanted, now = re.match(r"\D*([\d ]+) rows .*instead of ([\d ]+):", advice.text).groups()
         if int(now.replace(" ", "")) != ds.sizes["row"]:
             yield advice.text
         if not 0 <= int(wanted.replace(" ", "")) - advice.rows + 1 < 0.11 * advice.rows + 1:
             yield advice.text
-    one = advice.tightened
-    if one is None or one.reason:
+    tolerance = advice.tightened
+    if tolerance is None or tolerance.reason:
         return
-    first, then, *ends = numbers_in(one.sentence.split(" from ")[1])
-    known = [event.share.value for event in found.quantities[0].events if event.said in one.what]
-    if known and abs(first - 100 * known[0]) > 0.06:
-        yield one.sentence
+    first, then, *ends = numbers_in(tolerance.sentence.split(" from ")[1])
+    shares = [
+        event.share.value
+        for event in conclusions.quantities[0].events
+        if event.said in tolerance.what
+    ]
+    if shares and abs(first - 100 * shares[0]) > 0.06:
+        yield tolerance.sentence
     if ends and not ends[0] <= then <= ends[1]:
-        yield one.sentence
-    for each in (one, *advice.tolerances):
+        yield tolerance.sentence
+    for each in (tolerance, *advice.tolerances):
         per = 100 if each.is_share else 1 / each.unit.per
         fresh, shown = uq.trace(ds, each.key)["value"] * per, numbers_in(each.text(each.after))[0]
         if abs(shown - fresh) > 0.01 * abs(fresh) + 0.06:
             yield f"{each.sentence} {fresh}"
-        before = _before(found.lead, each)
+        before = _before(conclusions.lead, each)
         if abs(each.before.value - before) > 1e-9 * abs(before):
             yield f"before: {each.sentence}"
         yield from _denied_law(ds, each)
@@ -107,26 +111,31 @@ def denied_advice(ds, advice, found):
         if advice.sure
         else [("lower", "5")]
     )
-    if told not in ([("lower", "5")], [("upper", "95")]) or found.lead.promise.coverage != 0.95:
-        yield advice.sure.promised if advice.sure else f"coverage of {one.sentence}"
-    if one.harms or (one.wants_more is not None and one.rises != one.wants_more):
-        yield one.sentence
-    yield from _denied_besides(ds, advice, found.lead)
+    if (
+        told not in ([("lower", "5")], [("upper", "95")])
+        or conclusions.lead.promise.coverage != 0.95
+    ):
+        yield advice.sure.promised if advice.sure else f"coverage of {tolerance.sentence}"
+    if tolerance.harms or (
+        tolerance.wants_more is not None and tolerance.rises != tolerance.wants_more
+    ):
+        yield tolerance.sentence
+    yield from _denied_besides(ds, advice, conclusions.lead)
     yield from _not_alike(advice)
 
 
-def _before(lead, one):
+def _before(lead, tolerance):
     """Return the same number of the answer."""
-    if one.is_share:
-        return next(event.share.value for event in lead.events if event.said in one.what)
-    return lead.promise.quantiles["95 %" in one.what].value
+    if tolerance.is_share:
+        return next(event.share.value for event in lead.events if event.said in tolerance.what)
+    return lead.promise.quantiles["95 %" in tolerance.what].value
 
 
-def _denied_law(ds, one):
+def _denied_law(ds, tolerance):
     """Compare half the scatter with the law of the study, and the numbers behind the key."""
-    laws = {name: study_file_of(ds).uncertain[name] for name in one.inputs}
-    texts = dict(re.findall(r"(?:^|; )([^:;]+): ([^:;]+)", one.law)) or dict.fromkeys(
-        (name.replace("_", " ") for name in laws), one.law
+    laws = {name: study_file_of(ds).uncertain[name] for name in tolerance.inputs}
+    texts = dict(re.findall(r"(?:^|; )([^:;]+): ([^:;]+)", tolerance.law)) or dict.fromkeys(
+        (name.replace("_", " ") for name in laws), tolerance.law
     )
     for name, law in laws.items():
         then, now = (numbers_in(text) for text in texts[name.replace("_", " ")].split("instead of"))
@@ -135,18 +144,18 @@ def _denied_law(ds, one):
         if wide is None:
             ratio = (then[1] - then[0]) / (now[1] - now[0])
             if law.distribution != "loguniform" and abs(ratio - 0.5) > 0.01:
-                yield f"{name}: {one.law}"
+                yield f"{name}: {tolerance.law}"
         elif abs(then[0] / now[0] - 0.5) > 0.01 or f"{wide:.2e}"[:4] != f"{now[0]:.2e}"[:4]:
-            yield f"{name}: {one.law}"
+            yield f"{name}: {tolerance.law}"
 
 
 def _denied_besides(ds, advice, lead):
     """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
-    for sure in [one for one in advice.own if one.promise is not None]:
-        known, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
+    for sure in [tolerance for tolerance in advice.own if tolerance.promise is not None]:
+        document, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
         plain = uq.trace(ds, sure.key.partition("]/")[2])  # the same key, of the study's own laws
         end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
-        fresh, before = known[end] / sure.unit.per, plain[end] / sure.unit.per
+        fresh, before = document[end] / sure.unit.per, plain[end] / sure.unit.per
         if not failed(ds).any() and bool(sure.promised) != (away * (fresh - before) < 0):
             yield f"{sure.sentence} {fresh} {before}"
         if not sure.promised:
@@ -154,14 +163,14 @@ def _denied_besides(ds, advice, lead):
         *_, bound, studied = numbers_in(sure.promised)
         if not failed(ds).any() and not 0 <= away * (studied - before) <= 0.01 * abs(before):
             yield f"{sure.promised} {before}"
-        value = known["value"] / sure.unit.per
+        value = document["value"] / sure.unit.per
         if not 0 <= away * (bound - fresh) <= 0.01 * abs(fresh) or away * (bound - value) < 0:
             yield f"{sure.promised} {fresh}"
     for each in advice.harmed:
         then = numbers_in(re.split(" to |: ", each.besides, maxsplit=1)[1])
-        known, per = uq.trace(ds, each.key), 100 if each.is_share else 1 / each.unit.per
+        document, per = uq.trace(ds, each.key), 100 if each.is_share else 1 / each.unit.per
         first = _before(lead, each) * per
-        fresh = [known[name] * per for name in ("value", "low", "high")]
+        fresh = [document[name] * per for name in ("value", "low", "high")]
         is_more = "rise" in each.besides or "more would" in each.besides
         if is_more != (then[0] > first) or (then[0] > first) == each.wants_more:
             yield each.besides
@@ -177,8 +186,8 @@ def _not_alike(advice):
     """Yield tolerances that are said to help as much as the best one, and do not."""
     best = advice.tightened
     for each in advice.alike:
-        gains = [abs(one.after.value - one.before.value) for one in (best, each)]
-        wide = max((one.after.high - one.after.low) for one in (best, each))
+        gains = [abs(tolerance.after.value - tolerance.before.value) for tolerance in (best, each)]
+        wide = max((tolerance.after.high - tolerance.after.low) for tolerance in (best, each))
         if (
             each.what != best.what
             or gains[1] > gains[0]

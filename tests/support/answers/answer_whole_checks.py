@@ -8,17 +8,17 @@ import uq
 from uq.assess.answer.repeat_interval import found_again
 
 
-def denied_levels(ds, found):
+def denied_levels(ds, conclusions):
     """Compare shares with those of `uq.levels`, and count the repeats that end elsewhere."""
-    if (levels := found.levels) is None:
+    if (levels := conclusions.levels) is None:
         return
     shares = uq.levels(ds)["share"].sel(output=levels.target)
-    known = [100 * float(shares.sel(level=one.name)) for one in levels.levels]
+    computed_shares = [100 * float(shares.sel(level=level.name)) for level in levels.levels]
     shown = numbers_in(levels.sentence.split(": ", 1)[1])[::3]
-    if not np.allclose(shown, known, atol=0.06):
+    if not np.allclose(shown, computed_shares, atol=0.06):
         yield levels.sentence
-    several = [one.share for one in levels.levels]
-    if not all(0 <= one.low <= one.value <= one.high <= 1 for one in several):
+    several = [level.share for level in levels.levels]
+    if not all(0 <= estimate.low <= estimate.value <= estimate.high <= 1 for estimate in several):
         yield f"interval of {levels.sentence}"
     if len(several) == 2:  # what is not on one level is on the other
         first, last = several
@@ -32,31 +32,33 @@ def denied_levels(ds, found):
             yield levels.switching
 
 
-def denied_mixing(ds, found):
+def denied_mixing(ds, conclusions):
     """Compare what better known inputs would save with the exponent of the table of regimes."""
-    if not (said := found.mixing.sentence):
+    if not (sentence := conclusions.mixing.sentence):
         return
     table = uq.regimes(ds)
     names = ("uncertainty_exponent", "uncertainty_exponent_low", "uncertainty_exponent_high")
     exponents = [float(table[name]) for name in names]
-    value, high, low = (100 * 2 ** -min(max(one, 0.0), 1.0) for one in exponents)
+    value, high, low = (100 * 2 ** -min(max(exponent, 0.0), 1.0) for exponent in exponents)
     if exponents[2] >= 1 or not np.allclose(
-        numbers_in(said), [value, low, high, 50, exponents[0]], atol=0.06, rtol=0.01
+        numbers_in(sentence), [value, low, high, 50, exponents[0]], atol=0.06, rtol=0.01
     ):
-        yield said
+        yield sentence
 
 
-def denied_enough(ds, found):
+def denied_enough(ds, conclusions):
     """Compare what another seed would find and the errors with those of the rows."""
-    one, lead = found.enough, found.lead
-    if found.regimes_first:
-        low, high = found_again(found.regimes[0].share, False)
-        if one.again.what and not np.allclose((one.again.low, one.again.high), (low, high)):
-            yield one.sentence
-    elif lead is not None and one.again != lead.repeated:
-        yield one.sentence
-    if one.errors is not None:
+    sufficiency, lead = conclusions.enough, conclusions.lead
+    if conclusions.regimes_first:
+        low, high = found_again(conclusions.regimes[0].share, False)
+        if sufficiency.again.what and not np.allclose(
+            (sufficiency.again.low, sufficiency.again.high), (low, high)
+        ):
+            yield sufficiency.sentence
+    elif lead is not None and sufficiency.again != lead.repeated:
+        yield sufficiency.sentence
+    if sufficiency.errors is not None:
         errors = uq.enough(ds, lead.name).loc[lead.name]
-        known = np.array([errors["own"], errors["sampling"]]) / lead.range.unit.per
-        if not np.allclose(numbers_in(one.finer), known, rtol=0.01):
-            yield one.finer
+        expected = np.array([errors["own"], errors["sampling"]]) / lead.range.unit.per
+        if not np.allclose(numbers_in(sufficiency.finer), expected, rtol=0.01):
+            yield sufficiency.finer

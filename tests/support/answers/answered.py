@@ -14,14 +14,14 @@ _IN_TEXT = re.compile(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?")
 
 
 def numbers(pattern, text):
-    found = re.fullmatch(pattern.replace("#", NUMBER), text)
-    assert found, text
-    return [float(one) for one in found.groups()]
+    match = re.fullmatch(pattern.replace("#", NUMBER), text)
+    assert match, text
+    return [float(group) for group in match.groups()]
 
 
 def numbers_in(text):
     """Return the numbers of a sentence, without those of names such as x1."""
-    return [float(one.rstrip(".")) for one in _IN_TEXT.findall(text)]
+    return [float(number.rstrip(".")) for number in _IN_TEXT.findall(text)]
 
 
 @cache

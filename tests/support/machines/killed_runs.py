@@ -53,8 +53,8 @@ class Kept(NamedTuple):
 
 def kept():
     """Return how many chunk files and rows the journal names."""
-    found = history(ROWS)
-    records = found.chunks if found else []
+    journal = history(ROWS)
+    records = journal.chunks if journal else []
     return Kept(len(records), sum(record.rows for record in records))
 
 

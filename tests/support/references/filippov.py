@@ -126,7 +126,7 @@ def follow(p, formulation, end, times, longest=5e-4):
         t, y = done.t[-1], done.y[:, -1]
         if done.status != 1:
             continue
-        which = [len(found) > 0 for found in done.t_events].index(True)
+        which = [len(event_times) > 0 for event_times in done.t_events].index(True)
         _, t_1, t_2 = m.frictions(y, slip)
         if which == 0:
             slip = slip._replace(contact=not slip.contact)

@@ -2,16 +2,11 @@
 
 import numpy as np
 
-from models.beam.parameters import Params, Settings
+from models.beam.parameters import Settings
 from models.beam.structure.modal import beams
 
 LEVEL = 1e-3  # N2 Hz-1
 PURE = {"force_amplitude": 0.0, "random_force_level": LEVEL}
-
-
-def nominal(n=1, **values):
-    fields = {**Params._field_defaults, **values}
-    return Params(*(np.broadcast_to(np.asarray(v, float), (n,)).copy() for v in fields.values()))
 
 
 def prepared(propagator, p, seeds=None, **settings):

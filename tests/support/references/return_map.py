@@ -56,10 +56,10 @@ def first_crossing(beam: Beam, state: Array, gaps: Array) -> tuple[Array, float]
     phase : float
         Of the force [rad].
     """
-    found = passage(beam, state, gaps, periods=LONGEST, to_section=True)
-    if found.contacts[RIGHT] == 0:
+    flow = passage(beam, state, gaps, periods=LONGEST, to_section=True)
+    if flow.contacts[RIGHT] == 0:
         return np.full_like(state, np.nan), np.nan
-    return found.state, found.phase
+    return flow.state, flow.phase
 
 
 def return_map(beam: Beam, state: Array, phase: float, gaps: Array) -> Return:
@@ -89,15 +89,15 @@ def return_map(beam: Beam, state: Array, phase: float, gaps: Array) -> Return:
     if abs(x - gaps[RIGHT]) > 1e-9 * gaps[RIGHT] or not v > 0:
         raise ValueError(f"must have x = x_1 = {gaps[RIGHT]!r} and v > 0: x = {x!r}, v = {v!r}")
     turns, theta = divmod(phase, 2 * np.pi)
-    found = passage(beam, state, gaps, theta, LONGEST, to_section=True)
+    end = passage(beam, state, gaps, theta, LONGEST, to_section=True)
     size = len(state)
-    if found.contacts[RIGHT] == 0:
+    if end.contacts[RIGHT] == 0:
         return Return(np.full(size, np.nan), np.nan, np.full((size, size), np.nan))
-    after = _on_section(_rate(beam.free, found.state, found.phase))
+    after = _on_section(_rate(beam.free, end.state, end.phase))
     before = _on_section(_rate(beam.free, state, phase))
-    flow = found.tangents[:, :size]
+    flow = end.tangents[:, :size]
     jacobian: Any = np.linalg.solve(after, flow @ before)
-    return Return(found.state, found.phase + 2 * np.pi * turns, jacobian)
+    return Return(end.state, end.phase + 2 * np.pi * turns, jacobian)
 
 
 def _rate(phase: Phase, state: Array, theta: float) -> Array:

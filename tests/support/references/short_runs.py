@@ -48,8 +48,8 @@ def mole():
 
 def vibrator_orbit():
     p = Vibrator._make(field[:1] for field in test_orbit.MACHINES)
-    found, state, period, *others = test_orbit.find(p, 8)
-    assert found.all()
+    converged, state, period, *others = test_orbit.find(p, 8)
+    assert converged.all()
     trace = follow(pack(systems(p).rigid), state, period, 8)
     return np.concatenate([state[0], period, *others, trace[0, 3]])
 
@@ -73,7 +73,7 @@ RUNS = (bouncing_ball, beam, mole, vibrator_orbit, vibrator_exact)
 def compiled_anew():
     """Return how many functions this process has compiled that were to be kept on disk."""
     kept = (test_dop853.bounces, events.run)
-    return sum(len(one.stats.cache_misses) for one in kept if hasattr(one, "stats"))
+    return sum(len(function.stats.cache_misses) for function in kept if hasattr(function, "stats"))
 
 
 if __name__ == "__main__":

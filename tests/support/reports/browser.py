@@ -69,9 +69,9 @@ class Tab:
 
     def value(self, expression):
         """Return what a JavaScript expression is, as plain data."""
-        found = self.do("Runtime.evaluate", expression=expression, returnByValue=True)
-        assert "exceptionDetails" not in found, found
-        return found["result"].get("value")
+        reply = self.do("Runtime.evaluate", expression=expression, returnByValue=True)
+        assert "exceptionDetails" not in reply, reply
+        return reply["result"].get("value")
 
     def click(self, x, y):
         """Click at a place of the page shown."""
@@ -138,7 +138,7 @@ def tab(folder):
     try:
         port = _port(folder)
         with urlopen(f"http://127.0.0.1:{port}/json/list", timeout=_SECONDS) as answer:
-            address = next(one for one in json.load(answer) if one["type"] == "page")
+            address = next(target for target in json.load(answer) if target["type"] == "page")
         socket = loop.run_until_complete(_connected(address["webSocketDebuggerUrl"]))
         yield Tab(loop, socket)
         loop.run_until_complete(_closed(socket))

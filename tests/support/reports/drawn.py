@@ -24,16 +24,16 @@ def collisions(figure):
         if text.get_visible() and text.get_text().strip()
     ]
     slack = 1.0  # pixel
-    found = [
-        (one, other)
-        for i, (one, a) in enumerate(boxes)
+    overlaps = [
+        (label, other)
+        for i, (label, a) in enumerate(boxes)
         for other, b in boxes[:i]
         if min(a.x1, b.x1) - max(a.x0, b.x0) > slack and min(a.y1, b.y1) - max(a.y0, b.y0) > slack
     ]
     width, height = figure.bbox.size
-    found += [
-        (one, "the edge")
-        for one, box in boxes
+    overlaps += [
+        (label, "the edge")
+        for label, box in boxes
         if box.x0 < -slack or box.y0 < -slack or box.x1 > width + slack or box.y1 > height + slack
     ]
-    return found
+    return overlaps

@@ -32,14 +32,17 @@ def cells(browser, place="#explorer"):
     """Return the numbers of the table: key -> one (value, low, high) for each column."""
     browser.painted()
     numbers = browser.value(CELLS.replace("PLACE", place))
-    return {key: [np.array(one, dtype=float) for one in found] for key, *found in numbers}
+    return {
+        key: [np.array(numbers_of_cell, dtype=float) for numbers_of_cell in cell_numbers]
+        for key, *cell_numbers in numbers
+    }
 
 
 def ranges(browser):
     """Return the ends of each range."""
     ends = "one => [one.dataset.low, one.dataset.high]"
-    found = browser.value(f"[...document.querySelectorAll('.range')].map({ends})")
-    return [tuple(map(float, pair)) for pair in found]
+    ends_of_ranges = browser.value(f"[...document.querySelectorAll('.range')].map({ends})")
+    return [tuple(map(float, pair)) for pair in ends_of_ranges]
 
 
 def drag_handle(browser, name, end, steps):

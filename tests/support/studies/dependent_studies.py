@@ -17,8 +17,8 @@ def entry_of(ds):
     return entry
 
 
-def assert_near(found, truth):
+def assert_near(effects, truth):
     """Compare with half an interval more, as one of several 95 % intervals may miss."""
     for name, value in truth.items():
-        low, high = found[name]["low"], found[name]["high"]
-        assert abs(found[name]["value"] - value) < 0.75 * (high - low) < 0.1, name
+        low, high = effects[name]["low"], effects[name]["high"]
+        assert abs(effects[name]["value"] - value) < 0.75 * (high - low) < 0.1, name

@@ -37,10 +37,10 @@ LISTED = {"distribution": "discrete-choice", "values": [5e-4, 1e-3, 2e-3]}
 
 def brute_force(ended, size, allow):
     """Return P(at most some ended), averaged over all fleets of one world."""
-    found = []
+    shares = []
     for chosen in combinations(ended[np.isfinite(ended)], size):
         law = np.ones(1)
         for p in chosen:
             law = np.convolve(law, [1 - p, p])
-        found.append(law[: allow + 1].sum())
-    return np.mean(found) if found else np.nan
+        shares.append(law[: allow + 1].sum())
+    return np.mean(shares) if shares else np.nan

@@ -25,5 +25,5 @@ def _of(model, names, lower, upper, method, samples, replicates, seed):
     return study_of(tables | {"uncertain": dict.fromkeys(names, law)})
 
 
-def found(ds, output="y", method=None):
+def index_entry(ds, output="y", method=None):
     return sensitivities(ds, method)["outputs"][output]

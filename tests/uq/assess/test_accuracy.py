@@ -47,8 +47,8 @@ ROUGH = replace(
 def accuracy_of(ds, name):
     """Return what is said of the accuracy of an output without dimensions."""
     (element,) = elements_of(ds, [name])
-    (found,) = accuracy(element, Context(Result(ds), analysis_of(ds), None))
-    return found.facts["accuracy"]
+    (statistic,) = accuracy(element, Context(Result(ds), analysis_of(ds), None))
+    return statistic.facts["accuracy"]
 
 
 def rough(accuracy=0.04):

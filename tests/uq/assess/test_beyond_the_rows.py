@@ -65,7 +65,7 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     assert np.isnan(summary(ds).loc["life", "B1"])
     cells = dict(
         zip(
-            *(lambda t: (t.header, t.rows[0]))(list(result_tables(found(ds)))[1]),
+            *(lambda t: (t.header, t.rows[0]))(list(result_tables(outcomes_of(ds)))[1]),
             strict=True,
         )
     )
@@ -74,7 +74,7 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     assert expected_widths(Result(ds))["life"].quantiles[0.001] is None
 
 
-def found(ds):
+def outcomes_of(ds):
     return outcomes(Result(ds), summarise(Result(ds)))
 
 
@@ -97,6 +97,6 @@ def test_laws_stand_side_by_side(uq, folder):
 
 def test_inputs_of_a_regime_of_few_rows_have_no_outer_quantiles():
     ds = kinds(samples=8, analysis={"outputs": ["regime"]})
-    found = api.regimes(ds)["input_quantile"].isel(regime=0, parameter=0)
-    assert np.isnan(found.sel(probability=[0.05, 0.95])).all()
-    assert np.isfinite(found.sel(probability=0.5))
+    input_quantiles = api.regimes(ds)["input_quantile"].isel(regime=0, parameter=0)
+    assert np.isnan(input_quantiles.sel(probability=[0.05, 0.95])).all()
+    assert np.isfinite(input_quantiles.sel(probability=0.5))

@@ -36,13 +36,13 @@ def test_the_remark_stands_beside_the_bar_in_table_figure_and_report(capsys):
     ds = weighted(0.9)
     show(Result(ds), module.sensitivities(Result(ds)))
     shown = capsys.readouterr().out.splitlines()
-    line = next(one for one in shown if one.startswith("  x4 "))
+    line = next(table_line for table_line in shown if table_line.startswith("  x4 "))
     assert line.endswith("by correlation alone")
     labels = [
         label.get_text() for label in plots.index_bars(ds, "weighted").axes[0].get_yticklabels()
     ]
     assert ["by correlation alone" in label for label in labels] == [
-        "x_{4}" in one for one in labels
+        "x_{4}" in text for text in labels
     ]
     (method,) = sensitivity_of(Findings(Result(ds)))
     beside = {row[0].text: row[0].more for row in method.subjects[0].tables[0].rows}
@@ -57,4 +57,4 @@ def test_the_answer_does_not_count_a_share_by_correlation_as_a_contribution():
     ranking = ranking_of(
         Findings(Result(with_output(ds, "weighted", y))), "weighted", "shapley", ("", "")
     )
-    assert [one.inputs for one in ranking.contributions] == [("x1",)]
+    assert [contribution.inputs for contribution in ranking.contributions] == [("x1",)]

@@ -51,29 +51,29 @@ def test_a_period_is_a_category_whose_codes_are_periods():
 
 def test_a_summary_has_shares_and_no_moments():
     ds, codes = with_period()
-    found = summarised(ds)
-    assert set(found["outputs"]) == {"y"} and list(summary(ds).index) == ["y"]
-    assert list(found["categories"]["period"]) == ["aperiodic", "1", "2"]  # those that occur
-    one = found["categories"]["period"]["1"]
+    statistics = summarised(ds)
+    assert set(statistics["outputs"]) == {"y"} and list(summary(ds).index) == ["y"]
+    assert list(statistics["categories"]["period"]) == ["aperiodic", "1", "2"]  # those that occur
+    share = statistics["categories"]["period"]["1"]
     hits = int((codes == 1).sum())
-    assert (one["count"], one["share"]) == (hits, hits / 200)
+    assert (share["count"], share["share"]) == (hits, hits / 200)
     wilson = stats.binomtest(hits, 200).proportion_ci(method="wilson")
-    assert (one["low"], one["high"]) == pytest.approx(tuple(wilson))
-    assert found["regime"] == {} and summarised(linear())["categories"] == {}
+    assert (share["low"], share["high"]) == pytest.approx(tuple(wilson))
+    assert statistics["regime"] == {} and summarised(linear())["categories"] == {}
 
 
 def test_failed_rows_bound_a_share():
     ds, codes = with_period()
     ds["period"][:5] = -1
-    one = summarised(with_status(ds, slice(5), Status.RAISED))["categories"]["period"]["1"]
-    assert one["count"] == (codes[5:] == 1).sum() and one["failed_low"] < one["low"]
+    share = summarised(with_status(ds, slice(5), Status.RAISED))["categories"]["period"]["1"]
+    assert share["count"] == (codes[5:] == 1).sum() and share["failed_low"] < share["low"]
 
 
 def test_each_number_has_a_key():
     ds, codes = with_period()
-    found = traced(Result(ds), "categories/period/1")
-    assert found.equal and found.numbers["share"] == (codes == 1).mean()
-    assert found.estimators[0].does
+    traced_number = traced(Result(ds), "categories/period/1")
+    assert traced_number.equal and traced_number.numbers["share"] == (codes == 1).mean()
+    assert traced_number.estimators[0].does
 
 
 def test_tables_report_and_figures_show_shares(uq, folder):
@@ -94,19 +94,19 @@ def test_tables_report_and_figures_show_shares(uq, folder):
 
 def test_two_studies_compare_shares():
     pair = [with_period(seed=seed) for seed in (0, 1)]
-    found = compared(*(ds for ds, _ in pair))["categories"]["period"]
-    assert list(found) == ["aperiodic", "1", "2"]
+    period = compared(*(ds for ds, _ in pair))["categories"]["period"]
+    assert list(period) == ["aperiodic", "1", "2"]
     shares = [(codes == 1).mean() for _, codes in pair]
-    assert [found["1"][side]["share"] for side in "ab"] == shares
-    assert found["1"]["difference"]["value"] == pytest.approx(shares[1] - shares[0])
+    assert [period["1"][side]["share"] for side in "ab"] == shares
+    assert period["1"]["difference"]["value"] == pytest.approx(shares[1] - shares[0])
     table = compare(*(ds for ds, _ in pair))
     assert table.loc[("period", "1"), "first"] == shares[0]
 
 
 def test_indices_are_those_of_each_label():
     ds, _ = with_period(2000)
-    found = sensitivities(ds, "regional", "period")["outputs"]
-    assert list(found) == ["P(period=aperiodic)", "P(period=1)", "P(period=2)"]
+    outputs = sensitivities(ds, "regional", "period")["outputs"]
+    assert list(outputs) == ["P(period=aperiodic)", "P(period=1)", "P(period=2)"]
 
 
 @pytest.mark.parametrize("label", ["x[3].y", "x]y", "a/b", "x,y=1"])
@@ -114,19 +114,19 @@ def test_a_label_may_hold_what_separates_the_parts_of_a_name(label):
     ds, codes = with_period(2000)
     ds["period"].attrs["flag_meanings"] = " ".join(("none", LABELS[0], label, *LABELS[2:]))
     sites = ds.assign(period=(("row", "site"), codes[:, None].astype(np.int8), ds.period.attrs))
-    for one, name in (
+    for dataset, name in (
         (ds, "period"),
         (sites.assign_coords(site=["left"]), "period[site=left]"),
         (sites.assign_coords(site=["x[3].y"]), "period[site=x[3].y]"),
     ):
         target = f"P({name}={label})"
-        assert list(sensitivities(one, "regional", target)["outputs"]) == [target]
+        assert list(sensitivities(dataset, "regional", target)["outputs"]) == [target]
         for key in (
             key_of("outputs", target, "S1", "x1", verb="sensitivity"),
             key_of("outputs", target, "variance", verb="levels"),
             key_of("categories", name, label, "share"),
         ):
-            assert traced(Result(one), key).equal
+            assert traced(Result(dataset), key).equal
 
 
 def with_sites(samples=200):
@@ -139,15 +139,15 @@ def with_sites(samples=200):
 
 def test_a_category_with_dimensions_has_shares_of_each_element(uq, folder):
     ds, both = with_sites()
-    found = summarised(ds)["categories"]
-    assert list(found) == ["period[site=left]", "period[site=right]"]
-    for i, of in enumerate(found.values()):
+    categories = summarised(ds)["categories"]
+    assert list(categories) == ["period[site=left]", "period[site=right]"]
+    for i, of in enumerate(categories.values()):
         assert of["1"]["share"] == (both[:, i] == 1).mean()
-    one = traced(Result(ds), "categories/period[site=left]/1")
-    assert one.equal and one.numbers["share"] == (both[:, 0] == 1).mean()
-    assert list(compared(ds, ds)["categories"]) == list(found)
+    traced_number = traced(Result(ds), "categories/period[site=left]/1")
+    assert traced_number.equal and traced_number.numbers["share"] == (both[:, 0] == 1).mean()
+    assert list(compared(ds, ds)["categories"]) == list(categories)
     indices = sensitivities(ds, "regional", "period[site=left]")["outputs"]
-    assert list(indices) == [f"P(period[site=left]={one})" for one in LABELS[:3]]
+    assert list(indices) == [f"P(period[site=left]={label})" for label in LABELS[:3]]
     assert len(sensitivities(ds, "regional", "period")["outputs"]) == 6
     with pytest.raises(InputError, match=r"no such element 'period\[site=up\]'"):
         sensitivities(ds, "regional", "period[site=up]")
@@ -162,14 +162,15 @@ def test_a_figure_shows_the_shares_of_each_label():
     ds, both = with_sites()
     for output, shown in (("period", 2), ("period[site=right]", 1)):
         (axes,) = plots.shares(ds, output).axes
-        labels = [one.get_text() for one in axes.get_yticklabels()]
+        labels = [label.get_text() for label in axes.get_yticklabels()]
         assert labels == list(LABELS[:3]) and len(axes.patches) == 3 * shown
     left = [(both[:, 1] == code).mean() for code in range(3)]
     assert [bar.get_width() for bar in axes.patches] == pytest.approx(left)
     with pytest.raises(InputError, match="'y' is no category"):
         plots.shares(ds, "y")
     assert {"shares-period"} == {
-        one.file for one in drawables({"shares": plots.FIGURES["shares"]}, Findings(Result(ds)))
+        picture.file
+        for picture in drawables({"shares": plots.FIGURES["shares"]}, Findings(Result(ds)))
     }
 
 

@@ -13,16 +13,16 @@ from uq.stats.intervals import wilson_interval
 ENDS = ("value", "low", "high")
 
 
-def apart(found):
+def apart(pair_of_estimates):
     """Return the difference of an estimate, and the ends of its interval."""
-    return [found["difference"][end] for end in ENDS]
+    return [pair_of_estimates["difference"][end] for end in ENDS]
 
 
 def test_what_one_study_asks_for_is_compared():
     pair = [linear(analysis={"thresholds": {"y": t}}) for t in (4.0, 6.0)]
     assert list(compared(*pair)["outputs"]["y"]["thresholds"]) == ["4.0", "6.0"]
-    found = compared(pair[0], linear())["outputs"]["y"]["thresholds"]["4.0"]["above"]
-    assert apart(found)[0] == 0.0
+    probability = compared(pair[0], linear())["outputs"]["y"]["thresholds"]["4.0"]["above"]
+    assert apart(probability)[0] == 0.0
 
 
 def test_rows_that_failed_count_no_more_than_rows_that_are_not_there():
@@ -33,14 +33,15 @@ def test_rows_that_failed_count_no_more_than_rows_that_are_not_there():
     other["regime"][90:120] = 1
     failing = with_status(other, lost, Status.RAISED)
     failing["regime"][lost], failing["angle"][lost], failing["work"][lost] = -1, np.nan, np.nan
-    found = compared(whole, failing)
+    comparison = compared(whole, failing)
     without = compared(whole, other.isel(row=slice(40, None)))
-    assert found["b"]["status"]["raised"] == 40
+    assert comparison["b"]["status"]["raised"] == 40
     for label in ("slow", "fast"):
         expected = pytest.approx(apart(without["regime"][label]), rel=1e-9)
-        assert apart(found["regime"][label]) == expected
+        assert apart(comparison["regime"][label]) == expected
     sides, expected = (
-        one["outputs"]["angle"]["thresholds"]["0.5"]["above"] for one in (found, without)
+        comparison_["outputs"]["angle"]["thresholds"]["0.5"]["above"]
+        for comparison_ in (comparison, without)
     )
     assert apart(sides) == pytest.approx(apart(expected), rel=1e-9)
 
@@ -50,18 +51,18 @@ def test_shares_that_agree_have_newcombes_interval():
     both, first, second, none = counts = (20, 2, 12, 16)
     n = sum(counts)
     ds = linear(samples=n)
-    hits = [np.repeat(one, counts) for one in ([1.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0])]
-    pair = [asking(with_output(ds, "hit", one), thresholds={"hit": 0.5}) for one in hits]
-    a, b = (one.mean() for one in hits)
+    hits = [np.repeat(pattern, counts) for pattern in ([1.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0])]
+    pair = [asking(with_output(ds, "hit", hit), thresholds={"hit": 0.5}) for hit in hits]
+    a, b = (hit.mean() for hit in hits)
     phi = (both * none - first * second - n / 2) / (n**2 * np.sqrt(a * (1 - a) * b * (1 - b)))
 
-    def end(one, other):
-        return np.sqrt(one**2 - 2 * phi * one * other + other**2)
+    def end(share, other):
+        return np.sqrt(share**2 - 2 * phi * share * other + other**2)
 
-    (low_a, high_a), (low_b, high_b) = (wilson_interval(one, n) for one in (a, b))
+    (low_a, high_a), (low_b, high_b) = (wilson_interval(share, n) for share in (a, b))
     expected = [b - a, b - a - end(b - low_b, high_a - a), b - a + end(high_b - b, a - low_a)]
-    found = compared(*pair)["outputs"]["hit"]["thresholds"]["0.5"]["above"]
-    assert apart(found) == pytest.approx(expected)
+    probability = compared(*pair)["outputs"]["hit"]["thresholds"]["0.5"]["above"]
+    assert apart(probability) == pytest.approx(expected)
 
 
 def test_lives_that_assume_something_count_at_their_worst():
@@ -79,11 +80,11 @@ def test_lives_that_assume_something_count_at_their_worst():
 def test_elements_of_one_result_alone_are_named():
     both, left = kinds(samples=50), kinds(samples=50).isel(side=[0])
     for pair, which in (((both, left), "A"), ((left, both), "B")):
-        found = compared(*pair)
-        (note,) = [note for note in found["notes"] if note.startswith("Only ")]
+        comparison = compared(*pair)
+        (note,) = [note for note in comparison["notes"] if note.startswith("Only ")]
         assert note.startswith(f"Only {which} has work[side=right], life[side=right,depth=0.5]")
-        assert "work[side=left]" in found["outputs"]
-        assert "work[side=right]" not in found["outputs"]
+        assert "work[side=left]" in comparison["outputs"]
+        assert "work[side=right]" not in comparison["outputs"]
 
 
 def test_replicates_are_pairs_only_where_both_results_have_as_many():
@@ -98,12 +99,12 @@ def test_replicates_are_pairs_only_where_both_results_have_as_many():
 @pytest.mark.parametrize(("method", "replicates"), [("monte-carlo", 1), ("sobol", 4)])
 def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(method, replicates):
     ds = asking(linear(method, replicates=replicates), thresholds={"y": 5.0})
-    found = compared(ds, ds)["outputs"]["y"]
+    statistics = compared(ds, ds)["outputs"]["y"]
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
-    assert found["mean"]["difference"] == found["sd"]["difference"] == same
-    assert found["sd"]["ratio"] == same | {"value": 1.0}
-    assert found["quantiles"]["0.5"]["difference"] == same
-    assert found["thresholds"]["5.0"]["above"]["difference"] == same
+    assert statistics["mean"]["difference"] == statistics["sd"]["difference"] == same
+    assert statistics["sd"]["ratio"] == same | {"value": 1.0}
+    assert statistics["quantiles"]["0.5"]["difference"] == same
+    assert statistics["thresholds"]["5.0"]["above"]["difference"] == same
     # A shift that is the same in every pair is known, but nothing shows how well.
     moved = compared(ds, with_output(ds, "y", ds["y"].values + 0.5))["outputs"]["y"]
     assert moved["mean"]["difference"]["value"] == pytest.approx(0.5)
@@ -119,26 +120,29 @@ def test_rows_that_differ_but_change_no_side_are_not_identical(method, replicate
     other = with_output(both, "angle", 0.5 * both["angle"].values)
     most = 1 - 0.025 ** (1 / n)
     assert most == pytest.approx(3.7 / n, rel=0.04)
-    for found in (
+    for estimate in (
         compared(ds, moved)["outputs"]["y"]["thresholds"]["5.0"]["above"]["difference"],
         compared(both, other)["regime"]["slow"]["difference"],
     ):
-        assert found.pop("no_row_changes_sides")
-        assert found == pytest.approx({"value": 0.0, "low": -most, "high": most})
+        assert estimate.pop("no_row_changes_sides")
+        assert estimate == pytest.approx({"value": 0.0, "low": -most, "high": most})
     same = compared(both, both)["regime"]["slow"]["difference"]
     assert same == {"value": 0.0, "low": None, "high": None, "identical": True}
 
 
 def test_a_nested_result_is_identical_to_itself_alone():
     ds = nested_result(samples=30)
-    found = compared(ds, ds)
-    assert found["pairing"] == "rows" and "Both results have the same rows." in found["notes"]
+    comparison = compared(ds, ds)
+    assert (
+        comparison["pairing"] == "rows"
+        and "Both results have the same rows." in comparison["notes"]
+    )
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
-    assert found["outputs"]["y"]["mean"]["difference"] == same
+    assert comparison["outputs"]["y"]["mean"]["difference"] == same
     moved = with_output(ds, "y", ds["y"].values + np.arange(ds.sizes["row"]) % 2)
-    found = compared(ds, moved)
-    assert found["pairing"] == "unknown"
-    assert found["outputs"]["y"]["mean"]["difference"]["low"] < 0.5
+    comparison = compared(ds, moved)
+    assert comparison["pairing"] == "unknown"
+    assert comparison["outputs"]["y"]["mean"]["difference"]["low"] < 0.5
 
 
 def censored_lives(times, censored=True):

@@ -23,8 +23,8 @@ from uq.stats.moments import sd_interval
 from uq.stats.two_samples import difference
 
 
-def width(found, estimate="mean"):
-    line = found.loc[("y", estimate)]
+def width(row, estimate="mean"):
+    line = row.loc[("y", estimate)]
     return line["high"] - line["low"]
 
 
@@ -34,10 +34,10 @@ def share(hits, rows):
 
 def test_a_difference_of_shares_has_the_published_interval():
     # Newcombe, Stat. Med. 17, 873 (1998), Table II, method 10.
-    found = difference(share(48, 80), share(56, 70), 0.0)
-    assert found.numbers == pytest.approx((0.2, 0.0524, 0.3339), abs=5e-5)
-    found = difference(share(0, 10), share(10, 10), 0.0)
-    assert found.numbers == pytest.approx((1.0, 0.6075, 1.0), abs=5e-5)
+    estimate = difference(share(48, 80), share(56, 70), 0.0)
+    assert estimate.numbers == pytest.approx((0.2, 0.0524, 0.3339), abs=5e-5)
+    estimate = difference(share(0, 10), share(10, 10), 0.0)
+    assert estimate.numbers == pytest.approx((1.0, 0.6075, 1.0), abs=5e-5)
 
 
 def test_a_difference_of_paired_shares_has_the_published_interval():
@@ -56,58 +56,62 @@ def test_a_difference_of_paired_shares_has_the_published_interval():
 
 @pytest.mark.parametrize("design", [{}, {"samples": 100, "replicates": 2}])
 def test_pairs_of_rows_give_the_interval_of_students_paired_test(design):
-    one, other = study(FOUR, **design), study(FOUR | {"x4": NARROW}, **design)
-    line = api.compare(one, other).loc[("y", "mean")]
-    test = stats.ttest_rel(other["y"].values, one["y"].values).confidence_interval()
+    first, other = study(FOUR, **design), study(FOUR | {"x4": NARROW}, **design)
+    line = api.compare(first, other).loc[("y", "mean")]
+    test = stats.ttest_rel(other["y"].values, first["y"].values).confidence_interval()
     assert (line["low"], line["high"]) == pytest.approx(tuple(test))
-    assert line["difference"] == pytest.approx(float(other["y"].mean() - one["y"].mean()))
+    assert line["difference"] == pytest.approx(float(other["y"].mean() - first["y"].mean()))
 
 
 @pytest.mark.parametrize("estimate", ["mean", "sd", "quantile 0.5", "P(>4.0)"])
 @pytest.mark.parametrize("design", [{}, {"method": "sobol", "samples": 32, "replicates": 8}])
 def test_what_is_known_of_the_rows_decides_the_width(estimate, design):
-    one, narrow = study(FOUR, **design), FOUR | {"x4": NARROW}
-    pairs = width(api.compare(one, study(narrow, **design)), estimate)
-    independent = width(api.compare(one, study(narrow, seed=8, **design)), estimate)
+    first, narrow = study(FOUR, **design), FOUR | {"x4": NARROW}
+    pairs = width(api.compare(first, study(narrow, **design)), estimate)
+    independent = width(api.compare(first, study(narrow, seed=8, **design)), estimate)
     assert pairs < independent
 
 
 def test_paired_replicates_tell_a_quantile_apart_as_well_as_all_their_rows_do():
     # Twice the output: how far its quantile lies from the first is known as well as the first. The
     # replicates' own quantiles, of 32 rows each, would say something else.
-    one = study(FOUR, method="sobol", samples=32, replicates=8)
-    doubled = one.assign(y=one["y"] * 2)
+    first = study(FOUR, method="sobol", samples=32, replicates=8)
+    doubled = first.assign(y=first["y"] * 2)
     for p in ("0.05", "0.5", "0.95"):
-        found = compared(one, doubled)["outputs"]["y"]["quantiles"][p]
-        apart, alone = (found[one]["high"] - found[one]["low"] for one in ("difference", "a"))
+        quantiles = compared(first, doubled)["outputs"]["y"]["quantiles"][p]
+        apart, alone = (
+            quantiles[side]["high"] - quantiles[side]["low"] for side in ("difference", "a")
+        )
         assert apart == pytest.approx(alone, rel=1e-6)
 
 
 def test_intervals_of_studies_that_share_a_seed_without_pairs_are_conservative():
     three = {name: law for name, law in FOUR.items() if name != "x3"}
-    found = compared(study(FOUR), study(three))
-    assert found["pairing"] == "unknown" and "different seeds" in found["notes"][0]
-    output = found["outputs"]["y"]
-    for one in (output["mean"], output["sd"], output["quantiles"]["0.5"]):
-        a, b, apart = one["a"], one["b"], one["difference"]
+    comparison = compared(study(FOUR), study(three))
+    assert comparison["pairing"] == "unknown" and "different seeds" in comparison["notes"][0]
+    output = comparison["outputs"]["y"]
+    for entry in (output["mean"], output["sd"], output["quantiles"]["0.5"]):
+        a, b, apart = entry["a"], entry["b"], entry["difference"]
         assert apart["high"] == pytest.approx(b["high"] - a["low"])
         assert apart["low"] == pytest.approx(b["low"] - a["high"])
 
 
 def test_an_extended_study_shares_its_first_rows():
-    one, other = study(FOUR), study(FOUR, samples=400)
-    assert width(api.compare(one, other)) < width(
-        api.compare(one, study(FOUR, samples=400, seed=3))
+    first, other = study(FOUR), study(FOUR, samples=400)
+    assert width(api.compare(first, other)) < width(
+        api.compare(first, study(FOUR, samples=400, seed=3))
     )
-    found = compared(one, other)
-    assert [(c["name"], c["a"], c["b"]) for c in found["changed"]] == [("samples", "200", "400")]
+    comparison = compared(first, other)
+    assert [(c["name"], c["a"], c["b"]) for c in comparison["changed"]] == [
+        ("samples", "200", "400")
+    ]
 
 
 def test_results_that_agree_have_no_interval_of_zero_width():
     for design in ({}, {"method": "sobol", "samples": 32, "replicates": 8}):
-        found = api.compare(*[study(FOUR, **design)] * 2)
-        assert (found["difference"] == 0).all()
-        gap = (found["high"] - found["low"]).drop([("y", "mean"), ("y", "sd")])
+        table = api.compare(*[study(FOUR, **design)] * 2)
+        assert (table["difference"] == 0).all()
+        gap = (table["high"] - table["low"]).drop([("y", "mean"), ("y", "sd")])
         assert ((gap > 0) | gap.isna()).all()
     # The same scramble, a mean that Sobol' points integrate exactly: only rounding differs.
     pair = [
@@ -119,76 +123,81 @@ def test_results_that_agree_have_no_interval_of_zero_width():
 
 def test_each_side_is_what_its_own_summary_says():
     pair = [study(FOUR), study(FOUR | {"x4": NARROW}, samples=300)]
-    found = compared(*pair)["outputs"]["y"]
+    statistics = compared(*pair)["outputs"]["y"]
     for key, ds in zip("ab", pair, strict=True):
         entry = summarised(ds)["outputs"]["y"]
-        assert found["mean"][key] == {"value": entry["mean"], **entry["mean_interval"]}
-        assert found["sd"][key]["value"] == entry["sd"]
-        assert found["quantiles"]["0.5"][key] == entry["quantiles"]["0.5"]
-        assert found["thresholds"]["4.0"]["above"][key] == entry["thresholds"]["4.0"]["above"]
+        assert statistics["mean"][key] == {"value": entry["mean"], **entry["mean_interval"]}
+        assert statistics["sd"][key]["value"] == entry["sd"]
+        assert statistics["quantiles"]["0.5"][key] == entry["quantiles"]["0.5"]
+        assert statistics["thresholds"]["4.0"]["above"][key] == entry["thresholds"]["4.0"]["above"]
 
 
 def test_what_was_changed_is_named_and_what_it_bought():
-    one = study(FOUR)
-    found = compared(one, study(FOUR | {"x4": NARROW}))
-    (change,) = found["changed"]
+    first = study(FOUR)
+    comparison = compared(first, study(FOUR | {"x4": NARROW}))
+    (change,) = comparison["changed"]
     assert change == {
         "kind": "input",
         "name": "x4",
         "a": "uniform(lower = 0.0, upper = 1.0)",
         "b": "uniform(lower = 0.3, upper = 0.7)",
     }
-    assert found["only"]["name"] == "x4"
-    assert found["only"]["sd"]["b"] == pytest.approx(0.4 * found["only"]["sd"]["a"])
-    ratio = found["outputs"]["y"]["sd"]["ratio"]
+    assert comparison["only"]["name"] == "x4"
+    assert comparison["only"]["sd"]["b"] == pytest.approx(0.4 * comparison["only"]["sd"]["a"])
+    ratio = comparison["outputs"]["y"]["sd"]["ratio"]
     truth = ((1 + 4 + 9 + 0.16 * 16) / 30) ** 0.5
     assert ratio["low"] < truth < ratio["high"] and ratio["high"] - ratio["low"] < 0.1
     sourced = study(FOUR | {"x4": UNIFORM | {"source": "found in a drawer"}})
-    assert not compared(one, sourced)["changed"]
+    assert not compared(first, sourced)["changed"]
     fixed = {name: law for name, law in FOUR.items() if name != "x4"}
-    found = compared(one, study(fixed, {"fixed": {"x4": 0.25}, "settings": {"fail_above": 0.9}}))
-    assert [(c["kind"], c["name"], c["b"]) for c in found["changed"]] == [
+    comparison = compared(
+        first, study(fixed, {"fixed": {"x4": 0.25}, "settings": {"fail_above": 0.9}})
+    )
+    assert [(c["kind"], c["name"], c["b"]) for c in comparison["changed"]] == [
         ("setting", "fail_above", "0.9"),
         ("input", "x4", "0.25"),
     ]
-    assert found["only"] is None  # the setting changes outputs too
+    assert comparison["only"] is None  # the setting changes outputs too
     both = study(FOUR | {"x4": NARROW, "x3": NARROW})
-    assert compared(one, both)["only"] is None
+    assert compared(first, both)["only"] is None
 
 
 def test_ties_and_rank_correlations_are_stated():
-    one = study({"x1": UNIFORM, "x2": UNIFORM})
+    first = study({"x1": UNIFORM, "x2": UNIFORM})
     tied = study({"x1": UNIFORM, "x2": {"equals": "x1"}})
-    assert compared(one, tied)["changed"][0]["b"] == "equals x1"
+    assert compared(first, tied)["changed"][0]["b"] == "equals x1"
     together = {"parameters": ["x1", "x2"], "rank_correlation": [[1.0, 0.5], [0.5, 1.0]]}
-    found = compared(one, study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together}))
-    assert [(c["kind"], c["b"]) for c in found["changed"]] == [("dependence", "x1, x2")]
-    assert found["only"] is None
+    comparison = compared(first, study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together}))
+    assert [(c["kind"], c["b"]) for c in comparison["changed"]] == [("dependence", "x1, x2")]
+    assert comparison["only"] is None
 
 
 def test_rows_that_never_end_or_fail_are_no_numbers():
     never = with_output(linear(samples=64), "life", np.full(64, np.inf), "lifetime")
     ends = with_output(linear(samples=64), "life", np.linspace(1, 2, 64), "lifetime")
     never, ends = asking(never, outputs=["life"]), asking(ends, outputs=["life"])
-    found = compared(never, ends)["outputs"]["life"]
-    assert found["quantiles"]["0.5"]["a"]["never"] and found["mean"]["a"]["value"] is None
+    statistics = compared(never, ends)["outputs"]["life"]
+    assert statistics["quantiles"]["0.5"]["a"]["never"] and statistics["mean"]["a"]["value"] is None
     nothing = {"value": None, "low": None, "high": None}
-    assert found["quantiles"]["0.5"]["difference"] == found["sd"]["ratio"] == nothing
+    assert statistics["quantiles"]["0.5"]["difference"] == statistics["sd"]["ratio"] == nothing
     lost = with_status(
         with_output(ends, "life", np.full(64, np.nan), "lifetime"), slice(None), Status.RAISED
     )
     lost = asking(lost, outputs=["life"])
-    found = compared(ends, lost)
-    assert found["b"]["status"] == {"ok": 0, "raised": 64}
-    assert found["outputs"]["life"]["b_lives"]["B10"]["difference"] == nothing
+    comparison = compared(ends, lost)
+    assert comparison["b"]["status"] == {"ok": 0, "raised": 64}
+    assert comparison["outputs"]["life"]["b_lives"]["B10"]["difference"] == nothing
     assert np.isnan(api.compare(ends, lost)["difference"]).all()
 
 
 def test_regimes_and_elements_that_both_have_are_compared():
-    found = compared(kinds(samples=100), kinds(samples=200))
-    assert list(found["regime"]) == ["slow", "fast"]
-    assert found["regime"]["slow"]["a"]["count"] + found["regime"]["fast"]["a"]["count"] == 100
-    assert "life[side=left,depth=0.5]" in found["outputs"]
+    comparison = compared(kinds(samples=100), kinds(samples=200))
+    assert list(comparison["regime"]) == ["slow", "fast"]
+    assert (
+        comparison["regime"]["slow"]["a"]["count"] + comparison["regime"]["fast"]["a"]["count"]
+        == 100
+    )
+    assert "life[side=left,depth=0.5]" in comparison["outputs"]
     assert list(api.compare(kinds(samples=50), kinds(samples=50)).index[0]) == ["regime", "slow"]
 
 
@@ -220,19 +229,19 @@ def test_differences_hold_the_truth_as_often_as_they_say(case):
     design, other_design, apart = CASES[case]
     laws = FOUR, FOUR | {"x4": NARROW}
     many = {"method": "sobol", "samples": 2**18}
-    truth = api.compare(*(study(one, **many) for one in laws))
+    truth = api.compare(*(study(law, **many) for law in laws))
     held = {key: [] for key in truth.index}
     for seed in range(200):
-        found = api.compare(
+        table = api.compare(
             study(laws[0], seed=seed, **design),
             study(laws[1], seed=seed + apart, **other_design),
         )
-        for key, line in found.iterrows():
+        for key, line in table.iterrows():
             if np.isfinite(line["low"]) and np.isfinite(line["high"]):
                 held[key].append(line["low"] <= truth.loc[key, "difference"] <= line["high"])
-    for key, one in held.items():
+    for key, covers in held.items():
         # Sobol' points integrate this mean to rounding: what is left of its difference is no error
         # of sampling.
         if not ("replicates" in case and key[1] == "mean"):
-            print(f"{case:24} {key[1]:16} {np.mean(one):6.1%} of {len(one)}")
-            assert np.mean(one) >= 0.9 and len(one) > 150, key
+            print(f"{case:24} {key[1]:16} {np.mean(covers):6.1%} of {len(covers)}")
+            assert np.mean(covers) >= 0.9 and len(covers) > 150, key

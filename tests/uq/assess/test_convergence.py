@@ -77,9 +77,9 @@ def test_errors_count_by_their_magnitude_and_for_their_own_element():
     ds = kinds(samples=64)
     sizes = xr.DataArray([0.1, 0.2], dims="side") * xr.ones_like(ds["work"])
     ds = ds.assign(work_error=sizes.transpose(*ds["work"].dims).assign_attrs(ds["work"].attrs))
-    own = enough(ds)["own"]
-    assert own["work[side=left]"] == pytest.approx(0.1)
-    assert own["work[side=right]"] == pytest.approx(0.2)
+    solver_errors = enough(ds)["own"]
+    assert solver_errors["work[side=left]"] == pytest.approx(0.1)
+    assert solver_errors["work[side=right]"] == pytest.approx(0.2)
 
 
 def test_no_interval_is_no_warning():
@@ -92,9 +92,9 @@ def test_the_command_shows_and_writes_json(uq, folder):
     ended = uq("convergence", "out.nc")
     assert ended.code == 0
     assert "more rows do not help" in " ".join(ended.out.split())
-    found = json.loads(uq("convergence", "out.nc", "--json").out)["outputs"]["y"]
-    assert [line["samples"] for line in found["estimates"]["mean"]] == [16, 32, 64, 128, 256]
-    assert found["own_error"] == 1.0 and found["sampling_error"] < 1.0
+    estimates = json.loads(uq("convergence", "out.nc", "--json").out)["outputs"]["y"]
+    assert [line["samples"] for line in estimates["estimates"]["mean"]] == [16, 32, 64, 128, 256]
+    assert estimates["own_error"] == 1.0 and estimates["sampling_error"] < 1.0
     whole_files.write(linear(samples=1024), folder / "long.nc")
     shown = [line.split() for line in uq("convergence", "long.nc").out.splitlines()]
     of_mean = shown[shown.index(["samples", "mean", "95", "%", "interval"]) + 1 :]

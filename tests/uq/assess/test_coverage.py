@@ -36,10 +36,12 @@ def tally_summary(tally, entry, cdf, ppf, mean=None):
     """Count mean, quantiles, thresholds and tolerance bounds of one output."""
     if mean is not None:
         tally.add("mean", mean, **entry["mean_interval"])
-    for probability, found in entry["quantiles"].items():
-        tally.add(f"quantile {probability}", ppf(float(probability)), found["low"], found["high"])
-    for threshold, found in entry["thresholds"].items():
-        above = found["above"]
+    for probability, estimate in entry["quantiles"].items():
+        tally.add(
+            f"quantile {probability}", ppf(float(probability)), estimate["low"], estimate["high"]
+        )
+    for threshold, entry_of_threshold in entry["thresholds"].items():
+        above = entry_of_threshold["above"]
         tally.add(f"P(> {threshold})", 1 - cdf(float(threshold)), above["low"], above["high"])
     if bounds := entry["tolerance"]:
         tally.add("tolerance lower", ppf(0.05), bounds["lower"], np.inf)
@@ -147,8 +149,8 @@ def test_b_lives_and_shares_with_censored_rows(design):
         ds = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
         entry = summarised(asking(ds, thresholds={"seen": [1e6]}))["outputs"]["seen"]
         for name, p in {"B10": 0.1, "B50": 0.5}.items():
-            found = entry["b_lives"][name]
-            tally.add(name, LIFE.ppf(p), found["low"], found["high"])
+            estimate = entry["b_lives"][name]
+            tally.add(name, LIFE.ppf(p), estimate["low"], estimate["high"])
         below = entry["thresholds"]["1000000.0"]["kaplan_meier"]["below"]
         tally.add("P(< 1e6)", LIFE.cdf(1e6), below["low"], below["high"])
     tally.check()
@@ -167,8 +169,8 @@ def test_fitted_laws(horizon):
         if fit.refused:
             continue
         truth = {"median": LIFE.median(), "sigma": np.hypot(SIGMA, SPREAD)}
-        for name, found in fit.parameters.items():
-            tally.add(name, truth[name], found.low, found.high)
+        for name, estimate in fit.parameters.items():
+            tally.add(name, truth[name], estimate.low, estimate.high)
         for name, p in B_LIVES.items():
             tally.add(name, LIFE.ppf(p), fit.b_lives[name].low, fit.b_lives[name].high)
     assert stats.binomtest(refused, REPETITIONS, 0.05).pvalue > 1e-3
@@ -184,6 +186,6 @@ def test_variance_between_two_regimes(design):
     for ds in repeat("linear", design, inputs):
         codes = (ds["x4"].values > 0.7).astype(int)
         replicate = None if design[0] == "monte-carlo" else ds["replicate"].values
-        found = between_share(ds["x1"].values + 2.0 * codes, codes, replicate)
-        tally.add("between", between / (between + 1 / 12), found.low, found.high)
+        share = between_share(ds["x1"].values + 2.0 * codes, codes, replicate)
+        tally.add("between", between / (between + 1 / 12), share.low, share.high)
     tally.check()

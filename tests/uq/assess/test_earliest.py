@@ -32,28 +32,31 @@ def lived(law, samples=400, design="monte-carlo", **more):
 
 def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
     ds = lived(lambda x1, x4: 3600 * np.exp(-x4 - 0.3 * x1))
-    found = answer(ds).lead.earliest
+    earliest = answer(ds).lead.earliest
     order = np.argsort(ds["life"].values)[:3]
-    assert found.rows == tuple(ds["row"].values[order])
-    named = re.findall(r"(\d+) \(([\d.e+]+)", found.first)
-    assert [int(number) for number, _ in named] == list(found.rows)
-    shown = [float(life) * found.unit.per for _, life in named]
+    assert earliest.rows == tuple(ds["row"].values[order])
+    named = re.findall(r"(\d+) \(([\d.e+]+)", earliest.first)
+    assert [int(number) for number, _ in named] == list(earliest.rows)
+    shown = [float(life) * earliest.unit.per for _, life in named]
     assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
-    assert found.command == "uq row OUT --lowest life"
-    assert lowest_row(Result(ds), "life").number == found.rows[0]
+    assert earliest.command == "uq row OUT --lowest life"
+    assert lowest_row(Result(ds), "life").number == earliest.rows[0]
 
 
 def test_commands_that_compute_rows_name_a_model_that_is_not_installed():
-    own = Findings(Result(kinds(analysis={"outputs": ["life"]})))
-    assert answer(own.result).lead.earliest.command.endswith("]' --model FILE")
-    assert rows_inside(own, "a.nc")["model"] == " --model FILE"
+    findings = Findings(Result(kinds(analysis={"outputs": ["life"]})))
+    assert answer(findings.result).lead.earliest.command.endswith("]' --model FILE")
+    assert rows_inside(findings, "a.nc")["model"] == " --model FILE"
     assert rows_inside(Findings(Result(lived(lambda x1, x4: x1))), "a.nc")["model"] == ""
 
 
 def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():
     ds = lived(lambda x1, x4: np.exp(-4 * x4 + 2 * x1), samples=1000)
-    found = answer(ds).lead.earliest
-    assert [(one.name, one.direction) for one in found.inputs] == [("x4", 1), ("x1", -1)]
+    earliest = answer(ds).lead.earliest
+    assert [(input_.name, input_.direction) for input_ in earliest.inputs] == [
+        ("x4", 1),
+        ("x1", -1),
+    ]
     first = np.argsort(ds["life"].values)[:50]
     others = np.setdiff1d(np.arange(1000), first)
     medians = [
@@ -62,27 +65,30 @@ def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_
     numbers = re.search(
         r"The earliest 5 % \(50 rows\) have a higher x4 \(median ([\d.]+) against ([\d.]+) of the"
         r" others\) and a lower x1 \(median ([\d.]+) against ([\d.]+)\)\.",
-        found.sentence,
+        earliest.sentence,
     )
-    assert [float(one) for one in numbers.groups()] == pytest.approx(medians, abs=5e-3)
-    rank = found.inputs[0].rank
-    own = np.argsort(np.argsort(ds["x4"].values))[first] + 0.5
-    assert rank.value == pytest.approx(own.mean() / 1000) and rank.low < rank.value < rank.high
+    assert [float(group) for group in numbers.groups()] == pytest.approx(medians, abs=5e-3)
+    rank = earliest.inputs[0].rank
+    ranks_of_first = np.argsort(np.argsort(ds["x4"].values))[first] + 0.5
+    assert (
+        rank.value == pytest.approx(ranks_of_first.mean() / 1000)
+        and rank.low < rank.value < rank.high
+    )
 
 
 def test_values_at_both_ends_have_no_direction():
     ds = lived(lambda x1, x4: np.exp(-np.abs(x4 - 0.5) + 1e-3 * x1), samples=1000)
-    found = answer(ds).lead.earliest
-    assert found.inputs[0].direction == 0 and found.inputs[0].outwards == 1
-    assert "values of x4 away from the middle of its range" in found.sentence
+    earliest = answer(ds).lead.earliest
+    assert earliest.inputs[0].direction == 0 and earliest.inputs[0].outwards == 1
+    assert "values of x4 away from the middle of its range" in earliest.sentence
     ds = lived(lambda x1, x4: np.exp(np.abs(x4 - 0.5) + 1e-3 * x1), samples=1000)
     assert "values of x4 near the middle of its range" in answer(ds).lead.earliest.sentence
 
 
 def test_where_no_input_differs_the_answer_says_so():
     lives = np.random.default_rng(5).uniform(1, 9, 400)
-    found = answer(with_lives(lives)).lead.earliest
-    assert found.sentence == (
+    earliest = answer(with_lives(lives)).lead.earliest
+    assert earliest.sentence == (
         "No input distinguishes the earliest 5 % (20 rows) measurably from the others."
     )
 
@@ -92,26 +98,26 @@ def test_inputs_without_effect_are_seldom_named():
     rng, named, inputs = np.random.default_rng(1), 0, linear(samples=400)
     for _ in range(100):
         ds = with_output(inputs, "life", rng.uniform(1, 9, 400), "lifetime")
-        found = answer(asking(ds, outputs=["life"], sensitivity=["pawn"])).lead.earliest
-        named += bool(found.inputs)
+        earliest = answer(asking(ds, outputs=["life"], sensitivity=["pawn"])).lead.earliest
+        named += bool(earliest.inputs)
     assert named <= 12  # 5 % of the time, all four inputs together
 
 
 def test_a_row_censored_before_may_be_earlier():
     lives, flags = np.linspace(1, 9, 400), np.zeros(400, dtype=bool)
     flags[14] = True
-    found = answer(with_lives(lives, flags)).lead.earliest
-    assert found.size == 14
+    earliest = answer(with_lives(lives, flags)).lead.earliest
+    assert earliest.size == 14
     flags[2] = True
-    found = answer(with_lives(lives, flags)).lead.earliest
-    assert found.sentence == "" and len(found.rows) == 3
+    earliest = answer(with_lives(lives, flags)).lead.earliest
+    assert earliest.sentence == "" and len(earliest.rows) == 3
 
 
 def test_where_fewer_than_five_per_cent_end_these_are_the_earliest():
     lives = np.full(1000, np.inf)
     lives[::50] = np.linspace(1, 2, 20)
-    found = answer(with_lives(lives)).lead.earliest
-    assert (found.size, found.of) == (20, 1000) and "2 % (20 rows)" in found.sentence
+    earliest = answer(with_lives(lives)).lead.earliest
+    assert (earliest.size, earliest.of) == (20, 1000) and "2 % (20 rows)" in earliest.sentence
     nothing = answer(with_lives(np.full(100, np.inf))).lead
     assert nothing.earliest is None
 
@@ -120,10 +126,10 @@ def test_where_fewer_than_five_per_cent_end_these_are_the_earliest():
 def test_replicates_show_what_differs_and_one_design_alone_does_not():
     law = lambda x1, x4: np.exp(-4 * x4)  # noqa: E731
     ds = lived(law, 64, "saltelli", replicates=8)
-    found = answer(ds).lead.earliest
-    assert found.inputs[0].name == "x4"
+    earliest = answer(ds).lead.earliest
+    assert earliest.inputs[0].name == "x4"
     rows = independent_rows(ds)
-    assert found.of == rows.sizes["row"]
+    assert earliest.of == rows.sizes["row"]
     assert answer(lived(law, 512, "sobol")).lead.earliest.sentence == ""
 
 
@@ -135,8 +141,8 @@ def test_the_regime_of_the_earliest_rows_is_named():
         with_output(ds, "end", np.where(fast, 1.0, 5.0) + rng.uniform(0, 1, 400), "lifetime"),
         outputs=["end"],
     )
-    found = answer(ds).lead.earliest
-    assert found.sentence.endswith(
+    earliest = answer(ds).lead.earliest
+    assert earliest.sentence.endswith(
         f"100 % (83.2 to 100 %) of them are fast, of all rows {100 * fast.mean():.1f} %."
     )
 
@@ -146,13 +152,13 @@ def test_the_regime_of_most_of_the_earliest_rows_is_named_where_all_rows_are_in_
     lives = np.random.default_rng(3).uniform(1, 2, 400)
     ds = asking(with_output(ds, "end", lives, "lifetime"), outputs=["end"])
     first = np.argsort(lives)[:20]
-    found = answer(ds).lead.earliest
-    most = found.regimes[0]
+    earliest = answer(ds).lead.earliest
+    most = earliest.regimes[0]
     of_first = (ds["regime"].values[first] == 1).mean()
     assert most.label == ("fast" if of_first > 0.5 else "slow")
     assert most.share.value == max(of_first, 1 - of_first)
-    assert f"are {most.label}, of all rows {100 * most.overall:.1f} %" in found.sentence
-    assert found.sentence.endswith("%: chance may explain the difference.")
+    assert f"are {most.label}, of all rows {100 * most.overall:.1f} %" in earliest.sentence
+    assert earliest.sentence.endswith("%: chance may explain the difference.")
 
 
 def test_equal_values_share_their_rank():
@@ -167,17 +173,17 @@ def test_successes_have_no_earliest_rows():
 
 def test_page_terminal_and_json_say_the_same():
     ds = lived(lambda x1, x4: np.exp(-4 * x4))
-    found = answer(ds)
-    said = found.lead.earliest
-    html = str(fragment(found))
-    assert "What ends first" in html and said.command in html
-    assert said.sentence in repr(found) and said.first in repr(found)
+    conclusions = answer(ds)
+    lead_rows = conclusions.lead.earliest
+    html = str(fragment(conclusions))
+    assert "What ends first" in html and lead_rows.command in html
+    assert lead_rows.sentence in repr(conclusions) and lead_rows.first in repr(conclusions)
     plain = answer_json(conclude(Findings(Result(ds))))["quantities"]["life"]["earliest"]
     assert (
-        plain["lives"] == dict(zip(map(str, said.rows), said.lives, strict=True))
-        and plain["sentence"] == said.sentence
+        plain["lives"] == dict(zip(map(str, lead_rows.rows), lead_rows.lives, strict=True))
+        and plain["sentence"] == lead_rows.sentence
     )
-    assert plain["inputs"]["x4"]["rank"] == said.inputs[0].rank.value
+    assert plain["inputs"]["x4"]["rank"] == lead_rows.inputs[0].rank.value
 
 
 def test_never_more_than_five_per_cent():

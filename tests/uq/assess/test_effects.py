@@ -13,10 +13,10 @@ RNG = np.random.default_rng(5)
 def test_the_slope_of_a_power_law_is_its_exponent():
     x = RNG.lognormal(0.0, 0.3, (500, 2))
     noise = 0.1 * x[:, 0] * RNG.normal(size=500)
-    found = effects(np.log(x[:, 0] ** -2 * x[:, 1]) + noise, {"a": x[:, 0], "b": x[:, 1]})
-    assert found["a"].logarithmic and found["a"].direction == -1 and found["b"].direction == 1
-    assert found["a"].slope.low < -2 < found["a"].slope.high
-    assert found["b"].slope.low < 1 < found["b"].slope.high
+    slopes = effects(np.log(x[:, 0] ** -2 * x[:, 1]) + noise, {"a": x[:, 0], "b": x[:, 1]})
+    assert slopes["a"].logarithmic and slopes["a"].direction == -1 and slopes["b"].direction == 1
+    assert slopes["a"].slope.low < -2 < slopes["a"].slope.high
+    assert slopes["b"].slope.low < 1 < slopes["b"].slope.high
 
 
 def test_an_effect_that_turns_has_no_direction():
@@ -31,8 +31,8 @@ def test_an_effect_that_turns_has_no_direction():
 
 def test_an_input_without_effect_has_no_direction():
     x, noise = RNG.normal(size=(2, 400))
-    (found,) = effects(noise, {"x": x}).values()
-    assert found.slope.low < 0 < found.slope.high and found.direction == 0
+    (slope,) = effects(noise, {"x": x}).values()
+    assert slope.slope.low < 0 < slope.slope.high and slope.direction == 0
 
 
 def test_rows_that_agree_count_once():
@@ -40,7 +40,7 @@ def test_rows_that_agree_count_once():
     y = x + np.repeat(RNG.normal(size=100), 10)
     (alone,) = effects(y, {"x": x}).values()
     (together,) = effects(y, {"x": x}, Clusters(np.repeat(np.arange(100), 10), 100)).values()
-    wide, narrow = (one.slope.high - one.slope.low for one in (together, alone))
+    wide, narrow = (slope.slope.high - slope.slope.low for slope in (together, alone))
     assert wide == pytest.approx(10**0.5 * narrow, rel=0.1)
 
 
@@ -58,10 +58,10 @@ def test_the_probability_over_an_input_is_the_share_in_each_part():
     hits[:10] = np.nan
     curve = event_curve(hits, x)
     assert len(curve.shares) == 12 and (curve.least, curve.most) == (0, 11)
-    for low, high, one in zip(curve.edges, curve.edges[1:], curve.shares, strict=False):
+    for low, high, estimate in zip(curve.edges, curve.edges[1:], curve.shares, strict=False):
         inside = (x >= low) & (x <= high) & np.isfinite(hits)
-        assert one.value == pytest.approx(hits[inside].mean(), abs=0.02)
-        assert one.low < (low + high) / 2 + 0.1 and one.high > (low + high) / 2 - 0.1
+        assert estimate.value == pytest.approx(hits[inside].mean(), abs=0.02)
+        assert estimate.low < (low + high) / 2 + 0.1 and estimate.high > (low + high) / 2 - 0.1
     assert curve.around(3) == tuple(curve.edges[3:5])
     whole = event_curve((x > 0.5).astype(float), x)
     assert whole.around(whole.most)[0] == pytest.approx(0.5, abs=0.1) == whole.around(0)[1]
@@ -74,7 +74,7 @@ def test_each_of_few_values_is_a_part_of_its_own():
     hits = np.where(x == 3.0, 1.0, 0.0)
     curve = event_curve(hits, x)
     assert curve.edges.tolist() == [1, 1.5, 2.5, 5]  # few rows of a value go with the next
-    assert [one.value for one in curve.shares] == [0, 0, 0.95] and not curve.of_values
+    assert [share.value for share in curve.shares] == [0, 0, 0.95] and not curve.of_values
     assert event_curve(hits[:995], x[:995]).of_values
 
 
@@ -83,6 +83,6 @@ def test_parts_of_whole_numbers_end_between_them():
     curve = event_curve((x >= 20).astype(float), x)
     inner = curve.edges[1:-1]
     assert (inner % 1 == 0.5).all() and len(curve.shares) >= 9 and not curve.of_values
-    for low, high, one in zip(curve.edges, curve.edges[1:], curve.shares, strict=False):
+    for low, high, estimate in zip(curve.edges, curve.edges[1:], curve.shares, strict=False):
         inside = (x > low) & (x < high) | (x == low) & (low == 0)
-        assert one.value == pytest.approx((x[inside] >= 20).mean(), abs=0.1)
+        assert estimate.value == pytest.approx((x[inside] >= 20).mean(), abs=0.1)

@@ -35,8 +35,8 @@ def lives(method="monte-carlo", failing="long", **more):
 @pytest.mark.parametrize("failing", ["long", "short"])
 def test_bounds_hold_what_the_interval_misses(method, failing):
     ds, whole, _ = lives(method, failing)
-    found = summarised(ds)
-    life = found["outputs"]["life"]
+    statistics = summarised(ds)
+    life = statistics["outputs"]["life"]
     above, below = (life["thresholds"]["5.0"][side] for side in ("above", "below"))
     if failing == "long":
         assert above["high"] < TRUTH  # of the rows that did not fail
@@ -49,7 +49,9 @@ def test_bounds_hold_what_the_interval_misses(method, failing):
         assert bounds.get("failed_high_never") or bounds["failed_high"] >= LIVES.ppf(p), name
     assert life["b_lives"]["B1"]["failed_low"] == 0.0  # 8 % may have ended at once
     assert life["quantiles"]["0.95"]["failed_high_never"]
-    assert [note for note in found["notes"] if note.startswith("80 of 1000 independent rows fail")]
+    assert [
+        note for note in statistics["notes"] if note.startswith("80 of 1000 independent rows fail")
+    ]
 
 
 def test_bounds_are_the_ends_of_the_interval_with_failed_rows_on_that_side():
@@ -63,8 +65,8 @@ def test_bounds_are_the_ends_of_the_interval_with_failed_rows_on_that_side():
 
 def test_without_failed_rows_nothing_stands_beside():
     ds = asking(linear(), thresholds={"y": 5.0})
-    found = summarised(ds)
-    assert "failed_low" not in str(found) and found["notes"] == []
+    statistics = summarised(ds)
+    assert "failed_low" not in str(statistics) and statistics["notes"] == []
     assert not any("failed_" in column for column in summary(ds).columns)
 
 
@@ -77,8 +79,8 @@ def test_values_and_angles_have_bounds_too():
     ds = with_output(ds, "turn", np.where(np.isnan(y), np.nan, y - 5.0))
     ds = ds.assign(turn=ds["turn"].assign_attrs(kind="angle"))
     ds = asking(with_status(ds, lost, 2), thresholds={"y": 7.0, "turn": 2.0}, quantiles=[0.05, 0.5])
-    found = summarised(ds)["outputs"]
-    value = found["y"]["quantiles"]
+    outputs = summarised(ds)["outputs"]
+    value = outputs["y"]["quantiles"]
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
     bounds = summarise(Result(ds)).outputs["y"].find("quantiles", "0.05").failed
@@ -93,8 +95,8 @@ def test_values_and_angles_have_bounds_too():
     )
     assert failed_bounds_text(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
-    assert len(whole) and found["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth
-    turn = found["turn"]["thresholds"]["2.0"]
+    assert len(whole) and outputs["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth
+    turn = outputs["turn"]["thresholds"]["2.0"]
     assert turn["above"]["failed_high"] == pytest.approx(1 - turn["below"]["failed_low"])
     assert turn["above"]["failed_high"] - turn["above"]["failed_low"] > 0.1
 

@@ -38,28 +38,28 @@ SHARED_Z = {"z": NORMAL | {"level": "shared"}, "a": lognormal(0.5)}
 
 def test_worlds_whose_units_never_end_have_no_end_of_the_band():
     ds = rows(SHARED_Z, {"never_above": 0.5})
-    found = fleet_of(Result(ds), 4)
-    assert found.first[0.5].high.numbers == (np.inf,) * 3
-    assert found.first[0.95].estimate.value == np.inf
-    assert 0 < found.first[0.95].low.low < found.first[0.95].low.high < 2
-    entry = fleet_json(found)["first"]["quantiles"]["0.5"]
+    fleet = fleet_of(Result(ds), 4)
+    assert fleet.first[0.5].high.numbers == (np.inf,) * 3
+    assert fleet.first[0.95].estimate.value == np.inf
+    assert 0 < fleet.first[0.95].low.low < fleet.first[0.95].low.high < 2
+    entry = fleet_json(fleet)["first"]["quantiles"]["0.5"]
     assert entry["band_high"] is None and entry["band_high_never"] is True
     assert entry["band_high_low_never"] is entry["band_high_high_never"] is True
 
 
 def test_a_single_replicate_has_numbers_without_intervals():
-    found = fleet_of(Result(rows(SHARED_Z, method="halton", samples=64)), 50, [0.3])
-    for one in found.by[0.3]:
-        assert np.isfinite([one.estimate.value, one.low.value, one.high.value]).all()
-        assert np.isnan([one.estimate.low, one.low.low, one.high.high]).all()
-    assert any(note.startswith("no intervals: the rows of a 'halton'") for note in found.notes)
+    fleet = fleet_of(Result(rows(SHARED_Z, method="halton", samples=64)), 50, [0.3])
+    for estimate in fleet.by[0.3]:
+        assert np.isfinite([estimate.estimate.value, estimate.low.value, estimate.high.value]).all()
+        assert np.isnan([estimate.estimate.low, estimate.low.low, estimate.high.high]).all()
+    assert any(note.startswith("no intervals: the rows of a 'halton'") for note in fleet.notes)
 
 
 def test_replicates_that_agree_keep_the_interval_of_a_band():
     ds = rows(SHARED_Z, method="halton", samples=64, replicates=8)
-    found = fleet_of(Result(ds), 50, [0.3])
-    for one in (*found.by[0.3], found.first[0.5]):
-        for end in (one.low, one.high):
+    fleet = fleet_of(Result(ds), 50, [0.3])
+    for estimate in (*fleet.by[0.3], fleet.first[0.5]):
+        for end in (estimate.low, estimate.high):
             assert end.low <= end.value <= end.high
 
 
@@ -79,8 +79,8 @@ def test_units_that_do_not_differ_are_counted():
     inputs = SHARED_Z | {"b": lognormal(0.5), "c": {"equals": "b"}}
     ds = rows(inputs, units=2)
     life = np.exp(ds["z"].values / 2)
-    found = fleet_of(Result(ds.assign(life=ds["life"].copy(data=life))), 2, [1.0], plain=True)
-    assert found.by[1.0][0].estimate.value == pytest.approx(2 * np.mean(life < 1))
+    fleet = fleet_of(Result(ds.assign(life=ds["life"].copy(data=life))), 2, [1.0], plain=True)
+    assert fleet.by[1.0][0].estimate.value == pytest.approx(2 * np.mean(life < 1))
 
 
 @pytest.mark.parametrize("units", [2, 8])
@@ -91,9 +91,9 @@ def test_a_few_units_leave_the_ends_of_the_band_open(units):
     for _ in range(20):
         probits = -1.4 - 2 * rng.standard_normal((100, 1))
         ended = rng.random((100, units)) < special.ndtr(probits)
-        found = Noisy(ended[..., None].astype(float), np.ones(1), None)
-        ends = (found(least), 0.95), (found(most), 0.05)
-        held += [one.low < share < one.high for one, share in ends]
+        points = Noisy(ended[..., None].astype(float), np.ones(1), None)
+        ends = (points(least), 0.95), (points(most), 0.05)
+        held += [quantile.low < share < quantile.high for quantile, share in ends]
     assert np.mean(held) >= 0.85
 
 
@@ -103,8 +103,8 @@ def test_a_band_whose_worlds_are_of_two_kinds_is_in_order(count):
     z = np.where(np.arange(100) < count, -3.0, 0.0)
     ds["life"].values *= np.exp((z - ds["z"].values) / 2)
     ds["z"].values[:] = z
-    found = fleet_of(Result(ds), 50, [0.3, 1.0, 2.0], allow=3)
-    for one in (*found.first.values(), *(each for two in found.by.values() for each in two)):
-        assert one.low.value <= one.high.value
-        for end in (one.low, one.high):
+    fleet = fleet_of(Result(ds), 50, [0.3, 1.0, 2.0], allow=3)
+    for estimate in (*fleet.first.values(), *(each for two in fleet.by.values() for each in two)):
+        assert estimate.low.value <= estimate.high.value
+        for end in (estimate.low, estimate.high):
             assert not (end.value < end.low or end.value > end.high)

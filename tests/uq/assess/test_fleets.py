@@ -40,20 +40,20 @@ def test_many_worlds_are_computed_in_blocks(monkeypatch):
 
 def test_lives_as_computed_where_nothing_is_to_be_integrated():
     ds = fleet_result(units=6, samples=50)
-    found = fleet_of(Result(ds), 5, [5e5], allow=1, plain=True)
-    assert found.integrated == ()
+    fleet = fleet_of(Result(ds), 5, [5e5], allow=1, plain=True)
+    assert fleet.integrated == ()
     element = next(elements_of(ds, ["life"]))
     ended = (element.values < 5e5).astype(float).reshape(50, 6, 1)
-    assert found.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
+    assert fleet.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
     with pytest.raises(InputError, match="set units = 7; .* depth is not"):
         fleet_of(Result(ds), 7, plain=True)
 
 
 def test_no_power_of_the_mean():
     """Units of a sample agree: the mean of powers is not the power of the mean."""
-    found = fleet_of(Result(fleet_result()), 50, [5e5]).by[5e5]
-    p = found[0].estimate.value / 50
-    assert found[1].estimate.value > 2 * (1 - p) ** 50
+    by_time = fleet_of(Result(fleet_result()), 50, [5e5]).by[5e5]
+    p = by_time[0].estimate.value / 50
+    assert by_time[1].estimate.value > 2 * (1 - p) ** 50
 
 
 def test_repeats_are_chance_within_a_unit():
@@ -64,18 +64,18 @@ def test_repeats_are_chance_within_a_unit():
     ended = units_of(Result(ds), element).ended(5e5)
     assert ended.shape == (40, 3, 1)
     assert ended[..., 0] == pytest.approx(element.below(5e5).reshape(40, 3, 4).mean(axis=2))
-    found = fleet_of(Result(ds), 2, [5e5]).by[5e5][1].estimate
+    estimate = fleet_of(Result(ds), 2, [5e5]).by[5e5][1].estimate
     pairs = [brute_force(world, 2, 0) for world in ended[..., 0]]
-    assert found.value == pytest.approx(np.mean(pairs))
+    assert estimate.value == pytest.approx(np.mean(pairs))
 
 
 def test_points_over_what_is_shared_state_what_they_assume():
     """Where units are only counted; not where the probability is known in each world."""
     counted_units = fleet_of(Result(fleet_result(units=4, samples=100, depth=LISTED)), 4, [5e5])
-    said = "the 5 and 95 % points assume probits of the units' probability are about normal"
-    assert any(note.startswith(said) for note in counted_units.notes)
-    for one in counted_units.by[5e5]:
-        assert one.low.assumes and one.high.assumes and not one.estimate.assumes
+    sentence = "the 5 and 95 % points assume probits of the units' probability are about normal"
+    assert any(note.startswith(sentence) for note in counted_units.notes)
+    for estimate in counted_units.by[5e5]:
+        assert estimate.low.assumes and estimate.high.assumes and not estimate.estimate.assumes
     assert counted_units.first[0.5].high.assumes
     entry = fleet_json(counted_units)["by"]["500000.0"]["failed"]
     assert "about normal" in entry["band_low_assumes"] and "assumes" not in entry
@@ -83,15 +83,15 @@ def test_points_over_what_is_shared_state_what_they_assume():
     of_numbers = table["assumes"].loc[["failed", "at_most_allowed"]]
     assert all("about normal" in text for text in of_numbers)
     assert not any(api.fleet(fleet_result(), 4, by=5e5)["assumes"])
-    known = fleet_of(Result(fleet_result()), 4, [5e5])
-    assert not any("assume" in note for note in known.notes)
+    fleet = fleet_of(Result(fleet_result()), 4, [5e5])
+    assert not any("assume" in note for note in fleet.notes)
 
 
 def test_a_fleet_of_one_is_a_unit():
     ds = fleet_result()
-    found = fleet_of(Result(ds), 1, [5e5])
+    fleet = fleet_of(Result(ds), 1, [5e5])
     table = summary(ds).loc["life"]
-    assert found.first[0.5].estimate.value == pytest.approx(table["q0.5"], rel=1e-9)
+    assert fleet.first[0.5].estimate.value == pytest.approx(table["q0.5"], rel=1e-9)
 
 
 def test_more_units_than_there_are_is_refused():
@@ -123,9 +123,9 @@ def test_a_horizon_before_the_time_is_refused():
     cut = with_output(ds, "life", np.minimum(life, 1e6), "lifetime", life > 1e6)
     with pytest.raises(InputError, match="censored before 2000000.0 s"):
         fleet_of(Result(cut), 2, [2e6])
-    found = fleet_of(Result(cut), 3, [9e5])
+    fleet = fleet_of(Result(cut), 3, [9e5])
     assert (
-        found.by[9e5][1].estimate.value == fleet_of(Result(ds), 3, [9e5]).by[9e5][1].estimate.value
+        fleet.by[9e5][1].estimate.value == fleet_of(Result(ds), 3, [9e5]).by[9e5][1].estimate.value
     )
 
 
@@ -135,22 +135,22 @@ def test_failed_rows_are_taken_at_best_and_at_worst():
     status, life = ds["status"].values.copy(), ds["life"].values.copy()
     status[::40], life[::40] = 1, np.nan
     lost = ds.assign(status=ds["status"].copy(data=status), life=ds["life"].copy(data=life))
-    found = fleet_of(Result(lost), 4, [5e5])
-    assert found.samples == 90
-    assert any("10 of 400 rows failed" in note for note in found.notes)
-    failed, kept = found.by[5e5]
+    fleet = fleet_of(Result(lost), 4, [5e5])
+    assert fleet.samples == 90
+    assert any("10 of 400 rows failed" in note for note in fleet.notes)
+    failed, kept = fleet.by[5e5]
     whole = fleet_of(Result(ds), 4, [5e5]).by[5e5]
-    for one, truth in zip((failed, kept), whole, strict=True):
-        assert one.failed.low < one.estimate.low < one.estimate.high < one.failed.high
-        assert one.failed.low < truth.estimate.value < one.failed.high
-    first = found.first[0.5]
+    for number, truth in zip((failed, kept), whole, strict=True):
+        assert number.failed.low < number.estimate.low < number.estimate.high < number.failed.high
+        assert number.failed.low < truth.estimate.value < number.failed.high
+    first = fleet.first[0.5]
     assert first.failed.low <= first.estimate.low < first.estimate.high <= first.failed.high
 
 
 def test_no_more_than_the_fleet_can_end():
     kept = fleet_of(Result(fleet_result(units=4, samples=100, depth=LISTED)), 4, [5e5], allow=4)
-    for one in (kept.by[5e5][1].estimate, kept.by[5e5][1].low, kept.by[5e5][1].high):
-        assert one.numbers == (1.0, 1.0, 1.0) and not one.assumes
+    for number in (kept.by[5e5][1].estimate, kept.by[5e5][1].low, kept.by[5e5][1].high):
+        assert number.numbers == (1.0, 1.0, 1.0) and not number.assumes
 
 
 def test_nothing_shared_has_no_band():
@@ -166,8 +166,8 @@ def test_a_few_shared_values_have_no_points_between_them():
     (failed, _) = fleet_of(Result(fleet_result(units=10, **both)), 1, [5e5]).by[5e5]
     assert np.isfinite(failed.estimate.value)
     assert "one of a few values" in failed.low.reason == failed.high.reason
-    known = fleet_of(Result(fleet_result(units=10, rate=listed)), 1, [5e5]).by[5e5][0]
-    assert known.low.value < known.high.value  # each probability is known
+    band = fleet_of(Result(fleet_result(units=10, rate=listed)), 1, [5e5]).by[5e5][0]
+    assert band.low.value < band.high.value  # each probability is known
 
 
 def test_the_noise_of_units_is_no_spread():
@@ -186,16 +186,18 @@ def test_python_terminal_json_and_report_agree(uq, tmp_path, no_other_figures):
     path.write_text(fleet_study(units=2, samples=40).text)
     assert uq("run", path, "-o", result, "--workers", "0").code == 0
     table = api.fleet(api.open_result(result), 100, by=4e5, allow=2)
-    found = strict_json(
+    document = strict_json(
         uq("fleet", result, "--size", "100", "--by", "4e5", "--allow", "2", "--json").out
     )
-    assert (found["size"], found["allow"]) == (100, 2)
-    entry = found["by"]["400000.0"]["at_most_allowed"]
+    assert (document["size"], document["allow"]) == (100, 2)
+    entry = document["by"]["400000.0"]["at_most_allowed"]
     line = table.loc["at_most_allowed"]
     for name in ("value", "low", "high", "band_low", "band_high"):
         assert entry[name] == pytest.approx(line[name])
-    assert found["first"]["quantiles"]["0.5"]["value"] > 0
-    assert found["by"]["400000.0"]["failed"]["value"] == pytest.approx(table.loc["failed"]["value"])
+    assert document["first"]["quantiles"]["0.5"]["value"] > 0
+    assert document["by"]["400000.0"]["failed"]["value"] == pytest.approx(
+        table.loc["failed"]["value"]
+    )
     shown = uq("fleet", result, "--size", "100", "--by", "4e5", "--allow", "2").out
     assert "P(at most 2 have ended)" in shown and "depth integrated exactly" in shown
     assert max(map(len, shown.splitlines())) <= 80

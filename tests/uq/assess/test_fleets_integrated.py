@@ -18,14 +18,14 @@ from uq.stats.counting import at_most
 
 def test_the_first_of_many_by_brute_force():
     """The first of 40,000 units, exactly, and drawn one by one in 400 other worlds."""
-    found = fleet_of(Result(fleet_result(samples=2000)), 40_000).first[0.5]
+    first = fleet_of(Result(fleet_result(samples=2000)), 40_000).first[0.5]
     rng = np.random.default_rng(1)
     depths = np.array([rng.standard_normal(40_000).min() for _ in range(400)])
     lives = 1e6 * np.exp(OWN * depths - SHARED * rng.standard_normal(400))
     low, high = np.sort(lives)[stats.binom(400, 0.5).ppf([0.001, 0.999]).astype(int)]
-    assert low < found.estimate.value < high
+    assert low < first.estimate.value < high
     reached = -np.expm1(np.log(0.5) / 40_000)
-    for share, end in ((0.05, found.low), (0.95, found.high)):
+    for share, end in ((0.05, first.low), (0.95, first.high)):
         truth = 1e6 * np.exp(OWN * special.ndtri(reached) + SHARED * stats.norm.ppf(share))
         assert end.low < truth < end.high
 
@@ -61,17 +61,17 @@ def test_what_is_shared_is_integrated_outside_the_product():
     exponents = element.declared.scales
     units = units_of(Result(ds), element)
     assert units.integrated == ("a", "b")
-    own, shared = abs(exponents["a"]) * OWN, abs(exponents["b"]) * SHARED
+    spread, shared = abs(exponents["a"]) * OWN, abs(exponents["b"]) * SHARED
     drawn = sum(exponents[name] * np.log(ds[name].values) for name in ("a", "b"))
     typical = float(np.exp(np.log(ds["life"].values) - drawn)[0])
     time = typical * np.exp(-1.0)
     z = np.linspace(-8, 8, 4001)
-    p = special.ndtr((-1.0 - shared * z) / own)
+    p = special.ndtr((-1.0 - shared * z) / spread)
     truth = np.average(special.bdtr(2, 100, p), weights=np.exp(-(z**2) / 2))
     kept = fleet_of(Result(ds), 100, [time], allow=2).by[time][1]
     assert kept.estimate.value == pytest.approx(truth, abs=1e-6)
     assert "exact" in kept.estimate.reason
-    best = special.bdtr(2, 100, special.ndtr((-1.0 - shared * stats.norm.ppf(0.95)) / own))
+    best = special.bdtr(2, 100, special.ndtr((-1.0 - shared * stats.norm.ppf(0.95)) / spread))
     assert kept.high.value == pytest.approx(best, abs=1e-3)
 
 
@@ -123,28 +123,28 @@ def test_each_level_is_integrated_where_it_belongs(beside, allow):
     time = float(np.median(ds["life"].values))
     z = np.linspace(-6, 6, 401)
     kept = [
-        brute_force(special.ndtr((np.log(time) - one) / spread).mean(1), size, allow)
+        brute_force(special.ndtr((np.log(time) - log_life) / spread).mean(1), size, allow)
         for at in z
-        for one in rest.reshape(6, 4, repeats) - 2 * SHARED * at
+        for log_life in rest.reshape(6, 4, repeats) - 2 * SHARED * at
     ]
     truth = np.average(np.reshape(kept, (-1, 6)).mean(axis=1), weights=np.exp(-(z**2) / 2))
     units = units_of(Result(ds), next(elements_of(ds, ["life"])))
     assert set(units.integrated) == {"b", *inside}
-    found = units.fleet(size, allow, None)
-    assert found.below(time).value == pytest.approx(1 - truth, abs=5e-3)
-    assert found.below(found.middle(0.3)).value == pytest.approx(0.3, abs=1e-9)
+    integrals = units.fleet(size, allow, None)
+    assert integrals.below(time).value == pytest.approx(1 - truth, abs=5e-3)
+    assert integrals.below(integrals.middle(0.3)).value == pytest.approx(0.3, abs=1e-9)
 
 
 def test_bands_of_units_that_end_together():
     """With nothing own, the life of all units has the law of what they share."""
     ds = scaled_fleet({"b": B_SHARED, "z": NORMAL | {"level": "shared"}}, samples=400, units=1)
     rest = np.exp(ds["z"].values / 2)
-    found = fleet_of(Result(ds), 1000, [1.0]).first[0.5]
-    for one, share in ((found.low, 0.05), (found.estimate, 0.5), (found.high, 0.95)):
-        below = special.ndtr(np.log(one.value / rest) / (2 * SHARED)).mean()
+    first = fleet_of(Result(ds), 1000, [1.0]).first[0.5]
+    for estimate, share in ((first.low, 0.05), (first.estimate, 0.5), (first.high, 0.95)):
+        below = special.ndtr(np.log(estimate.value / rest) / (2 * SHARED)).mean()
         assert below == pytest.approx(share, abs=1e-4)
         truth = np.exp(np.hypot(2 * SHARED, 0.25) * special.ndtri(share))
-        assert one.low < truth < one.high
+        assert estimate.low < truth < estimate.high
 
 
 @pytest.mark.slow
@@ -154,15 +154,15 @@ def test_a_shared_input_that_depends_on_another_is_integrated():
     correlation = 2 * np.sin(np.pi * 0.6 / 6)
     wide = SHARED * np.sqrt(4 + 0.25 - 2 * correlation)
     tables = {"dependence": TIED}
-    for own in ({"z": NORMAL}, {"a": lognormal(OWN, 1.0)}):
-        ds = scaled_fleet(own | shared, samples=300, units=3, **tables)
-        found = fleet_of(Result(ds), 2, [1.0])
-        assert "b" in found.integrated
-        spread = OWN if "a" in own else 0.25
+    for unit_laws in ({"z": NORMAL}, {"a": lognormal(OWN, 1.0)}):
+        ds = scaled_fleet(unit_laws | shared, samples=300, units=3, **tables)
+        fleet = fleet_of(Result(ds), 2, [1.0])
+        assert "b" in fleet.integrated
+        spread = OWN if "a" in unit_laws else 0.25
         z = np.linspace(-6, 6, 2001)
         p = special.ndtr(wide * z / spread)
         truth = np.average((1 - p) ** 2, weights=np.exp(-(z**2) / 2))
-        kept = found.by[1.0][1].estimate
+        kept = fleet.by[1.0][1].estimate
         assert kept.low < truth < kept.high
         assert kept.high - kept.low < 0.12
 

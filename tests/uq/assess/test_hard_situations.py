@@ -106,10 +106,12 @@ def test_an_output_far_from_zero_shows_the_digits_that_tell_rows_apart():
     far = FAR + linear(samples=500)["y"].values
     ds = of_values(far, tolerance={"coverage": 0.95, "confidence": 0.95})
     assert summarised(ds)["outputs"]["z"]["sd"] == pytest.approx(np.std(far - FAR, ddof=1))
-    for one in summarise(Result(ds)).outputs["z"].statistics:
-        if one.key[0] in ("mean", "quantiles", "tolerance"):
-            assert float(one.words()) == pytest.approx(one.estimate.value, abs=0.06)
-            assert len(set(one.interval().split(" to "))) == 2 - (not one.estimate.has_interval)
+    for statistic in summarise(Result(ds)).outputs["z"].statistics:
+        if statistic.key[0] in ("mean", "quantiles", "tolerance"):
+            assert float(statistic.words()) == pytest.approx(statistic.estimate.value, abs=0.06)
+            assert len(set(statistic.interval().split(" to "))) == 2 - (
+                not statistic.estimate.has_interval
+            )
     likely = package.answer(ds).lead.range
     for end in (likely.low, likely.high):
         shown = float(likely.unit.number(end.value)) * likely.unit.per
@@ -122,23 +124,23 @@ def test_squares_that_overflow_or_vanish_change_no_number(size):
     ds = of_values(size * plain["y"].values)
     np.testing.assert_array_equal(package.levels(ds, "z")["share"], package.levels(plain)["share"])
     change = {"uncertain.x1.upper": 0.9}
-    found, expected = (package.what_if(one, change)["sd"].item() for one in (ds, plain))
-    assert found == size * expected
+    sd, expected = (package.what_if(result, change)["sd"].item() for result in (ds, plain))
+    assert sd == size * expected
     screened = linear(method="morris", samples=20)
     large = with_output(screened, "z", size * screened["y"].values)
-    found, expected = (
-        sensitivities(one, output=name)["outputs"][name]
-        for one, name in ((large, "z"), (screened, "y"))
+    entry, expected = (
+        sensitivities(result, output=name)["outputs"][name]
+        for result, name in ((large, "z"), (screened, "y"))
     )
     for kind in ("mu", "sigma"):
-        assert values(found, kind) == [size * value for value in values(expected, kind)]
+        assert values(entry, kind) == [size * value for value in values(expected, kind)]
     replicated = linear(method="latin-hypercube", samples=32, replicates=4)
     inputs = {name: replicated[name].values for name in ("x1", "x2", "x3", "x4")}
-    found, expected = (
+    slope, expected = (
         effects(factor * replicated["y"].values, inputs, replicated["replicate"].values)["x1"].slope
         for factor in (size, 1.0)
     )
-    assert (found.low, found.high) == (size * expected.low, size * expected.high)
+    assert (slope.low, slope.high) == (size * expected.low, size * expected.high)
     for form in (np.asarray, np.exp):  # the intervals of a mean, of a skewed one too
         x = form(3 * replicated["x1"].values)
         ends, scaled = (

@@ -105,8 +105,8 @@ def test_plans_and_convergence_name_and_judge_the_same_number():
     ds = heavy(samples=128)
     work = expected_widths(Result(asking(ds, outputs=["work", "y"])))
     assert work["work"].indices["ST"] == pytest.approx(work["y"].indices["ST"])
-    found = uq.running_estimates(ds, "work")
-    assert set(found[found["estimate"] == "ST x4"]["output"]) == {"log(work)"}
+    table = uq.running_estimates(ds, "work")
+    assert set(table[table["estimate"] == "ST x4"]["output"]) == {"log(work)"}
 
 
 def test_convergence_is_of_one_number_however_few_rows_it_has():
@@ -114,8 +114,8 @@ def test_convergence_is_of_one_number_however_few_rows_it_has():
     # Only the last group has a row that never ends.
     life = np.where(ds["group"] == 63, np.inf, 1 / ds["y"].values)
     ds = asking(with_output(ds, "life", life, "lifetime"), outputs=["life"])
-    found = uq.running_estimates(ds)
-    assert set(found[found["estimate"] == "ST x4"]["output"]) == {"rank(life)"}
+    table = uq.running_estimates(ds)
+    assert set(table[table["estimate"] == "ST x4"]["output"]) == {"rank(life)"}
 
 
 def test_variance_between_regimes_names_what_it_is_of():
@@ -126,10 +126,10 @@ def test_variance_between_regimes_names_what_it_is_of():
     y = ds["y"].values
     ds = with_output(ds, "life", np.exp(y), "lifetime")
     ds = with_output(ds, "late", np.where(y > 9, np.inf, y), "lifetime")
-    found = summarised(asking(ds, outputs=["y", "life", "late"]))["outputs"]
-    of = {name: entry["between_regimes"]["of"] for name, entry in found.items()}
+    outputs = summarised(asking(ds, outputs=["y", "life", "late"]))["outputs"]
+    of = {name: entry["between_regimes"]["of"] for name, entry in outputs.items()}
     assert of == {"y": "y", "life": "log(life)", "late": "rank(late)"}
-    shares = [found[name]["between_regimes"]["value"] for name in ("y", "life")]
+    shares = [outputs[name]["between_regimes"]["value"] for name in ("y", "life")]
     assert shares[0] == pytest.approx(shares[1])
     assert list(uq.regimes(asking(ds, outputs=["y", "life"]))["output"]) == ["y", "log(life)"]
 

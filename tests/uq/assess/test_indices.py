@@ -78,8 +78,8 @@ def test_indices_as_arrays_say_the_same():
     arrays = uq.sensitivity(ds)
     entry = indices(ds)["outputs"]["y"]
     assert list(arrays["parameter"].values) == list(INPUTS)
-    one = arrays.sel(output="y", parameter="x2")
-    assert [float(one[name]) for name in ("ST", "ST_low", "ST_high")] == list(
+    index = arrays.sel(output="y", parameter="x2")
+    assert [float(index[name]) for name in ("ST", "ST_low", "ST_high")] == list(
         entry["ST"]["x2"].values()
     )
     assert float(arrays["S2_high"].sel(output="y", pair="x1,x3")) == entry["S2"]["x1,x3"]["high"]
@@ -97,7 +97,7 @@ def test_all_failed_is_refused_everywhere():
         ds = linear(design, samples=128, settings={"fail_above": -1.0})
         assert (ds["status"] == Status.NON_FINITE).all()
         for method in chosen:
-            found = indices(ds, method)
-            assert "refused" in found["outputs"]["y"]
-            assert found["rows_used"] == 0
+            sensitivity_result = indices(ds, method)
+            assert "refused" in sensitivity_result["outputs"]["y"]
+            assert sensitivity_result["rows_used"] == 0
             assert np.isnan(uq.sensitivity(ds, method).get("S1", np.nan)).all()

@@ -51,20 +51,20 @@ def test_a_share_is_of_the_rows_that_did_not_fail():
     of = study(0.1, above=4.0, samples=200, settings={"fail_above": 0.5})
     ds = computed(of)
     sound = ds["y"].values[~np.isnan(ds["y"].values)]
-    found = stopping.interim_estimate(of.design, Result(ds)).estimate
-    assert len(sound) < 150 and found.value == (sound > 4.0).mean()
-    assert found.low < found.value < found.high
+    estimate = stopping.interim_estimate(of.design, Result(ds)).estimate
+    assert len(sound) < 150 and estimate.value == (sound > 4.0).mean()
+    assert estimate.low < estimate.value < estimate.high
     whole = computed(study(0.1, above=4.0, samples=200))
     narrower = stopping.interim_estimate(of.design, Result(whole)).estimate
-    assert found.high - found.low > 1.2 * (narrower.high - narrower.low)
+    assert estimate.high - estimate.low > 1.2 * (narrower.high - narrower.low)
 
 
 def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
     ds = kinds(samples=256)  # lives of 0.5 to 1.5, censored from 1.3 on
     name = "life[side=left,depth=0.5]"
-    known = look_at(ds, output=name, below=1.0, half_width=0.5)
+    interim = look_at(ds, output=name, below=1.0, half_width=0.5)
     unknown = look_at(ds, output=name, below=1.4, half_width=0.5)
-    assert known.reached and 0.2 < known.estimate.value < 0.4
+    assert interim.reached and 0.2 < interim.estimate.value < 0.4
     assert np.isnan(unknown.estimate.value) and not unknown.reached
 
 
@@ -75,11 +75,11 @@ def test_it_is_said_at_which_look_a_run_knew_enough(tmp_path):
 
 
 def test_a_goal_out_of_reach_is_said_once_at_the_first_look_and_at_the_end(tmp_path):
-    said = []
+    messages = []
     of = study(1e-9, samples=2048)
-    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
+    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=messages.append)
     assert ds.attrs["samples"] == 2048
-    (line,) = [one for one in said if "budget" in one]
+    (line,) = [message for message in messages if "budget" in message]
     assert line.startswith("after 256 samples mean of y is ")
     needed = float(re.search(r"needs about (\S+) samples, more than the budget of 2048", line)[1])
     half = stopping.interim_estimate(of.design, Result(ds)).half_width
@@ -89,9 +89,9 @@ def test_a_goal_out_of_reach_is_said_once_at_the_first_look_and_at_the_end(tmp_p
 
 
 def test_a_goal_within_reach_is_not_called_out_of_reach(tmp_path):
-    said = []
+    messages = []
     of = study(0.07, samples=1024)
     at_end = stopping.interim_estimate(of.design, Result(computed(of)))
     assert at_end.required < at_end.half_width < 2 * at_end.required
-    runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
-    assert not [one for one in said if "budget" in one]
+    runner.run(of, tmp_path / "out.nc", workers=0, say=messages.append)
+    assert not [message for message in messages if "budget" in message]

@@ -75,17 +75,17 @@ def test_bounds_hold_at_once_in_95_percent(how, rows):
 
 def test_a_summary_has_them_beside_each_output():
     ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
-    found = summarised(ds)["outputs"]
-    assert found["work[side=left]"]["joint_bounds"].keys() == {"upper", "rows_needed"}
-    assert found["angle"]["joint_bounds"].keys() == {"lower", "upper", "rows_needed"}
-    assert "joint_bounds" not in found["life[side=left,depth=0.5]"]
+    outputs = summarised(ds)["outputs"]
+    assert outputs["work[side=left]"]["joint_bounds"].keys() == {"upper", "rows_needed"}
+    assert outputs["angle"]["joint_bounds"].keys() == {"lower", "upper", "rows_needed"}
+    assert "joint_bounds" not in outputs["life[side=left,depth=0.5]"]
     # Two sides, two bounds of the angle; rows without an angle say nothing of it.
     defined = ~np.isnan(ds["angle"].values)
     values = [ds["work"].values[defined, 0], ds["work"].values[defined, 1]]
     angle = ds["angle"].values[defined]
     expected = joint_bounds([*values, -angle, angle], 0, 0.95, 0.95)
-    got = [found[f"work[side={side}]"]["joint_bounds"]["upper"] for side in ("left", "right")]
-    got += [-found["angle"]["joint_bounds"]["lower"], found["angle"]["joint_bounds"]["upper"]]
+    got = [outputs[f"work[side={side}]"]["joint_bounds"]["upper"] for side in ("left", "right")]
+    got += [-outputs["angle"]["joint_bounds"]["lower"], outputs["angle"]["joint_bounds"]["upper"]]
     assert got == expected
     assert rows_needed(Result(ds), analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
 
@@ -106,9 +106,9 @@ def test_failed_rows_lie_outside():
     }
     sound = summarised(computed(study_of(tables)))["outputs"]["y"]["joint_bounds"]
     failing = tables | {"settings": {"fail_above": 0.98}}
-    found = summarised(computed(study_of(failing)))["outputs"]["y"]["joint_bounds"]
-    assert sound["rows_needed"] == 93 < found["rows_needed"]
-    assert sound["upper"] is not None and found["upper"] is None
+    statistics = summarised(computed(study_of(failing)))["outputs"]["y"]["joint_bounds"]
+    assert sound["rows_needed"] == 93 < statistics["rows_needed"]
+    assert sound["upper"] is not None and statistics["upper"] is None
 
 
 def test_bounds_that_lack_rows_are_not_settled():
@@ -119,19 +119,19 @@ def test_bounds_that_lack_rows_are_not_settled():
         "analysis": {"joint_bounds": {"y": "both"}, "max_failed": 0.2},
     }
     few = Findings(Result(computed(study_of(tables))))
-    said = "the joint bounds that the study asks for need 93 rows"
-    assert f"Not enough rows: {said}; about 93 rows in all would settle it." in verdict(few)
+    sentence = "the joint bounds that the study asks for need 93 rows"
+    assert f"Not enough rows: {sentence}; about 93 rows in all would settle it." in verdict(few)
     failing = computed(study_of(tables | {"settings": {"fail_above": 0.9}}))
     assert failed(failing).mean() > 0.05  # as many rows as may lie outside
     joint = summarised(failing)["outputs"]["y"]["joint_bounds"]
     assert joint == {"lower": None, "upper": None, "rows_needed": None}
     assert np.isnan(uq.summary(failing)["joint_rows_needed"].item())
-    found = Findings(Result(failing))
-    said = "oo many rows failed for the joint bounds that the study asks for"
-    assert f"T{said}. More rows would not help." in verdict(found)
-    advice = {one.rule: one.text for one in conclude(found).advice}
-    assert f"t{said}" in advice["failed"] and "joint" not in advice.get("rows", "")
-    why = quantities(found)[0].promise.basis
+    findings = Findings(Result(failing))
+    sentence = "oo many rows failed for the joint bounds that the study asks for"
+    assert f"T{sentence}. More rows would not help." in verdict(findings)
+    advice = {remedy.rule: remedy.text for remedy in conclude(findings).advice}
+    assert f"t{sentence}" in advice["failed"] and "joint" not in advice.get("rows", "")
+    why = quantities(findings)[0].promise.basis
     assert "of the rows failed, and count as lying beyond it" in why
 
 
@@ -161,27 +161,31 @@ def test_mistakes_are_one_line(asked, method, words):
 
 def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
-    found = {one.name: one.promise for one in quantities(Findings(Result(ds)))}
+    promises = {quantity.name: quantity.promise for quantity in quantities(Findings(Result(ds)))}
     bounds = summarised(ds)["outputs"]
-    one, angle = found["work[side=left]"], found["angle"]
-    assert one.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(one.lower)
-    assert one.upper > bounds["work[side=left]"]["quantiles"]["0.95"]["value"]
+    work, angle = promises["work[side=left]"], promises["angle"]
+    assert work.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(work.lower)
+    assert work.upper > bounds["work[side=left]"]["quantiles"]["0.95"]["value"]
     words = r"With 95 % confidence, at least 95 % stay below .*, within the joint bounds of work, "
-    assert re.fullmatch(words + "angle.", one.sentence)
+    assert re.fullmatch(words + "angle.", work.sentence)
     assert angle.lower == bounds["angle"]["joint_bounds"]["lower"] < angle.upper
     assert "% of the defined values stay above " in angle.sentence
     assert " and stay below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
-    assert not found["life[side=left,depth=0.5]"].joint
-    said = answer_json(conclude(Findings(Result(ds))))["quantities"]["work[side=left]"]["promise"]
-    assert said["joint"] == ["work", "angle"] and said["upper"] == one.upper
+    assert not promises["life[side=left,depth=0.5]"].joint
+    promise = answer_json(conclude(Findings(Result(ds))))["quantities"]["work[side=left]"][
+        "promise"
+    ]
+    assert promise["joint"] == ["work", "angle"] and promise["upper"] == work.upper
 
 
 def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
     ds = kinds(samples=80, analysis={"joint_bounds": {"work": "upper"}})
-    one = next(one for one in quantities(Findings(Result(ds))) if one.output == "work").promise
-    assert np.isnan(one.upper) and "With 95 % confidence" not in one.sentence
-    assert one.basis.startswith("No joint tolerance bound: it needs 93 rows.")
+    promise = next(
+        quantity for quantity in quantities(Findings(Result(ds))) if quantity.output == "work"
+    ).promise
+    assert np.isnan(promise.upper) and "With 95 % confidence" not in promise.sentence
+    assert promise.basis.startswith("No joint tolerance bound: it needs 93 rows.")
 
 
 def test_both_joint_bounds_of_one_output_are_one_sentence():
@@ -191,6 +195,6 @@ def test_both_joint_bounds_of_one_output_are_one_sentence():
         "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
         "analysis": {"joint_bounds": {"y": "both"}},
     }
-    (one,) = quantities(Findings(Result(computed(study_of(tables)))))
+    (quantity,) = quantities(Findings(Result(computed(study_of(tables)))))
     words = r"With 95 % confidence, at least 95 % stay above \S+ and stay below \S+\."
-    assert re.fullmatch(words, one.promise.sentence), one.promise.sentence
+    assert re.fullmatch(words, quantity.promise.sentence), quantity.promise.sentence

@@ -16,23 +16,23 @@ from uq.result.variables import error_name
 
 def test_shares_of_the_linear_function():
     ds = nested_result(samples=2000, units=3, repeats=3)
-    found = by_level(Result(ds)).outputs["y"]
-    assert found.variance == pytest.approx(14 / 12, rel=0.05)
+    entry = by_level(Result(ds)).outputs["y"]
+    assert entry.variance == pytest.approx(14 / 12, rel=0.05)
     for level, variance in VARIANCES.items():
-        one = found.shares[level]
-        assert one.value == pytest.approx(variance / 14, abs=0.02)
-        assert one.low < one.value < one.high < one.low + 0.08
-    assert sum(found.shares[level].value for level in VARIANCES) == pytest.approx(1.0)
-    assert found.shares["solver"].reason == "the model states no numerical error of it"
+        share = entry.shares[level]
+        assert share.value == pytest.approx(variance / 14, abs=0.02)
+        assert share.low < share.value < share.high < share.low + 0.08
+    assert sum(entry.shares[level].value for level in VARIANCES) == pytest.approx(1.0)
+    assert entry.shares["solver"].reason == "the model states no numerical error of it"
 
 
 def test_the_solver_has_the_share_of_its_stated_error():
     ds = nested_result(samples=200)
     scale = 1e-2
     with_error = with_output(ds, error_name("y"), np.full(ds.sizes["row"], scale))
-    found = by_level(Result(with_error)).outputs
-    assert list(found) == ["y"]
-    assert found["y"].shares["solver"].value == pytest.approx(scale**2 / found["y"].variance)
+    outputs = by_level(Result(with_error)).outputs
+    assert list(outputs) == ["y"]
+    assert outputs["y"].shares["solver"].value == pytest.approx(scale**2 / outputs["y"].variance)
 
 
 def test_lives_are_apportioned_by_their_logarithm():
@@ -40,13 +40,13 @@ def test_lives_are_apportioned_by_their_logarithm():
     life = np.exp(3 * ds["y"].values)
     lives = with_output(ds, "life", life, "lifetime", np.zeros(len(life)))
     error = with_output(lives, error_name("life"), 0.1 * life)
-    found = by_level(Result(asking(error, thresholds={"life": [1e6]}, outputs=["life"]))).outputs
-    assert list(found) == ["log(life)", "P(life<1000000.0)"]
+    outputs = by_level(Result(asking(error, thresholds={"life": [1e6]}, outputs=["life"]))).outputs
+    assert list(outputs) == ["log(life)", "P(life<1000000.0)"]
     expected = by_level(Result(ds)).outputs["y"].shares
     for level in VARIANCES:
-        assert found["log(life)"].shares[level].numbers == pytest.approx(expected[level].numbers)
-    assert found["log(life)"].shares["solver"].value == pytest.approx(
-        0.01 / found["log(life)"].variance
+        assert outputs["log(life)"].shares[level].numbers == pytest.approx(expected[level].numbers)
+    assert outputs["log(life)"].shares["solver"].value == pytest.approx(
+        0.01 / outputs["log(life)"].variance
     )
     endless = with_output(ds, "life", np.where(life > 1e6, np.inf, life), "lifetime", life < 0)
     assert list(by_level(Result(endless), "life").outputs) == ["rank(life)"]
@@ -55,17 +55,17 @@ def test_lives_are_apportioned_by_their_logarithm():
 def test_a_heavy_tail_is_replaced_and_the_note_promises_nothing_else():
     ds = nested_result(samples=100)
     heavy = with_output(ds, "w", np.exp(12 * ds["y"].values))
-    (name, found), *_ = by_level(Result(heavy), "w").outputs.items()
+    (name, entry), *_ = by_level(Result(heavy), "w").outputs.items()
     assert name == "log(w)"
-    assert found.sentences[0].endswith(": these are shares of the variance of its logarithm")
+    assert entry.sentences[0].endswith(": these are shares of the variance of its logarithm")
 
 
 def test_a_random_model_differs_by_chance():
     ds = computed(noisy("monte-carlo", 400, 1, units=2, repeats=2))
-    found = by_level(Result(ds), "y").outputs["y"].shares
-    assert found[SHARED].numbers == (0.0, 0.0, 0.0)
-    assert found[OWN].low < 0.5 < found[OWN].high
-    assert found[CHANCE].low < 0.5 < found[CHANCE].high
+    shares = by_level(Result(ds), "y").outputs["y"].shares
+    assert shares[SHARED].numbers == (0.0, 0.0, 0.0)
+    assert shares[OWN].low < 0.5 < shares[OWN].high
+    assert shares[CHANCE].low < 0.5 < shares[CHANCE].high
     plain = computed(noisy("monte-carlo", 400, 1))
     assert "set repeats = 2" in by_level(Result(plain), "y").outputs["y"].shares[CHANCE].reason
 
@@ -80,29 +80,29 @@ def test_python_terminal_json_and_report_agree(uq, tmp_path, no_other_figures):
     path, result = tmp_path / "nested.toml", tmp_path / "nested.nc"
     path.write_text(nested(samples=20).text)
     assert uq("run", path, "-o", result, "--workers", "0").code == 0
-    known = by_level(Result(api.open_result(result))).outputs["y"].shares
+    shares = by_level(Result(api.open_result(result))).outputs["y"].shares
     table = api.levels(api.open_result(result))
     assert dict(table.sizes) == {"output": 1, "level": 4}
-    found = strict_json(uq("levels", result, "--json").out)
-    assert found["inputs"] == LEVELS
-    assert (found["samples"], found["units"], found["repeats"]) == (20, 3, 2)
-    for level, one in known.items():
+    document = strict_json(uq("levels", result, "--json").out)
+    assert document["inputs"] == LEVELS
+    assert (document["samples"], document["units"], document["repeats"]) == (20, 3, 2)
+    for level, share in shares.items():
         cells = [
             float(table[name].sel(level=level, output="y"))
             for name in ("share", "share_low", "share_high")
         ]
-        assert cells == pytest.approx(one.numbers, nan_ok=True)
-        entry = found["outputs"]["y"][level]
+        assert cells == pytest.approx(share.numbers, nan_ok=True)
+        entry = document["outputs"]["y"][level]
         if level != "solver":
-            assert (entry["value"], entry["low"], entry["high"]) == one.numbers
-    assert found["outputs"]["y"]["solver"]["value"] is None
-    assert found["outputs"]["y"]["solver"]["reason"]
+            assert (entry["value"], entry["low"], entry["high"]) == share.numbers
+    assert document["outputs"]["y"]["solver"]["value"] is None
+    assert document["outputs"]["y"]["solver"]["reason"]
     shown = uq("levels", result).out
-    assert f"{known[OWN].value:.3f}" in shown and "20 samples of 3 units" in shown
+    assert f"{shares[OWN].value:.3f}" in shown and "20 samples of 3 units" in shown
     assert uq("report", result, "-o", tmp_path / "page.html").code == 0
     page = (tmp_path / "page.html").read_text()
     section = page.partition('<section id="levels">')[2].partition("</section>")[0]
-    assert f"{known[SHARED].value:.3f}" in section and "20 samples of 3 units" in section
+    assert f"{shares[SHARED].value:.3f}" in section and "20 samples of 3 units" in section
 
 
 def test_an_unknown_output_is_one_line(uq, tmp_path):

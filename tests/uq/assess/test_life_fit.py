@@ -46,18 +46,18 @@ def test_parameters_are_those_of_openturns():
     life = sample(WEIBULL)
     factory = ot.WeibullMinFactory()
     factory.setKnownParameter([0.0], [2])
-    found = factory.build(ot.Sample(life[:, None])).getParameter()
+    parameters = factory.build(ot.Sample(life[:, None])).getParameter()
     law = fitted(lives(life), "weibull")
-    assert law["scale"] == pytest.approx(found[0], rel=1e-3)
-    assert law["shape"] == pytest.approx(found[1], rel=1e-3)
+    assert law["scale"] == pytest.approx(parameters[0], rel=1e-3)
+    assert law["shape"] == pytest.approx(parameters[1], rel=1e-3)
 
 
 def test_distance_is_that_of_anderson_and_darling():
     z = np.sort(np.random.default_rng(0).normal(size=60))
     z = (z - z.mean()) / z.std(ddof=1)
-    found = anderson_darling(stats.norm.cdf(z)[None], np.ones((1, 60), dtype=bool))[0]
+    distance = anderson_darling(stats.norm.cdf(z)[None], np.ones((1, 60), dtype=bool))[0]
     expected = stats.anderson(z, "norm", method="interpolate").statistic
-    assert found == pytest.approx(expected, rel=1e-9)
+    assert distance == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -65,8 +65,8 @@ def test_distance_is_that_of_anderson_and_darling():
     [(WEIBULL, "weibull", "lognormal"), (LOGNORMAL, "lognormal", "weibull")],
 )
 def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
-    found = uq.life_fits(lives(sample(law)), "life").loc["life"]
-    good, bad = found.loc[right], found.loc[wrong]
+    fits = uq.life_fits(lives(sample(law)), "life").loc["life"]
+    good, bad = fits.loc[right], fits.loc[wrong]
     assert good["p_value"] > 0.05 > bad["p_value"]
     assert "rejected" in bad["refused"] and bad[["B10", "shape", "median"]].isna().all()
     for name, p in B_LIVES.items():
@@ -84,8 +84,10 @@ def test_fits_are_a_table_and_in_json():
     good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
     assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]
     for name in ("B1", "B10", "B50"):
-        found = [good[name], good[f"{name}_low"], good[f"{name}_high"]]
-        assert found == [entries["lognormal"][name][end] for end in ("value", "low", "high")]
+        values_of_row = [good[name], good[f"{name}_low"], good[f"{name}_high"]]
+        assert values_of_row == [
+            entries["lognormal"][name][end] for end in ("value", "low", "high")
+        ]
         assert not good[f"{name}_extrapolated"]
     assert good["sigma_low"] < good["sigma"] < good["sigma_high"]
     assert np.isnan(bad["B10"]) and np.isnan(bad["scale"])
@@ -96,9 +98,9 @@ def test_few_rows_have_the_exact_interval_of_a_lognormal_median():
     law = fitted(lives(life), "lognormal")
     logarithms = np.log(life)
     exact = stats.ttest_1samp(logarithms, 0).confidence_interval()
-    found = np.log(law[["median_low", "median_high"]].to_numpy(float))
+    ends = np.log(law[["median_low", "median_high"]].to_numpy(float))
     # The normal law's interval would be shorter by 6 %.
-    assert found - logarithms.mean() == pytest.approx(exact - logarithms.mean(), rel=0.02)
+    assert ends - logarithms.mean() == pytest.approx(exact - logarithms.mean(), rel=0.02)
 
 
 def test_what_cannot_be_fitted_is_refused():
@@ -111,10 +113,10 @@ def test_what_cannot_be_fitted_is_refused():
         (good, np.arange(400) >= 19, "only 19 rows ended"),
         (np.full(400, 5.0), None, "share fewer than 20 values"),
     ):
-        found = uq.life_fits(lives(values, censored), "life")
-        assert found["refused"].str.contains(sentence).all()
-    found = uq.life_fits(lives(good, method="halton"), "life")
-    assert found["refused"].str.contains("independent rows").all()
+        fits = uq.life_fits(lives(values, censored), "life")
+        assert fits["refused"].str.contains(sentence).all()
+    fits = uq.life_fits(lives(good, method="halton"), "life")
+    assert fits["refused"].str.contains("independent rows").all()
     with pytest.raises(InputError, match="not a lifetime"):
         uq.life_fits(linear(), "y")
 
@@ -138,8 +140,8 @@ def test_b_lives_of_censored_rows_are_those_of_kaplan_and_meier():
     ended = [6, 6, 6, 7, 10, 13, 16, 22, 23]
     left = [6, 9, 10, 11, 17, 19, 20, 25, 32, 32, 34, 35]
     censored = np.r_[np.zeros(9), np.ones(12)]
-    found = summarised(lives(np.r_[ended, left].astype(float), censored))["outputs"]["life"]
-    b50 = found["b_lives"]["B50"]
+    statistics = summarised(lives(np.r_[ended, left].astype(float), censored))["outputs"]["life"]
+    b50 = statistics["b_lives"]["B50"]
     assert (b50["value"], b50["low"], b50["high"]) == (23.0, 13.0, None)
     assert "censoring" in b50["assumes"]
 

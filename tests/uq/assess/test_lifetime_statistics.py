@@ -60,9 +60,9 @@ def test_early_censoring_widens_the_upper_bound_only():
 def test_tolerance_bound_on_never_or_censored_rows():
     analysis = {"tolerance": {"coverage": 0.5, "confidence": 0.95}}
     values = np.r_[np.arange(1.0, 51.0), np.full(50, np.inf)]
-    found = described(lifetimes(values, analysis=analysis), "life")["tolerance"]
-    assert found["lower"] < 50 and found["upper"] is None and found["upper_never"] is True
+    bounds = described(lifetimes(values, analysis=analysis), "life")["tolerance"]
+    assert bounds["lower"] < 50 and bounds["upper"] is None and bounds["upper_never"] is True
     censored = np.isinf(values)
     values[censored] = 51.0
-    found = described(lifetimes(values, censored, analysis), "life")["tolerance"]
-    assert found["lower"] < 50 and found["upper"] is None and found["upper_censored"] is True
+    bounds = described(lifetimes(values, censored, analysis), "life")["tolerance"]
+    assert bounds["lower"] < 50 and bounds["upper"] is None and bounds["upper_censored"] is True

@@ -45,17 +45,19 @@ def test_a_mean_of_which_few_rows_decide_is_covered():
     rng = np.random.default_rng(1)
     rows = [np.where(rng.random(100) < 0.9, 0.0, rng.exponential(size=100)) for _ in range(400)]
     means = [moments(values).mean for values in rows]
-    assert sum(one.low <= 0.1 <= one.high for one in means) >= 0.92 * 400
+    assert sum(mean.low <= 0.1 <= mean.high for mean in means) >= 0.92 * 400
 
 
 def test_a_mean_whose_variance_is_open_comes_with_a_caution(capsys):
     """Of 200 such samples the interval misses in a quarter, mostly beside a caution."""
     rng, law = np.random.default_rng(8), stats.pareto(1.5)
-    found = [moments(law.rvs(200, random_state=rng)) for _ in range(200)]
-    plain = [one for one in found if not one.mean.reason]
-    missed = [one for one in plain if not one.mean.low <= 3.0 <= one.mean.high]
-    assert len(missed) > 30 and sum(one.caution is None for one in missed) <= len(missed) / 3
-    assert not any(one.caution for one in found if one.mean.reason)
+    estimates = [moments(law.rvs(200, random_state=rng)) for _ in range(200)]
+    plain = [estimate for estimate in estimates if not estimate.mean.reason]
+    missed = [estimate for estimate in plain if not estimate.mean.low <= 3.0 <= estimate.mean.high]
+    assert (
+        len(missed) > 30 and sum(estimate.caution is None for estimate in missed) <= len(missed) / 3
+    )
+    assert not any(estimate.caution for estimate in estimates if estimate.mean.reason)
     assert moments(stats.expon().rvs(1000, random_state=rng)).caution is None
 
     ds = heavy(2.2)
@@ -96,8 +98,8 @@ def test_every_reader_reports_it():
     assert enough(ds, "z").loc["z", "estimate"] == "median"
     assert expected_widths(Result(ds))["z"].mean is None
     z = compared(ds, asking(light, outputs=["z"]))["outputs"]["z"]
-    for one in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
-        assert one["low"] is None and one["high"] is None
+    for estimate in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
+        assert estimate["low"] is None and estimate["high"] is None
     value = between_share(ds["z"].values, np.arange(1000) % 2).value
     assert np.isnan(value)
 
@@ -114,8 +116,8 @@ def test_a_variance_that_does_not_exist_is_not_apportioned(design, method):
     ds = linear(method=design, samples=1024)
     share = stats.rankdata(ds["y"].values) / (ds.sizes["row"] + 1)
     ds = asking(with_output(ds, "z", stats.pareto(1.5).ppf(share)), outputs=["z"])
-    found = sensitivities(ds, method, "z")["outputs"]["z"]
-    assert "log(z)" in found["refused"] and "rank(z)" in found["refused"]
+    entry = sensitivities(ds, method, "z")["outputs"]["z"]
+    assert "log(z)" in entry["refused"] and "rank(z)" in entry["refused"]
     for name in ("log(z)", "rank(z)"):
         assert "refused" not in sensitivities(ds, method, name)["outputs"][name]
 
@@ -150,8 +152,8 @@ def test_replicates_that_agree_have_no_interval_of_sd():
 def test_the_sd_of_an_even_design_has_no_bias():
     even = (np.arange(125) + np.random.default_rng(0).random((400, 125))) / 125
     replicate = np.repeat(np.arange(8), 125)
-    found = [standard_deviation(y, replicate) for y in even.reshape(50, 1000)]
-    assert np.mean(found) == pytest.approx(12**-0.5, rel=1e-4)
+    deviations = [standard_deviation(y, replicate) for y in even.reshape(50, 1000)]
+    assert np.mean(deviations) == pytest.approx(12**-0.5, rel=1e-4)
     assert standard_deviation(even[0]) == even[0].std(ddof=1)
 
 
@@ -159,10 +161,10 @@ def test_the_sd_of_an_even_design_has_no_bias():
 def test_an_interval_of_sd_does_not_depend_on_whether_a_sample_looks_light(law, rows):
     """Of 200 lognormal rows, the few samples that look light hold the truth in a fifth."""
     rng = np.random.default_rng(3)
-    found = [moments(law.rvs(rows, random_state=rng)).sd for _ in range(200)]
-    given = [one for one in found if not one.reason]
+    deviations = [moments(law.rvs(rows, random_state=rng)).sd for _ in range(200)]
+    given = [sd for sd in deviations if not sd.reason]
     assert len(given) >= 0.98 * 200
-    assert sum(one.low < law.std() < one.high for one in given) >= 0.91 * len(given)
+    assert sum(estimate.low < law.std() < estimate.high for estimate in given) >= 0.91 * len(given)
 
 
 def test_an_sd_whose_squares_are_equal_has_an_interval_of_the_error_of_its_mean():
@@ -172,8 +174,8 @@ def test_an_sd_whose_squares_are_equal_has_an_interval_of_the_error_of_its_mean(
 
 
 def test_one_row_says_why_it_has_no_scatter_and_equal_rows_need_not():
-    one, constant = moments(np.array([1.0])), moments(np.ones(80))
-    assert one.mean.reason == one.sd.reason == ONE_ROW
+    single, constant = moments(np.array([1.0])), moments(np.ones(80))
+    assert single.mean.reason == single.sd.reason == ONE_ROW
     assert constant.mean.reason == constant.sd.reason == ""
     assert constant.sd.value == 0
 
@@ -183,8 +185,8 @@ def test_the_size_of_values_changes_no_digit_of_their_scatter(size):
     values = np.random.default_rng(7).normal(size=200)
     small, usual = moments(values * size), moments(values)
     for name in ("mean", "sd"):
-        found, known = (getattr(one, name).numbers for one in (small, usual))
-        assert np.array(found) / size == pytest.approx(np.array(known), rel=1e-9)
+        numbers, expected = (getattr(estimates, name).numbers for estimates in (small, usual))
+        assert np.array(numbers) / size == pytest.approx(np.array(expected), rel=1e-9)
 
 
 def test_too_few_independent_rows_give_no_interval_of_the_standard_deviation():

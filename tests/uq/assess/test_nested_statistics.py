@@ -78,15 +78,15 @@ def test_what_depends_on_the_sample_alone_has_the_interval_of_the_samples():
     ds = nested_result(levels=SHARED_ALONE, samples=200, analysis={"thresholds": {"y": [5.0]}})
     alone = one_of_each_sample(ds)
     assert not are_independent(ds) and isinstance(replicates_of(ds), Clusters)
-    found = summarised(ds)["outputs"]["y"]
-    mean = found["mean_interval"]
+    statistics = summarised(ds)["outputs"]["y"]
+    mean = statistics["mean_interval"]
     assert (mean["low"], mean["high"]) == pytest.approx(mean_interval(alone["y"].values))
-    above = found["thresholds"]["5.0"]["above"]
+    above = statistics["thresholds"]["5.0"]["above"]
     assert above["low"] < 0.5 < above["high"]
     assert above["high"] - above["low"] > 0.13  # Wilson's of 1200 rows is 0.056 wide
     assert any(
-        "(200 samples of 3 units, 2 repeats of each): intervals rest on samples" in one
-        for one in summarised(ds)["notes"]
+        "(200 samples of 3 units, 2 repeats of each): intervals rest on samples" in note
+        for note in summarised(ds)["notes"]
     )
 
 
@@ -100,9 +100,9 @@ def test_an_even_design_needs_replicates():
 
 def test_indices_come_from_one_row_of_each_sample():
     ds = nested_result(samples=300)
-    found = sensitivities(Result(ds))
-    assert found.rows_used == 300
-    assert ONE_ROW in found.targets["y"].indices.notes
+    sensitivity_result = sensitivities(Result(ds))
+    assert sensitivity_result.rows_used == 300
+    assert ONE_ROW in sensitivity_result.targets["y"].indices.notes
     few = sensitivities(Result(nested_result(samples=16))).targets["y"]
     assert few.refused.endswith(ONE_ROW)
 
@@ -126,8 +126,8 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
     life, left = rng.exponential(size=512), rng.exponential(size=512)
     seen, cut = np.minimum(life, left), life > left
     curves = [
-        survival(asking(with_output(one, "life", *column), outputs=["life"]), "life")
-        for one, column in (
+        survival(asking(with_output(dataset, "life", *column), outputs=["life"]), "life")
+        for dataset, column in (
             (ds, (np.repeat(seen, times), "lifetime", np.repeat(cut, times))),
             (linear(samples=512), (seen, "lifetime", cut)),
         )
@@ -156,9 +156,9 @@ def test_a_run_stops_by_intervals_of_samples():
     until = {"output": "y", "half_width": 0.01}
     study = nested(levels=SHARED_ALONE, samples=64, units=8, until=until)
     ds = computed(study)
-    found = interim_estimate(study.design, Result(ds)).estimate
+    estimate = interim_estimate(study.design, Result(ds)).estimate
     alone = mean_interval(one_of_each_sample(ds)["y"].values)  # at the only check
-    assert (found.low, found.high) == pytest.approx(alone)
+    assert (estimate.low, estimate.high) == pytest.approx(alone)
 
 
 def test_inputs_are_compared_with_their_laws_by_one_row_of_each_sample():
@@ -179,8 +179,8 @@ def test_regimes_are_described_by_their_own_rows():
         "flag_meanings": "none calm wild",
     }
     codes = (ds["x1"].values > 0.7).astype(np.int8)
-    found = summarised(ds.assign(regime=("row", codes, attrs)))
-    wild = found["regime"]["wild"]
+    statistics = summarised(ds.assign(regime=("row", codes, attrs)))
+    wild = statistics["regime"]["wild"]
     hits = codes[:: len(codes) // 100]
     low, high = share_interval(hits > 0)
     assert (wild["low"], wild["high"]) == pytest.approx((low, high), abs=0.01)
@@ -207,5 +207,5 @@ def test_a_damaged_nesting_is_refused():
 
 def test_the_variance_between_regimes_has_no_interval():
     ds = nested_result(samples=100)
-    found = between_share(ds["y"].values, (ds["x1"].values > 0.5).astype(int), replicates_of(ds))
-    assert 0 < found.value < 1 and not found.has_interval
+    share = between_share(ds["y"].values, (ds["x1"].values > 0.5).astype(int), replicates_of(ds))
+    assert 0 < share.value < 1 and not share.has_interval

@@ -19,9 +19,9 @@ def effects(variances, shape, seed=0):
 def test_interplay_with_what_is_shared_is_own():
     x1, x2 = (np.random.default_rng(i).choice([-1.0, 1.0], (400, 10 * i, 1)) for i in (0, 1))
     x1 = np.random.default_rng(2).choice([-1.0, 1.0], (400, 1, 1))
-    found = nested_shares(x1 * x2)
-    assert found.middle.value == pytest.approx(1.0, abs=0.02)
-    assert found.outer.low == 0.0
+    shares = nested_shares(x1 * x2)
+    assert shares.middle.value == pytest.approx(1.0, abs=0.02)
+    assert shares.outer.low == 0.0
 
 
 def test_components_are_those_of_the_analysis_of_variance():
@@ -36,10 +36,10 @@ def test_components_are_those_of_the_analysis_of_variance():
         (between - within) / repeats,
         within,
     )
-    found = nested_shares(table)
-    assert found.variance == pytest.approx(sum(parts))
-    assert [one.value * found.variance for one in found[:3]] == pytest.approx(parts)
-    assert all("needs 8 samples" in one.reason for one in found[:3])
+    shares = nested_shares(table)
+    assert shares.variance == pytest.approx(sum(parts))
+    assert [share.value * shares.variance for share in shares[:3]] == pytest.approx(parts)
+    assert all("needs 8 samples" in share.reason for share in shares[:3])
 
 
 def test_the_interval_is_a_jackknife_over_samples():
@@ -49,36 +49,36 @@ def test_the_interval_is_a_jackknife_over_samples():
     def logit(share):
         return np.log((share + noise) / (1 - share))
 
-    found = nested_shares(table).outer
+    outer = nested_shares(table).outer
     pseudo = np.array(
         [
-            12 * found.value - 11 * nested_shares(np.delete(table, i, axis=0)).outer.value
+            12 * outer.value - 11 * nested_shares(np.delete(table, i, axis=0)).outer.value
             for i in range(12)
         ]
     )
     squares = (pseudo - pseudo.mean()) ** 2
-    slope = 1 / (found.value + noise) + 1 / (1 - found.value)
+    slope = 1 / (outer.value + noise) + 1 / (1 - outer.value)
     widened = 1 + 2 * (squares.max() / squares.sum()) ** 2
     half = stats.t.ppf(0.975, 11) * slope * np.sqrt(widened * squares.sum() / 11 / 12)
-    assert logit(found.high) - logit(found.value) == pytest.approx(half)
-    assert logit(found.value) - logit(found.low) == pytest.approx(half)
+    assert logit(outer.high) - logit(outer.value) == pytest.approx(half)
+    assert logit(outer.value) - logit(outer.low) == pytest.approx(half)
 
 
 def test_missing_values_leave_the_shares_unbiased():
     table = effects((0.3, 0.3, 0.4), (4000, 4, 3))
     whole = nested_shares(table)
     table[np.random.default_rng(1).random(table.shape) < 0.3] = np.nan
-    found = nested_shares(table)
-    for one, other in zip(found[:3], whole[:3], strict=True):
-        assert one.value == pytest.approx(other.value, abs=0.03)
+    shares = nested_shares(table)
+    for share, other in zip(shares[:3], whole[:3], strict=True):
+        assert share.value == pytest.approx(other.value, abs=0.03)
     table[:10] = np.nan
-    assert nested_shares(table).left_out == found.left_out + 10
+    assert nested_shares(table).left_out == shares.left_out + 10
 
 
 def test_shifts_and_units_change_no_share():
     table = effects((0.3, 0.3, 0.4), (50, 4, 3))
-    one, other = nested_shares(table), nested_shares(1e6 + 1e-3 * table)
-    for before, after in zip(one[:3], other[:3], strict=True):
+    plain, other = nested_shares(table), nested_shares(1e6 + 1e-3 * table)
+    for before, after in zip(plain[:3], other[:3], strict=True):
         assert after.numbers == pytest.approx(before.numbers, rel=1e-6)
 
 
@@ -99,10 +99,10 @@ NONE, ALL, UNKNOWN = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (np.nan, np.nan, np.nan)
 )
 def test_what_is_known_without_an_estimate(varying, shape, expected):
     variances = [float(level in varying) for level in LEVELS.values()]
-    found = shares_of(effects(variances, shape), varying).shares
+    shares = shares_of(effects(variances, shape), varying).shares
     for level, numbers in zip(LEVELS.values(), expected, strict=True):
-        assert found[level].numbers == pytest.approx(numbers, nan_ok=True)
-        assert bool(found[level].reason) == (numbers is UNKNOWN)
+        assert shares[level].numbers == pytest.approx(numbers, nan_ok=True)
+        assert bool(shares[level].reason) == (numbers is UNKNOWN)
 
 
 @pytest.mark.parametrize(
@@ -116,26 +116,28 @@ def test_what_is_known_without_an_estimate(varying, shape, expected):
     ],
 )
 def test_two_levels_are_told_apart_by_what_the_rows_have(varying, shape):
-    variances = [{SHARED: 0.2, OWN: 0.3, CHANCE: 0.5}[one] * (one in varying) for one in VARIANCES]
-    found = shares_of(effects(variances, shape), varying)
+    variances = [
+        {SHARED: 0.2, OWN: 0.3, CHANCE: 0.5}[name] * (name in varying) for name in VARIANCES
+    ]
+    shares = shares_of(effects(variances, shape), varying)
     for level, variance in zip(VARIANCES, variances, strict=True):
-        assert found.shares[level].value == pytest.approx(variance / sum(variances), abs=0.05)
+        assert shares.shares[level].value == pytest.approx(variance / sum(variances), abs=0.05)
 
 
 def test_one_repeat_counts_chance_as_own():
-    found = shares_of(effects((0.2, 0.3, 0.5), (3000, 4, 1)), set(VARIANCES)).shares
-    assert found[OWN].value == pytest.approx(0.8, abs=0.05)
-    assert found[OWN].assumes == "that chance counts as own"
-    assert np.isnan(found[CHANCE].value)
-    assert found[CHANCE].reason == (
+    shares = shares_of(effects((0.2, 0.3, 0.5), (3000, 4, 1)), set(VARIANCES)).shares
+    assert shares[OWN].value == pytest.approx(0.8, abs=0.05)
+    assert shares[OWN].assumes == "that chance counts as own"
+    assert np.isnan(shares[CHANCE].value)
+    assert shares[CHANCE].reason == (
         "a single repeat cannot separate chance from what is own to a unit; set repeats = 2"
     )
 
 
 def test_one_unit_tells_chance_alone():
-    found = shares_of(effects((0.2, 0.3, 0.5), (3000, 1, 4)), set(VARIANCES)).shares
-    assert found[CHANCE].value == pytest.approx(0.5, abs=0.05)
-    assert "set units = 2" in found[SHARED].reason and np.isnan(found[OWN].value)
+    shares = shares_of(effects((0.2, 0.3, 0.5), (3000, 1, 4)), set(VARIANCES)).shares
+    assert shares[CHANCE].value == pytest.approx(0.5, abs=0.05)
+    assert "set units = 2" in shares[SHARED].reason and np.isnan(shares[OWN].value)
 
 
 def test_replicates_of_an_even_design_are_what_is_independent():
@@ -144,8 +146,8 @@ def test_replicates_of_an_even_design_are_what_is_independent():
     alone = nested_shares(table).outer
     assert eight.value == pytest.approx(alone.value)
     assert eight.numbers[1:] != pytest.approx(alone.numbers[1:])
-    one = nested_shares(table, replicate=np.zeros(64, int)).outer
-    assert one.reason == "a single replicate does not show its scatter" and np.isnan(one.low)
+    share = nested_shares(table, replicate=np.zeros(64, int)).outer
+    assert share.reason == "a single replicate does not show its scatter" and np.isnan(share.low)
 
 
 def test_values_that_agree_have_no_shares():
@@ -158,5 +160,5 @@ def test_values_that_agree_have_no_shares():
 def test_where_nothing_is_shared_a_sample_without_some_of_its_rows_is_not_left_out():
     table = effects((0.0, 1.0, 0.0), (20, 3, 1))
     table[4, 1] = table[7] = np.nan
-    found = shares_of(table, {OWN})
-    assert found.left_out == 1 and found.shares[OWN].numbers == ALL
+    shares = shares_of(table, {OWN})
+    assert shares.left_out == 1 and shares.shares[OWN].numbers == ALL

@@ -38,12 +38,12 @@ def below(ds):
 
 def test_a_censored_row_is_not_one_that_never_ends():
     ds = result(*mixed(40_000))
-    found = below(ds)
-    assert found["value"] == pytest.approx(TRUTH, abs=0.012)
-    assert found["low"] < TRUTH < found["high"]
+    probability = below(ds)
+    assert probability["value"] == pytest.approx(TRUTH, abs=0.012)
+    assert probability["low"] < TRUTH < probability["high"]
     curve = survival(ds, "life").sel(time=TIME, method="ffill")
-    assert float(curve["survival"]) == pytest.approx(1 - found["value"])
-    assert found["high"] - found["low"] == pytest.approx(
+    assert float(curve["survival"]) == pytest.approx(1 - probability["value"])
+    assert probability["high"] - probability["low"] == pytest.approx(
         float(curve["high"] - curve["low"]), rel=1e-9
     )
 
@@ -67,7 +67,10 @@ def test_where_never_is_learnt_late_a_row_that_never_ends_stays_at_risk():
 
 def test_without_censored_rows_the_band_is_that_of_all_rows_alike():
     values = np.where(np.arange(500) % 5 < 3, np.inf, np.random.default_rng(3).weibull(2.0, 500))
-    bands = [survival(result(values, np.zeros(500), known), "life") for known in (True, False)]
+    bands = [
+        survival(result(values, np.zeros(500), is_known_at_once), "life")
+        for is_known_at_once in (True, False)
+    ]
     for name in ("survival", "low", "high"):
         np.testing.assert_allclose(bands[0][name], bands[1][name], rtol=1e-9)
 
@@ -76,8 +79,8 @@ def test_without_rows_that_never_end_the_band_is_greenwoods():
     rng = np.random.default_rng(4)
     life, leaving = rng.weibull(2.0, 200), rng.exponential(1.0, 200)
     curve = survival(result(np.minimum(life, leaving), leaving < life), "life")
-    known = leaving >= life
-    seen = stats.CensoredData(uncensored=life[known], right=leaving[~known])
+    is_over = leaving >= life
+    seen = stats.CensoredData(uncensored=life[is_over], right=leaving[~is_over])
     estimate = stats.ecdf(seen).sf
     with pytest.warns(RuntimeWarning, match="undefined"):
         band = estimate.confidence_interval(method="log-log")
@@ -91,9 +94,9 @@ def test_without_rows_that_never_end_the_band_is_greenwoods():
 
 def test_each_replicate_has_its_own_share_that_ends():
     values, censored = mixed(4096, seed=5)
-    found = below(result(values, censored, True, "latin-hypercube", 8))
-    assert found["value"] == pytest.approx(TRUTH, abs=0.04)
-    assert found["low"] < TRUTH < found["high"] < found["low"] + 0.1
+    probability = below(result(values, censored, True, "latin-hypercube", 8))
+    assert probability["value"] == pytest.approx(TRUTH, abs=0.04)
+    assert probability["low"] < TRUTH < probability["high"] < probability["low"] + 0.1
 
 
 def test_a_replicate_in_which_no_row_ends_has_survived():
@@ -111,16 +114,17 @@ def test_an_end_that_censored_rows_might_have_outlived_has_no_band():
 
 
 def test_two_results_are_compared_by_the_same_estimate():
-    one, other = (result(*mixed(4000, seed)) for seed in (1, 2))
-    other.attrs["seed"] = one.attrs["seed"] + 1
-    threshold = compared(one, other)["outputs"]["life"]["thresholds"][repr(TIME)]
-    found = threshold["below"]
-    for which, ds in (("a", one), ("b", other)):
+    first, other = (result(*mixed(4000, seed)) for seed in (1, 2))
+    other.attrs["seed"] = first.attrs["seed"] + 1
+    threshold = compared(first, other)["outputs"]["life"]["thresholds"][repr(TIME)]
+    probability = threshold["below"]
+    for which, ds in (("a", first), ("b", other)):
         assert (
-            found[which]["value"] == below(ds)["value"] and "censoring" in found[which]["assumes"]
+            probability[which]["value"] == below(ds)["value"]
+            and "censoring" in probability[which]["assumes"]
         )
-    apart = found["difference"]
-    assert apart["value"] == pytest.approx(found["b"]["value"] - found["a"]["value"])
+    apart = probability["difference"]
+    assert apart["value"] == pytest.approx(probability["b"]["value"] - probability["a"]["value"])
     assert apart["low"] < 0 < apart["high"] < 0.08
     assert threshold["above"]["difference"]["value"] == pytest.approx(-apart["value"])
 
@@ -129,8 +133,8 @@ def test_machines_say_whether_never_is_known_at_once(tmp_path):
     assert Output("s", "a life", "lifetime").never_known_at_once
     assert EXPONENTIAL_WEAR.outputs["life"].never_known_at_once
     for machine in (BEAM, VIBRATOR):
-        lives = [one for one in machine.outputs.values() if one.has_censored_flag]
-        assert lives and not any(one.never_known_at_once for one in lives)
+        lives = [output for output in machine.outputs.values() if output.has_censored_flag]
+        assert lives and not any(life.never_known_at_once for life in lives)
     ds = kinds()
     assert ds["life"].attrs["never_known_at_once"] == 1
     assert "never_known_at_once" not in ds["work"].attrs

@@ -25,7 +25,9 @@ def life(monkeypatch):
 def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
     table = sensitivity_json(sensitivities(Result(life)))["outputs"]["log(life)"]["S1"]
     ranking = answer_json(answer(life))["quantities"]["life"]["ranking"]
-    shares = {k: v for one in ranking["contributions"] for k, v in one["inputs"].items()}
+    shares = {
+        k: v for contribution in ranking["contributions"] for k, v in contribution["inputs"].items()
+    }
     assert shares["rate"] == table["rate"]
     percent = [round(100 * table["rate"][end]) for end in ("value", "low", "high")]
     text = "{} % ({} to {} %)".format(*percent)
@@ -37,19 +39,19 @@ def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
 
 
 def test_a_bound_is_the_same_in_table_and_answer(life):
-    said = answer_json(answer(life))["quantities"]["life"]["promise"]
-    assert said["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
+    promise = answer_json(answer(life))["quantities"]["life"]["promise"]
+    assert promise["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
     quantile = summarised(life)["outputs"]["life"]["quantiles"]["0.05"]
     for advice in answer(life).advice:
-        for one in advice.own:
-            if one.promised:  # the end of an interval is not called a bound
-                assert "With 95 % confidence" not in one.promised
-                assert one.before.low == pytest.approx(quantile["low"], rel=1e-12)
+        for remedy in advice.own:
+            if remedy.promised:  # the end of an interval is not called a bound
+                assert "With 95 % confidence" not in remedy.promised
+                assert remedy.before.low == pytest.approx(quantile["low"], rel=1e-12)
 
 
 def test_the_bound_of_an_angle_is_that_of_its_magnitude_in_the_table_too():
     ds = kinds(samples=400, analysis={"outputs": ["angle"]})
     ds = asking(ds, tolerance={"coverage": 0.95, "confidence": 0.95}, thresholds={"angle": 0.5})
     bounds = summarised(ds)["outputs"]["angle"]["tolerance"]
-    said = answer_json(answer(ds))["quantities"]["angle"]["promise"]
-    assert np.isfinite(said["upper"]) and said["upper"] == bounds["magnitude"]
+    promise = answer_json(answer(ds))["quantities"]["angle"]["promise"]
+    assert np.isfinite(promise["upper"]) and promise["upper"] == bounds["magnitude"]

@@ -11,15 +11,15 @@ def test_each_end_of_an_interval_is_infinite_on_its_own():
     ds = with_output(linear(samples=64), "life", values, "lifetime")
     ds = asking(ds, outputs=["life"], quantiles=[0.5, 0.8, 0.88], thresholds={"life": [1.5]})
     line = uq.summary(ds).loc["life"]
-    found = summarised(ds)["outputs"]["life"]
+    statistics = summarised(ds)["outputs"]["life"]
     for probability in ("0.5", "0.8", "0.88"):
         for end in ("low", "high"):
-            known = found["quantiles"][probability][end]
+            expected = statistics["quantiles"][probability][end]
             cell = line[f"q{probability}_{end}"]
-            assert cell == (np.inf if known is None else known)
+            assert cell == (np.inf if expected is None else expected)
     assert np.isfinite(line["q0.8"]) and np.isinf(line["q0.8_high"])
     assert np.isinf(line["q0.88"]) and np.isfinite(line["q0.88_low"])
     assert np.isnan(line["mean"]) and line["never"] == 10
-    shares = found["thresholds"]["1.5"]
+    shares = statistics["thresholds"]["1.5"]
     assert line["P(>1.5)"] == shares["above"]["value"] > line["P(<1.5)"]
     assert line["P(<1.5)_high"] == shares["below"]["high"]

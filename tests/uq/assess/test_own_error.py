@@ -35,9 +35,9 @@ def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error(
 
 def test_the_error_is_held_against_the_scatter():
     ds = values_that_err(0.5)
-    found = answer(ds).lead.own_error
-    assert np.isclose(found.share, 0.25 / np.var(ds["y"].values))
-    assert f"is {100 * found.share:.1f} % of the variance" in found.sentence
+    solver_error = answer(ds).lead.own_error
+    assert np.isclose(solver_error.share, 0.25 / np.var(ds["y"].values))
+    assert f"is {100 * solver_error.share:.1f} % of the variance" in solver_error.sentence
     assert "all scatter may be numerical" in answer(values_that_err(2.0)).lead.own_error.sentence
 
 
@@ -78,11 +78,11 @@ def a_life_that_errs(relative):
 
 def test_errors_of_lives_are_relative_and_a_missed_accuracy_is_said():
     ds = a_life_that_errs(0.1)
-    found = answer(ds).lead
-    assert np.isclose(found.own_error.worse[0], 0.9 * found.promise.lower)
-    assert np.isclose(found.own_error.share, 0.01 / np.var(np.log(ds["life"].values)))
-    assert "if every life were overestimated by as much" in found.own_error.sentence
-    assert found.own_error.sentence.endswith("100 % of the rows miss the accuracy asked for, 5 %.")
+    lead = answer(ds).lead
+    assert np.isclose(lead.own_error.worse[0], 0.9 * lead.promise.lower)
+    assert np.isclose(lead.own_error.share, 0.01 / np.var(np.log(ds["life"].values)))
+    assert "if every life were overestimated by as much" in lead.own_error.sentence
+    assert lead.own_error.sentence.endswith("100 % of the rows miss the accuracy asked for, 5 %.")
     assert "miss" not in answer(a_life_that_errs(0.04)).lead.own_error.sentence
 
 
@@ -93,20 +93,20 @@ def test_lives_without_an_end_and_rows_that_state_no_error_stay_as_they_are():
     error[first[:50]], life[first[50:]] = np.nan, np.inf
     error[first[50:]] = np.nan
     ds = ds.assign(life=ds["life"].copy(data=life), life_error=ds["life_error"].copy(data=error))
-    found = answer(ds).lead.own_error
-    assert found.unstated == 50 and "50 rows state no error" in found.sentence
-    assert found.worse[0] == found.bounds[0]
+    solver_error = answer(ds).lead.own_error
+    assert solver_error.unstated == 50 and "50 rows state no error" in solver_error.sentence
+    assert solver_error.worse[0] == solver_error.bounds[0]
 
 
 def test_its_numbers_are_in_the_json_and_are_traced():
     ds = a_life_that_errs(0.1)
-    found = answer_json(answer(ds))["quantities"]["life"]["own_error"]
-    assert found["rows_missing_it"] == 1.0 and found["accuracy"] == 0.05
+    solver_error = answer_json(answer(ds))["quantities"]["life"]["own_error"]
+    assert solver_error["rows_missing_it"] == 1.0 and solver_error["accuracy"] == 0.05
     for name in ("lower", "share_of_variance", "rows_missing_it", "rows_stating_none"):
         traced = uq.trace(ds, f"answer/quantities/life/own_error/{name}")
-        assert traced["value"] == found[name]
+        assert traced["value"] == solver_error[name]
     bound = uq.trace(ds, "answer/quantities/life/own_error/lower")
-    assert [one["code"].rpartition(".")[2] for one in bound["estimators"]] == [
+    assert [estimator["code"].rpartition(".")[2] for estimator in bound["estimators"]] == [
         "off_by_error",
         "tolerance_bounds",
     ]

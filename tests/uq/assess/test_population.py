@@ -104,11 +104,13 @@ def test_a_few_rows_say_what_very_many_say(case):
     many = computed(scaled_study(uncertain, {"seed": 4}, samples=60_000, **tables))["life"].values
     for p in (0.05, 0.4):
         time = np.quantile(many, p, method="inverted_cdf")
-        found = rows.below(time)
-        assert abs(found.value - p) < (found.high - found.low) + 4 * np.sqrt(p * (1 - p) / 60_000)
+        probability = rows.below(time)
+        assert abs(probability.value - p) < (probability.high - probability.low) + 4 * np.sqrt(
+            p * (1 - p) / 60_000
+        )
         plain = Population(rows.element.plain, None).below(time)
-        assert found.high - found.low < 0.9 * (plain.high - plain.low)
-        assert rows.quantile(found.value).value == pytest.approx(time, rel=1e-9)
+        assert probability.high - probability.low < 0.9 * (plain.high - plain.low)
+        assert rows.quantile(probability.value).value == pytest.approx(time, rel=1e-9)
 
 
 def test_the_law_of_a_row_is_the_conditional_distribution():
@@ -147,13 +149,25 @@ def test_bounds_condition_the_law():
 
 def test_everything_that_reads_statistics_follows():
     ds = computed(scaled_study(WHOLE))
-    found, plain = summarised(ds)["outputs"]["life"], summarised(ds, plain=True)["outputs"]["life"]
-    assert found["integrated"]["inputs"] == ["a"] and found["integrated"]["worth"] > 1.5
+    integrated_statistics, plain = (
+        summarised(ds)["outputs"]["life"],
+        summarised(ds, plain=True)["outputs"]["life"],
+    )
+    assert (
+        integrated_statistics["integrated"]["inputs"] == ["a"]
+        and integrated_statistics["integrated"]["worth"] > 1.5
+    )
     assert "integrated" not in plain
-    both = [one["thresholds"]["1.0"]["below"] for one in (found, plain)]
+    both = [
+        statistics_of_kind["thresholds"]["1.0"]["below"]
+        for statistics_of_kind in (integrated_statistics, plain)
+    ]
     assert both[0]["high"] - both[0]["low"] < 0.8 * (both[1]["high"] - both[1]["low"])
     line = summary(ds).loc["life"]
-    assert line["P(<1.0)"] == both[0]["value"] and line["B10"] == found["b_lives"]["B10"]["value"]
+    assert (
+        line["P(<1.0)"] == both[0]["value"]
+        and line["B10"] == integrated_statistics["b_lives"]["B10"]["value"]
+    )
     assert summary(ds, plain=True).loc["life", "P(<1.0)"] == both[1]["value"]
     curve = survival(ds, "life").sel(time=line["q0.5"], method="ffill")
     assert float(curve["low"]) < 0.5 < float(curve["high"])
@@ -179,17 +193,17 @@ def test_each_level_is_integrated_by_itself():
     rows = independent_rows(ds)
     element = next(population(Result(rows), ["life"]))
     inputs = inputs_of(Result(rows))
-    own, world = (
+    unit_part, world = (
         integrated(Result(rows), element.declared, inputs, {level}).law
         for level in ("own", "shared")
     )
-    assert (own.inputs, world.inputs) == (("a",), ("b",))
+    assert (unit_part.inputs, world.inputs) == (("a",), ("b",))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
-    found = sum(
-        w * own.below(element.values * np.exp(longer), 0.7)
+    probability = sum(
+        w * unit_part.below(element.values * np.exp(longer), 0.7)
         for w, longer in zip(weight / weight.sum(), world.longer(z), strict=True)
     )
-    assert found == pytest.approx(element.below(0.7), abs=1e-10)
+    assert probability == pytest.approx(element.below(0.7), abs=1e-10)
 
 
 EXPONENTS = {"a": 1.0, "b": -2.0, "c": 0.5}
@@ -215,10 +229,10 @@ def test_every_level_is_integrated_in_probabilities_quantiles_and_curves(levels)
     def below(time):
         return special.ndtr(np.log(time / rest) / spread).mean()
 
-    found, line = summary(ds).loc["life"], survival(ds, "life")
-    assert found["P(<1.0)"] == pytest.approx(below(1.0), abs=1e-9)
-    assert below(found["B10"]) == pytest.approx(0.1, abs=1e-9)
-    assert below(found["q0.5"]) == pytest.approx(0.5, abs=1e-9)
+    line_of_summary, line = summary(ds).loc["life"], survival(ds, "life")
+    assert line_of_summary["P(<1.0)"] == pytest.approx(below(1.0), abs=1e-9)
+    assert below(line_of_summary["B10"]) == pytest.approx(0.1, abs=1e-9)
+    assert below(line_of_summary["q0.5"]) == pytest.approx(0.5, abs=1e-9)
     assert set(line.attrs["integrated"].split()) == set(levels)
     time = float(line["time"][40])
     assert float(line["survival"][40]) == pytest.approx(1 - below(time), abs=1e-9)
@@ -242,7 +256,7 @@ def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
     mean, variance = law.moments
     logs = np.log(ds["life"].values)
     y = np.linspace(-8, 8, 16_001)
-    steps = np.diff([law.below(np.exp(logs), np.exp(one)) for one in y], axis=0)
+    steps = np.diff([law.below(np.exp(logs), np.exp(value)) for value in y], axis=0)
     middle = (y[1:] + y[:-1]) / 2
     assert mean + logs == pytest.approx(middle @ steps, abs=1e-6)
     assert variance == pytest.approx(middle**2 @ steps - (middle @ steps) ** 2, abs=1e-6)

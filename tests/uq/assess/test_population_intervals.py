@@ -21,12 +21,12 @@ def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice()
     rare = {"analysis": {"outputs": ["life"], "thresholds": {"life": [0.2]}}}
     first, second = (computed(with_seed(scaled_study(WHOLE, **rare), seed)) for seed in (1, 2))
     key = ("life", "P(<0.2)")
-    found = compare(first, second).loc[key]
+    row = compare(first, second).loc[key]
     numbers = [next(population(Result(ds), ["life"])).below(0.2) for ds in (first, second)]
     expected = difference(*map(share_to_compare, numbers), 0.0)
-    assert (found["low"], found["high"]) == pytest.approx((expected.low, expected.high))
+    assert (row["low"], row["high"]) == pytest.approx((expected.low, expected.high))
     alone = difference(*map(weighted_share, numbers), 0.0)
-    assert found["high"] - found["low"] < 0.95 * (alone.high - alone.low)
+    assert row["high"] - row["low"] < 0.95 * (alone.high - alone.low)
 
 
 def test_failed_rows_still_give_bounds():
@@ -37,8 +37,8 @@ def test_failed_rows_still_give_bounds():
 
 def test_few_replicates_of_nested_samples_are_not_few_rows():
     design = {"method": "sobol", "replicates": 4, "units": 2}
-    found = populated(computed(scaled_study(WHOLE, design, samples=32)))[0].below(1.0)
-    assert found.low < 0.5 < found.high and found.high - found.low < 0.2
+    probability = populated(computed(scaled_study(WHOLE, design, samples=32)))[0].below(1.0)
+    assert probability.low < 0.5 < probability.high and probability.high - probability.low < 0.2
 
 
 def test_rows_that_all_failed_have_no_worth():
@@ -48,25 +48,25 @@ def test_rows_that_all_failed_have_no_worth():
 
 def test_probabilities_of_one_but_for_rounding_are_not_exact():
     """Rows that all end show no more than that a longer life is rare."""
-    found = weighted_share(np.full(16, 1 - 2.0**-53))
-    assert found.value == found.high == 1.0 and 0.7 < found.low < 0.85 and not found.reason
+    share = weighted_share(np.full(16, 1 - 2.0**-53))
+    assert share.value == share.high == 1.0 and 0.7 < share.low < 0.85 and not share.reason
     assert weighted_share(np.full(16, 1e-9)).reason == EXACT
 
 
 def test_replicates_give_the_interval_of_other_designs():
     design = {"method": "sobol", "replicates": 8}
     rows, _ = populated(computed(scaled_study(WHOLE, design, samples=64)))
-    found = rows.below(1.0)
-    assert found.low < 0.5 < found.high and found.high - found.low < 0.02
+    probability = rows.below(1.0)
+    assert probability.low < 0.5 < probability.high and probability.high - probability.low < 0.02
     alone, _ = populated(computed(scaled_study(WHOLE, {"method": "sobol"}, samples=64)))
     assert np.isnan(alone.below(1.0).low)
 
 
 def test_rows_that_differ_in_nothing_else_are_exact():
     rows, _ = populated(computed(scaled_study({"a": lognormal(0.5)})))
-    found = rows.quantile(0.1)
-    assert found.value == pytest.approx(np.exp(0.5 * stats.norm.ppf(0.1)), rel=1e-9)
-    assert found.reason == EXACT
+    quantile = rows.quantile(0.1)
+    assert quantile.value == pytest.approx(np.exp(0.5 * stats.norm.ppf(0.1)), rel=1e-9)
+    assert quantile.reason == EXACT
 
 
 def test_a_mean_that_few_rows_carry_is_not_trusted():
@@ -74,8 +74,8 @@ def test_a_mean_that_few_rows_carry_is_not_trusted():
     numbers = np.full(50, 1e-12)
     numbers[0] = 1e-6
     assert effective_rows(numbers) < FEW
-    found = weighted_share(numbers)
-    assert found.low < 1e-300 and found.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
+    share = weighted_share(numbers)
+    assert share.low < 1e-300 and share.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
 
 
 @pytest.mark.parametrize("hits", [15, 185])
@@ -84,7 +84,7 @@ def test_intervals_move_no_faster_than_the_weights_do(hits):
     rest = np.random.default_rng(7).standard_normal(200)
     numbers = special.ndtr(3 * (rest - np.sort(rest)[hits]))
     lines = [weighted_share(numbers, np.exp(x * rest)) for x in np.linspace(-1.5, 1.5, 1001)]
-    steps = np.abs(np.diff([one.numbers for one in lines], axis=0)).max(axis=0)
+    steps = np.abs(np.diff([estimate.numbers for estimate in lines], axis=0)).max(axis=0)
     assert (steps[1:] < 5 * steps[0]).all(), steps
 
 
@@ -122,8 +122,8 @@ def test_intervals_hold_the_truth(spread, rows):
         misses = np.zeros(2)
         for _ in range(400):
             rest = spread * rng.standard_normal(rows)
-            found = weighted_share(special.ndtr(y - rest))
-            misses += found.low > p, found.high < p
+            share = weighted_share(special.ndtr(y - rest))
+            misses += share.low > p, share.high < p
         assert (misses <= 0.05 * 400 + 8).all(), (p, misses)
 
 
@@ -135,6 +135,6 @@ def test_replicates_without_a_heavy_row_do_not_show_their_error():
         order = np.concatenate([random.permutation(128) for _ in range(8)])
         x = -np.log1p(-(order + random.random(1024)) / 128)
         weights = np.exp(x * (1 - 1 / 1.3))
-        found = moments_of_rows(x, weights, EvenReplicates(replicate, x[:, None]))
-        covered.append([one.low <= 1.3 <= one.high for one in found])
+        moments = moments_of_rows(x, weights, EvenReplicates(replicate, x[:, None]))
+        covered.append([estimate.low <= 1.3 <= estimate.high for estimate in moments])
     assert np.mean(covered, axis=0).min() >= 0.9

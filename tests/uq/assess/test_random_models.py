@@ -22,9 +22,9 @@ def test_sobol_indices_leave_the_noise_out_and_tell_its_share():
     entry = sensitivities(computed(noisy(samples=256)))["outputs"]["y"]
     assert entry["ST"]["x2"]["value"] == entry["S1"]["x2"]["value"] == 0
     for name, truth in (("S1", 0.5), ("ST", 0.5)):
-        one = entry[name]["x1"]
-        assert one["value"] == pytest.approx(truth, abs=0.06)
-        assert one["low"] <= truth <= one["high"]
+        index = entry[name]["x1"]
+        assert index["value"] == pytest.approx(truth, abs=0.06)
+        assert index["low"] <= truth <= index["high"]
     noise = entry["noise"]
     assert noise["low"] <= 0.5 <= noise["high"]
     assert noise["high"] - noise["low"] < 0.1
@@ -119,19 +119,19 @@ def test_share_of_noise_covers_its_truth():
 
 def test_plain_statistics_use_a_and_b_alone():
     ds = computed(noisy(samples=64, replicates=4))
-    found = summarised(ds)
-    assert (found["samples"], found["rows_used"]) == (64 * 4 * 5, 64 * 4 * 2)
+    statistics = summarised(ds)
+    assert (statistics["samples"], statistics["rows_used"]) == (64 * 4 * 5, 64 * 4 * 2)
     ends = np.isin(ds["block"].values, [0, 3])
-    assert found["outputs"]["y"]["mean"] == pytest.approx(ds["y"].values[ends].mean())
+    assert statistics["outputs"]["y"]["mean"] == pytest.approx(ds["y"].values[ends].mean())
 
 
 def test_curves_of_one_seed_give_no_plain_statistics(uq, folder):
     # 1040 rows of 16 seeds: of an event of the noise they would tell far too much.
     ds = computed(noisy("fast", 65, 8))
-    found = summarised(ds)
-    assert found["rows_used"] == 0 and found["outputs"]["y"]["mean"] is None
+    statistics = summarised(ds)
+    assert statistics["rows_used"] == 0 and statistics["outputs"]["y"]["mean"] is None
     reason = "share seeds along a curve, as the model is random"
-    assert found["notes"][0].startswith(f"no statistics: the rows of a 'fast' design {reason}")
+    assert statistics["notes"][0].startswith(f"no statistics: the rows of a 'fast' design {reason}")
     with pytest.raises(InputError, match=f"the rows of the first, a 'fast' design, {reason}"):
         compare(ds, ds)
     plain = summarised(computed(noisy("fast", 65, 8, model="PLAIN")))
@@ -151,13 +151,13 @@ def test_a_failed_row_of_the_noise_block_drops_its_group():
     row = int(np.flatnonzero(ds["block"].values == 4)[3])
     y = ds["y"].copy()
     y[row] = np.nan
-    found = sensitivities(with_status(ds.assign(y=y), [row], 2), output="y")
-    assert found["groups_dropped"] == 1 and found["rows_used"] == 63 * 5
+    sensitivity_result = sensitivities(with_status(ds.assign(y=y), [row], 2), output="y")
+    assert sensitivity_result["groups_dropped"] == 1 and sensitivity_result["rows_used"] == 63 * 5
 
 
 def test_arrays_have_the_share_of_noise():
-    found = sensitivity(computed(noisy(samples=64)))
-    share = [float(found[name].sel(output="y")) for name in ("noise_low", "noise", "noise_high")]
+    arrays = sensitivity(computed(noisy(samples=64)))
+    share = [float(arrays[name].sel(output="y")) for name in ("noise_low", "noise", "noise_high")]
     assert share == sorted(share) and share[1] == pytest.approx(0.5, abs=0.1)
 
 

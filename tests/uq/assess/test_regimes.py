@@ -14,9 +14,9 @@ from uq.indices.given_data import DUMMIES
 def test_inputs_of_a_regime_are_distinguished_from_those_of_the_rest():
     # The regime is slow for x1 < 0.5, of x1 in [0.01, 0.99], and x2 plays no part.
     ds = kinds(samples=512, analysis={"outputs": ["work", "regime"]})
-    found = uq.regimes(ds)
-    assert list(found["regime"].values) == ["slow", "fast"]
-    slow = found.sel(regime="slow")
+    table = uq.regimes(ds)
+    assert list(table["regime"].values) == ["slow", "fast"]
+    slow = table.sel(regime="slow")
     assert float(slow["distance"].sel(parameter="x1")) == 1.0
     assert float(slow["distance"].sel(parameter="x2")) < float(slow["distance_dummy"])
     quantiles = slow["input_quantile"].sel(parameter="x1")
@@ -51,7 +51,8 @@ def test_regional_distance_is_scipys_and_its_dummies_share_its_null():
     # The largest of 19 lies about the 95 % quantile of the law of the distance.
     rng, n = np.random.default_rng(3), int(hits.sum())
     null = [
-        stats.ks_2samp(one[:n], one[n:], method="asymp").statistic for one in rng.random((400, 256))
+        stats.ks_2samp(draws[:n], draws[n:], method="asymp").statistic
+        for draws in rng.random((400, 256))
     ]
     assert DUMMIES == 19
     assert np.quantile(null, 0.6) < entry["dummy"]["KS"] < np.quantile(null, 0.999)
@@ -64,9 +65,9 @@ def test_regional_needs_an_event():
     assert "not an event" in refused
     y = linear(samples=128)["y"].values
     ds = asking(with_output(linear(samples=128), "life", y, "lifetime"), thresholds={"life": 5.0})
-    found = sensitivities(ds, "regional")["outputs"]
-    assert list(found) == ["P(life<5.0)"]
-    assert found["P(life<5.0)"]["KS"]["x4"]["value"] > found["P(life<5.0)"]["dummy"]["KS"]
+    outputs = sensitivities(ds, "regional")["outputs"]
+    assert list(outputs) == ["P(life<5.0)"]
+    assert outputs["P(life<5.0)"]["KS"]["x4"]["value"] > outputs["P(life<5.0)"]["dummy"]["KS"]
 
 
 def test_sobol_indices_of_a_regime_are_those_of_its_indicator():
@@ -97,8 +98,8 @@ def test_variance_between_regimes_of_noise_has_no_interval():
     # Of independent rows, less what chance makes of it: 1 - (10/59) 3/2.
     assert between_share(four, pairs).value == pytest.approx(44 / 59)
     for y, codes in (([1.0, 1.0, 1.0, 1.0], [0, 0, 1, 1]), ([1.0, 2.0], [0, 0]), ([], [])):
-        found = between_share(np.array(y), np.array(codes, dtype=int))
-        assert np.isnan(found.numbers).all()
+        share = between_share(np.array(y), np.array(codes, dtype=int))
+        assert np.isnan(share.numbers).all()
 
 
 def test_variance_may_lie_between_regimes_alone():
@@ -125,9 +126,9 @@ def test_variance_between_regimes_is_as_uncertain_as_the_jackknife_finds_it():
 def test_statistics_within_a_regime():
     ds = kinds(samples=400)
     fast = ds["x1"].values > 0.5
-    found = summarised(ds, regime="fast")
-    assert found["rows_used"] == fast.sum() and found["regime"]["slow"]["count"] == 0
-    work = found["outputs"]["work[side=left]"]
+    statistics = summarised(ds, regime="fast")
+    assert statistics["rows_used"] == fast.sum() and statistics["regime"]["slow"]["count"] == 0
+    work = statistics["outputs"]["work[side=left]"]
     assert work["mean"] == pytest.approx(ds["x1"].values[fast].mean())
     # A failed row without a regime may have belonged to this one: it counts as failed.
     ds["work"][3] = np.nan
@@ -139,9 +140,12 @@ def test_statistics_within_a_regime():
 
 def test_indices_within_a_regime_assume_no_independent_inputs():
     ds = kinds(samples=400, analysis={"outputs": ["work"]})
-    found = sensitivities(ds, regime="fast")
-    assert found["method"] == "delta" and found["rows_used"] == (ds["x1"].values > 0.5).sum()
-    entry = found["outputs"]["work[side=left]"]
+    sensitivity_result = sensitivities(ds, regime="fast")
+    assert (
+        sensitivity_result["method"] == "delta"
+        and sensitivity_result["rows_used"] == (ds["x1"].values > 0.5).sum()
+    )
+    entry = sensitivity_result["outputs"]["work[side=left]"]
     assert entry["delta"]["x1"]["value"] > entry["dummy"]["delta"] > 0
     with pytest.raises(InputError, match="within a regime the inputs depend on each other"):
         sensitivities(ds, "rbd-fast", regime="fast")

@@ -48,8 +48,8 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
         "Independent input: factor on x1",
     ]
     for axes in figure.axes:
-        found, stated = (patch.get_data().values for patch in axes.patches)
-        np.testing.assert_allclose(found, stated, atol=2e-3)
+        sampled, stated = (patch.get_data().values for patch in axes.patches)
+        np.testing.assert_allclose(sampled, stated, atol=2e-3)
         assert stated.sum() == pytest.approx(1, abs=1e-3)
     bell = figure.axes[0].patches[1].get_data()
     law = np.diff(stats.norm(0.5, 0.05).cdf(bell.edges))

@@ -35,13 +35,13 @@ def test_replicates_of_a_plain_sample_are_just_rows():
 
 def test_saltelli_is_described_by_its_independent_rows_and_counted_by_all():
     ds = linear("saltelli", samples=32, replicates=4, settings={"fail_above": 0.9})
-    found = summarised(ds)
+    statistics = summarised(ds)
     ends = ds.isel(row=np.isin(ds["block"], [0, 5]))
-    assert found["samples"] == 32 * 4 * 6 and found["rows_used"] == 32 * 4 * 2
-    assert found["outputs"]["y"]["mean"] == pytest.approx(float(ends["y"].mean()))
-    assert found["outputs"]["y"]["failed"] == int(ends["y"].isnull().sum())
-    assert found["status"]["non-finite"] == int(ds["y"].isnull().sum())
-    assert sum(found["status"].values()) == ds.sizes["row"]
+    assert statistics["samples"] == 32 * 4 * 6 and statistics["rows_used"] == 32 * 4 * 2
+    assert statistics["outputs"]["y"]["mean"] == pytest.approx(float(ends["y"].mean()))
+    assert statistics["outputs"]["y"]["failed"] == int(ends["y"].isnull().sum())
+    assert statistics["status"]["non-finite"] == int(ds["y"].isnull().sum())
+    assert sum(statistics["status"].values()) == ds.sizes["row"]
 
 
 @pytest.mark.parametrize("method", ["latin-hypercube", "sobol", "halton", "saltelli"])
@@ -134,24 +134,24 @@ def test_tolerance_is_for_independent_rows_only():
 
 def test_every_kind_of_output_is_described_by_element():
     ds = kinds(samples=300, analysis={"thresholds": {"angle": 0.5}})
-    found = summarised(ds)
+    statistics = summarised(ds)
     lives = [
         f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
     ]
-    assert list(found["outputs"]) == ["work[side=left]", "work[side=right]", *lives, "angle"]
-    assert found["outputs"]["work[side=left]"]["units"] == "W"
+    assert list(statistics["outputs"]) == ["work[side=left]", "work[side=right]", *lives, "angle"]
+    assert statistics["outputs"]["work[side=left]"]["units"] == "W"
     x1, x2 = ds["x1"].values, ds["x2"].values
     for name in lives:
-        assert found["outputs"][name]["never"] == (x1 < 0.2).sum()
-        assert found["outputs"][name]["censored"] == (x1 > 0.8).sum()
-    angle = found["outputs"]["angle"]
+        assert statistics["outputs"][name]["never"] == (x1 < 0.2).sum()
+        assert statistics["outputs"][name]["censored"] == (x1 > 0.8).sum()
+    angle = statistics["outputs"]["angle"]
     assert angle["undefined"] == (x2 < 0.2).sum() > 0
     assert angle["failed"] == 0
     shares = angle["thresholds"]["0.5"]
     parts = shares["above"]["value"] + shares["below"]["value"] + shares["undefined"]
     assert parts == pytest.approx(1)
     assert shares["undefined"] == pytest.approx(angle["undefined"] / (300 - angle["failed"]))
-    assert set(found["status"]) == {"ok", "out-of-budget"}
+    assert set(statistics["status"]) == {"ok", "out-of-budget"}
 
 
 def test_thresholds_of_an_angle_are_about_its_magnitude():
@@ -201,7 +201,7 @@ def test_the_table_says_what_the_command_prints():
         tolerance={"coverage": 0.95, "confidence": 0.95},
         thresholds={"life": [30.5, 1e6]},
     )
-    table, found = uq.summary(ds), summarised(ds)["outputs"]
+    table, outputs = uq.summary(ds), summarised(ds)["outputs"]
     shares = [column for column in table.columns if column.startswith("P(")]
     assert shares == [
         f"P({sign}{threshold}){end}"
@@ -211,14 +211,14 @@ def test_the_table_says_what_the_command_prints():
     ]
     assert table.loc["y", shares].isna().all()
     y, life = table.loc["y"], table.loc["life"]
-    bounds = found["y"]["tolerance"]
+    bounds = outputs["y"]["tolerance"]
     assert (y["tolerance_lower"], y["tolerance_upper"]) == (bounds["lower"], bounds["upper"])
     assert life["tolerance_lower"] == 2.0 and life["tolerance_upper"] == np.inf
     assert list(table["tolerance_rows_needed"]) == [59, 59]
     assert (life["P(>30.5)"], life["P(<30.5)"]) == (0.7, 0.3)
-    assert life["P(>30.5)_low"] == found["life"]["thresholds"]["30.5"]["above"]["low"]
+    assert life["P(>30.5)_low"] == outputs["life"]["thresholds"]["30.5"]["above"]["low"]
     assert np.isnan(life["mean"]) and life["never"] == 40
-    b10 = found["life"]["b_lives"]["B10"]
+    b10 = outputs["life"]["b_lives"]["B10"]
     assert (life["B10_low"], life["B10"], life["B10_high"]) == (
         b10["low"],
         b10["value"],

@@ -35,34 +35,34 @@ def entry_of(ds):
 def test_shapley_effects_of_a_factor_are_those_of_what_varies_on_its_own():
     # y = a (1 + f) + c: what a does alone 4, f alone 1, both together 0.01, c 1.
     parts = np.array([4 + 0.005, 1 + 0.005, 1])
-    found = entry_of(result("shapley", 4096))["shapley"]
-    for one, truth in zip(found.values(), parts / parts.sum(), strict=True):
-        assert one["low"] <= truth <= one["high"]
-        assert one["value"] == pytest.approx(truth, abs=0.03)
+    effects = entry_of(result("shapley", 4096))["shapley"]
+    for estimate, truth in zip(effects.values(), parts / parts.sum(), strict=True):
+        assert estimate["low"] <= truth <= estimate["high"]
+        assert estimate["value"] == pytest.approx(truth, abs=0.03)
 
 
 def test_effects_of_an_input_that_varies_by_a_tiny_part_of_its_size_are_seen():
     # A step of c moves y by 1e-10 of c, beyond the rounding of c by far.
     far = {"distribution": "uniform", "lower": 900.0, "upper": 900.0 + 1e-10}
-    found = entry_of(result("morris", 32, c=far))
+    entry = entry_of(result("morris", 32, c=far))
     # y is rounded to 1e-13.
-    assert found["mu_star"]["c"]["value"] == pytest.approx(1e-10, rel=0.02)
+    assert entry["mu_star"]["c"]["value"] == pytest.approx(1e-10, rel=0.02)
 
 
 def test_no_interval_is_made_of_rounding():
     # The sum is rounded, so that equal effects differ by 1e-14.
-    found = entry_of(result("morris", 50, 4, factor=A))
-    assert found["sigma"]["c"] == {"value": 0.0, "low": None, "high": None}
-    assert found["mu"]["c"]["low"] is None
+    entry = entry_of(result("morris", 50, 4, factor=A))
+    assert entry["sigma"]["c"] == {"value": 0.0, "low": None, "high": None}
+    assert entry["mu"]["c"]["low"] is None
 
 
 def test_steps_of_a_factor_are_counted_once_each():
     # Steps of the factor alone move b by a, by half of b's range and down where a is negative.
     below = {"distribution": "uniform", "lower": -12.0, "upper": -8.0}
     factor = {"distribution": "uniform", "lower": 1.0, "upper": 2.0}
-    found = entry_of(result("morris", 64, a=below, factor=factor))
-    assert found["mu"]["b"]["value"] == pytest.approx(-10.0, abs=0.7)
-    assert found["mu"]["a"]["value"] == pytest.approx(4 * 2.5, abs=0.7)
+    entry = entry_of(result("morris", 64, a=below, factor=factor))
+    assert entry["mu"]["b"]["value"] == pytest.approx(-10.0, abs=0.7)
+    assert entry["mu"]["a"]["value"] == pytest.approx(4 * 2.5, abs=0.7)
 
 
 @pytest.mark.parametrize("method", ["shapley", "morris"])

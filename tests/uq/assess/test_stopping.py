@@ -32,7 +32,10 @@ def test_a_run_stops_at_the_first_look_that_knows_enough(tmp_path, method, repli
     assert stopping.interim_estimate(of.design, Result(ds)).reached
     assert stopped < samples
     earlier = [computed(of.with_samples(size)) for size in sizes if size < stopped]
-    assert not any(stopping.interim_estimate(of.design, Result(one)).reached for one in earlier)
+    assert not any(
+        stopping.interim_estimate(of.design, Result(earlier_rows)).reached
+        for earlier_rows in earlier
+    )
 
 
 def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
@@ -104,11 +107,11 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
             if place == "cut":  # enough is known and the file is not written
                 patch.setattr(runner.disk_store.DiskStore, "dataset", raising)
             runner.run(of, path, progress=killed_at(total // 2) if place == "chunk" else None)
-        found = run_status(path)
-        assert found.state == "interrupted" or place == "cut"
+        status = run_status(path)
+        assert status.state == "interrupted" or place == "cut"
         reports = []
         runner.run(of, path, progress=reports.append)
-        assert reports[0].done == reports[0].found == found.done > 0
+        assert reports[0].done == reports[0].found == status.done > 0
         assert reports[-1].done == reports[-1].total == total
         assert whole(path) == whole(folder / "once.nc")
         assert run_status(path).state == "complete"
@@ -218,10 +221,10 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
     of = study(half_width, samples=2048, **estimate)
     held, stopped = [], []
     for seed in range(300):
-        one = with_seed(of, seed)
-        ds = computed(one)
-        for size in stopping.interim_sizes(one.design):
-            seen = stopping.interim_estimate(one.design, Result(ds.isel(row=slice(size))))
+        seeded = with_seed(of, seed)
+        ds = computed(seeded)
+        for size in stopping.interim_sizes(seeded.design):
+            seen = stopping.interim_estimate(seeded.design, Result(ds.isel(row=slice(size))))
             if seen.reached:
                 break
         low, high = seen.estimate.numbers[1:]

@@ -70,11 +70,15 @@ def test_an_index_is_that_of_the_sensitivity(monkeypatch, more, widest):
     of = study(1.0, samples=64, method="saltelli", replicates=8, index="S1", **more)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    found = sensitivity_json(sensitivities(Result(ds)))["outputs"]["y"]["S1"]
-    halves = {name: (one["high"] - one["low"]) / 2 for name, one in found.items()}
+    index_values = sensitivity_json(sensitivities(Result(ds)))["outputs"]["y"]["S1"]
+    halves = {
+        name: (estimate["high"] - estimate["low"]) / 2 for name, estimate in index_values.items()
+    }
     if "difference" in more:
         assert seen.what == widest
-        assert seen.estimate.value == pytest.approx(found["x3"]["value"] - found["x4"]["value"])
+        assert seen.estimate.value == pytest.approx(
+            index_values["x3"]["value"] - index_values["x4"]["value"]
+        )
         assert seen.half_width < halves["x3"] + halves["x4"]
         return
     name = more.get("input") or max(halves, key=halves.get)
@@ -185,8 +189,8 @@ def test_a_run_may_stop_at_the_index_of_all_elements_together(monkeypatch, desig
     every = sensitivity_json(sensitivities(Result(ds), output="front[:]"))["outputs"]["front[:]"][
         index
     ]
-    known = {name: one for name, one in every.items() if one["low"] is not None}
-    halves = {name: (one["high"] - one["low"]) / 2 for name, one in known.items()}
+    settled = {name: estimate for name, estimate in every.items() if estimate["low"] is not None}
+    halves = {name: (estimate["high"] - estimate["low"]) / 2 for name, estimate in settled.items()}
     widest = max(halves, key=halves.get)
     assert seen.what == f"{index} {widest} of front[:]"
     assert seen.half_width == pytest.approx(halves[widest], rel=1e-12)

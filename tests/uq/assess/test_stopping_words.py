@@ -33,10 +33,12 @@ def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
 def test_a_life_that_has_no_such_number_is_announced_once(tmp_path, until, more, line):
     design = tables({"output": "life", "half_width": "1 days", **until}, samples=512)
     given = design | {"uncertain": {"rate": WEAR["rate"]}} | more
-    said = []
-    runner.run(study_of(given, "exponential-wear"), tmp_path / "out.nc", workers=0, say=said.append)
-    (one,) = [one for one in said if "budget" in one]
-    assert re.match(f"after 256 samples {line}.*; while that is so .* its budget of 512", one)
+    messages = []
+    runner.run(
+        study_of(given, "exponential-wear"), tmp_path / "out.nc", workers=0, say=messages.append
+    )
+    (message,) = [text for text in messages if "budget" in text]
+    assert re.match(f"after 256 samples {line}.*; while that is so .* its budget of 512", message)
 
 
 @pytest.mark.parametrize("method", ["saltelli", "shapley"])
@@ -46,9 +48,9 @@ def test_an_input_without_effect_that_a_run_waits_for_is_announced(tmp_path, met
     until = {"output": "y", "index": index, "input": "x2", "half_width": 0.1}
     given = tables(until, samples, method, replicates)
     of = study_of(given | {"uncertain": PAIR}, "sample_models:PLAIN")
-    said = []
-    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
-    (line,) = [one for one in said if "budget" in one]
+    messages = []
+    ds = runner.run(of, tmp_path / "out.nc", workers=0, say=messages.append)
+    (line,) = [message for message in messages if "budget" in message]
     words = f"{index} x2 of y is 0 and has no interval (no row shows an effect)"
     assert words in line and words in summarised(ds)["notes"][0]
 

@@ -32,12 +32,12 @@ def test_the_axes_say_what_has_happened(locking):
 
 def test_the_latest_time_is_promised(locking):
     parts = summarise(Result(locking)).outputs["locking"].parts
-    labels = [one.label for one in parts["b_lives"]]
+    labels = [statistic.label for statistic in parts["b_lives"]]
     assert "10 % by" in labels and "B10" not in labels
     assert "B10" in summarised(locking)["outputs"]["locking"]["b_lives"]  # a key is kept
-    found = answer(locking).lead
-    assert np.isnan(found.promise.lower) and np.isfinite(found.promise.upper)
-    assert any("succeed within 2 s" in str(event) for event in found.events)
+    lead = answer(locking).lead
+    assert np.isnan(lead.promise.lower) and np.isfinite(lead.promise.upper)
+    assert any("succeed within 2 s" in str(event) for event in lead.events)
 
 
 def test_the_vibrator_declares_its_success(locking):
@@ -47,14 +47,14 @@ def test_the_vibrator_declares_its_success(locking):
 
 def test_a_report_speaks_of_success(locking):
     table = next(
-        one
-        for one in result_tables(outcomes(Result(locking), summarise(Result(locking))))
-        if one.caption.startswith("Times by which")
+        found_table
+        for found_table in result_tables(outcomes(Result(locking), summarise(Result(locking))))
+        if found_table.caption.startswith("Times by which")
     )
     assert table.header[2:5] == ("1 % by", "10 % by", "50 % by")
     never = locking.copy(deep=True)
     never["locking"][:100] = np.inf
-    found = answer(asking(never, outputs=["locking"])).lead.promise
-    assert found.reason == "" or "too few succeed" in found.reason
+    promise = answer(asking(never, outputs=["locking"])).lead.promise
+    assert promise.reason == "" or "too few succeed" in promise.reason
     tables = list(result_tables(outcomes(Result(never), summarise(Result(never)))))
-    assert any("rows never succeeding" in one.header for one in tables)
+    assert any("rows never succeeding" in shown.header for shown in tables)

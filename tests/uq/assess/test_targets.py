@@ -24,23 +24,23 @@ def alone(ds, values):
 
 def test_lives_that_all_end_are_judged_by_logarithm_and_by_the_studys_own_times():
     ds = lives(lambda y: 1 / y**4, thresholds=[0.001, 0.01])
-    found = indices(ds)["outputs"]
-    assert list(found) == ["log(life)", "P(life<0.001)", "P(life<0.01)"]
-    assert values(found["log(life)"], "ST") == pytest.approx(alone(ds, np.log(ds["y"].values)))
-    assert values(found["P(life<0.01)"], "ST") == pytest.approx(alone(ds, ds["life"] < 0.01))
-    assert not any("logarithm" in note for note in found["log(life)"]["notes"])
+    outputs = indices(ds)["outputs"]
+    assert list(outputs) == ["log(life)", "P(life<0.001)", "P(life<0.01)"]
+    assert values(outputs["log(life)"], "ST") == pytest.approx(alone(ds, np.log(ds["y"].values)))
+    assert values(outputs["P(life<0.01)"], "ST") == pytest.approx(alone(ds, ds["life"] < 0.01))
+    assert not any("logarithm" in note for note in outputs["log(life)"]["notes"])
 
 
 def test_lives_that_may_never_end_are_judged_by_rank():
     ds = lives(
         lambda y: np.where(y > 1, 1 / np.maximum(y - 1, 1e-9), np.inf), thresholds=[0.2, 0.5]
     )
-    found = indices(ds)["outputs"]
-    assert list(found) == ["rank(life)", "P(life<0.2)", "P(life<0.5)"]
+    outputs = indices(ds)["outputs"]
+    assert list(outputs) == ["rank(life)", "P(life<0.2)", "P(life<0.5)"]
     ranks = stats.rankdata(-np.maximum(ds["y"].values, 1))
-    assert values(found["rank(life)"], "ST") == pytest.approx(alone(ds, ranks))
+    assert values(outputs["rank(life)"], "ST") == pytest.approx(alone(ds, ranks))
     never = int(np.isinf(ds["life"]).sum())
-    assert f"{never} rows that never end" in found["rank(life)"]["notes"][0]
+    assert f"{never} rows that never end" in outputs["rank(life)"]["notes"][0]
     refused = indices(ds, output="log(life)")["outputs"]["log(life)"]["refused"]
     assert f"{never} never end" in refused and "rank(life)" in refused
     # The rate of a life that never ends is 0; here it is max(y - 1, 0).
@@ -68,13 +68,13 @@ def test_lives_censored_at_one_horizon_share_the_highest_rank():
     free = lives(lambda y: 1 / y)
     censored = 1 / free["y"].values > 1 / 3
     ds = lives(censored_at_a_third, censored, [0.2, 0.33, 0.7])
-    found = indices(ds)["outputs"]
-    assert values(found["rank(life)"], "ST") == pytest.approx(
+    outputs = indices(ds)["outputs"]
+    assert values(outputs["rank(life)"], "ST") == pytest.approx(
         alone(ds, stats.rankdata(censored_at_a_third(ds["y"].values)))
     )
-    assert f"{censored.sum()} of 1536 rows" in found["P(life<0.7)"]["refused"]
+    assert f"{censored.sum()} of 1536 rows" in outputs["P(life<0.7)"]["refused"]
     for name in ("P(life<0.2)", "P(life<0.33)"):
-        assert found[name]["ST"]["x4"]["value"] > 0.2
+        assert outputs[name]["ST"]["x4"]["value"] > 0.2
     for name in ("log(life)", "rate(life)"):
         assert "censored" in indices(ds, output=name)["outputs"][name]["refused"]
 
@@ -82,11 +82,12 @@ def test_lives_censored_at_one_horizon_share_the_highest_rank():
 def test_ranks_of_rows_censored_while_others_end_are_not_known():
     early = np.arange(1536) % 7 == 0
     ds = lives(lambda y: np.where(early, 0.01, 1 / y), early, [0.005])
-    found = indices(ds)["outputs"]
+    outputs = indices(ds)["outputs"]
     assert (
-        f"{early.sum()} rows censored before the last life ended" in found["rank(life)"]["refused"]
+        f"{early.sum()} rows censored before the last life ended"
+        in outputs["rank(life)"]["refused"]
     )
-    assert "same value" in found["P(life<0.005)"]["refused"]
+    assert "same value" in outputs["P(life<0.005)"]["refused"]
 
 
 def test_rows_without_a_life_drop_their_groups_from_every_target():
@@ -98,9 +99,9 @@ def test_rows_without_a_life_drop_their_groups_from_every_target():
 
 
 def test_an_event_that_never_or_always_happens_is_refused():
-    found = indices(lives(lambda y: 1 + y, thresholds=[0.5, 100.0]))["outputs"]
-    assert "same value" in found["P(life<0.5)"]["refused"]
-    assert "same value" in found["P(life<100.0)"]["refused"]
+    outputs = indices(lives(lambda y: 1 + y, thresholds=[0.5, 100.0]))["outputs"]
+    assert "same value" in outputs["P(life<0.5)"]["refused"]
+    assert "same value" in outputs["P(life<100.0)"]["refused"]
 
 
 def test_lives_of_zero_have_no_logarithm_and_no_rate():

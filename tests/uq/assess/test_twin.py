@@ -101,10 +101,13 @@ def series(samples=300, **analysis):
 
 def test_settings_that_make_rows_cheap_are_a_twin_too():
     ds = computed(series(twin={"terms": 3}))  # 1 + x1 + x1^2/2 for exp(x1)
-    found = with_twin(Result(ds), "sample_models:SERIES")
-    assert (found.twin, found.cheap_rows) == ("{terms = 3}", 3000)
+    twin_estimates = with_twin(Result(ds), "sample_models:SERIES")
+    assert (twin_estimates.twin, twin_estimates.cheap_rows) == ("{terms = 3}", 3000)
     for label, truth in (("mean", np.e - 1 + 0.15), ("P(>2.5)", TRUTH_OF_SERIES)):
-        estimate, alone = found.outputs["y"][label].estimate, found.outputs["y"][label].plain
+        estimate, alone = (
+            twin_estimates.outputs["y"][label].estimate,
+            twin_estimates.outputs["y"][label].plain,
+        )
         half, plain = (estimate.high - estimate.low) / 2, (alone.high - alone.low) / 2
         assert abs(estimate.value - truth) < 2 * half
         assert half < 0.6 * plain
@@ -115,8 +118,8 @@ def test_settings_that_make_rows_cheap_are_a_twin_too():
 
 def test_settings_of_a_twin_change_no_row_of_the_study():
     assert series(twin={"terms": 2}).identity == series().identity
-    one, other = (computed(series(**more)) for more in ({"twin": {"terms": 2}}, {}))
-    assert one["y"].values.tobytes() == other["y"].values.tobytes()
+    first, other = (computed(series(**more)) for more in ({"twin": {"terms": 2}}, {}))
+    assert first["y"].values.tobytes() == other["y"].values.tobytes()
 
 
 @pytest.mark.parametrize(
@@ -160,10 +163,10 @@ def test_no_hit_leaves_the_plain_interval():
 
 def test_few_hits_are_said_and_below_five_the_twin_is_not_used():
     ds = paired(60, twin="near", thresholds={"y": [2.7, 2.85]})
-    found = with_twin(Result(ds), PAIRED).outputs["y"]
+    entry = with_twin(Result(ds), PAIRED).outputs["y"]
     hits = {t: int((ds["y"] > float(t)).sum()) for t in ("2.7", "2.85")}
     assert hits["2.85"] < 5 <= hits["2.7"] < 20
-    few, none = found["P(>2.7)"], found["P(>2.85)"]
+    few, none = entry["P(>2.7)"], entry["P(>2.85)"]
     assert f"{hits['2.7']} of" in few.note and "conservative" in few.note
     assert "not used below 5" in none.note
     assert none.estimate == none.plain
@@ -192,8 +195,8 @@ def test_a_constant_output_and_an_all_failed_one_have_no_interval():
 
 def test_the_cheap_rows_are_the_studys_own_next_ones():
     ds = sound(100, twin="near", thresholds={})
-    found = with_twin(Result(ds), PAIRED)
-    assert found.cheap_rows == 10_000
+    twin_estimates = with_twin(Result(ds), PAIRED)
+    assert twin_estimates.cheap_rows == 10_000
     longer = sound(10_100).isel(row=slice(100, None))
     mean = with_twin(
         Result(ds.assign_attrs(study=ds.attrs["study"].replace("near", "same"))), PAIRED
@@ -210,10 +213,12 @@ def test_the_command_shows_and_writes_json(uq, folder):
     words = " ".join(ended.out.split())
     assert ended.code == 0 and "theory_disphasing_angle" in words
     assert "less than (worth - 1) / 101 of the time of a row" in words
-    found = json.loads(uq("twin", "out.nc", "--json").out)
-    assert found["outputs"]["disphasing_angle"]["mean"]["reduction"] > 10
-    mean = found["outputs"]["synchronisation_time"]["mean"]
-    both = (f"{one['low']:.5g} to {one['high']:.5g}" for one in (mean, mean["plain"]))
+    document = json.loads(uq("twin", "out.nc", "--json").out)
+    assert document["outputs"]["disphasing_angle"]["mean"]["reduction"] > 10
+    mean = document["outputs"]["synchronisation_time"]["mean"]
+    both = (
+        f"{estimate['low']:.5g} to {estimate['high']:.5g}" for estimate in (mean, mean["plain"])
+    )
     assert " ".join(both) in words
 
 
@@ -242,8 +247,8 @@ def test_cheap_outputs_have_the_bits_of_the_dear_ones():
             )
             seed, settings = np.arange(5, dtype=np.uint64), model.settings()
             dear, alone = (
-                evaluate(one.given(settings), settings, x, seed).columns[name]
-                for one in (model, model.alone(name))
+                evaluate(adapter.given(settings), settings, x, seed).columns[name]
+                for adapter in (model, model.alone(name))
             )
             assert dear.tobytes() == alone.tobytes()
 

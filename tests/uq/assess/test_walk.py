@@ -115,19 +115,19 @@ WALKED = {
 """Damage -> those of them that meet it among the quick tests."""
 
 
-def strict(found):
+def strict(data):
     """Return what is printed as JSON; a number that is not finite is a mistake."""
-    return json.loads(json.dumps(found, allow_nan=False))
+    return json.loads(json.dumps(data, allow_nan=False))
 
 
 @pytest.mark.parametrize(
     ("design", "method", "damage"),
     [
         case(
-            *one, damage, quick=damage == "all failed" or one not in ALIKE or one in WALKED[damage]
+            *fed, damage, quick=damage == "all failed" or fed not in ALIKE or fed in WALKED[damage]
         )
         for damage in DAMAGES[1:]
-        for one in FED
+        for fed in FED
     ],
 )
 def test_sensitivity(design, method, damage):
@@ -149,15 +149,15 @@ def test_sensitivity(design, method, damage):
     for name, entry in answered.items():
         for kind, indices in entry.items():
             if isinstance(indices, dict) and kind not in ("dummy", "S2", "sigma", "p"):
-                found = {label: index["value"] for label, index in indices.items()}
-                assert kind == "mu" or found["x4"] > found["x1"], (name, kind, found)
+                values = {label: index["value"] for label, index in indices.items()}
+                assert kind == "mu" or values["x4"] > values["x1"], (name, kind, values)
                 # A row in hundreds changes little; where the answer is known it is that one.
                 undamaged = {label: index["value"] for label, index in whole[name][kind].items()}
                 near = 0.3 if kind.startswith("mu") else 0.2
-                assert found == pytest.approx(undamaged, abs=near), (name, kind)
+                assert values == pytest.approx(undamaged, abs=near), (name, kind)
                 if kind in EXACT and name == "y":
                     exact = [EXACT[kind](i) for i in (1, 2, 3, 4)]
-                    assert list(found.values()) == pytest.approx(exact, abs=0.2), (name, kind)
+                    assert list(values.values()) == pytest.approx(exact, abs=0.2), (name, kind)
     refused = {name: entry["refused"] for name, entry in outputs.items() if "refused" in entry}
     assert all(len(sentence) > 20 for sentence in refused.values())
 
@@ -176,13 +176,13 @@ EVERY_DAMAGE = ("monte-carlo", "latin-hypercube", "sobol")
 )
 def test_summary_survival_fits_and_regimes(design, damage):
     ds = damaged(result(design, 256 if DESIGNS[design].follows_laws else ROWS["morris"]), damage)
-    found = strict(summarised(ds, fits=True))
-    y, life, flat = (found["outputs"][name] for name in ("y", "life", "flat"))
+    statistics = strict(summarised(ds, fits=True))
+    y, life, flat = (statistics["outputs"][name] for name in ("y", "life", "flat"))
     curve = uq.survival(ds, "life")
     compared = uq.regimes(ds)
     if damage == "all failed" or not DESIGNS[design].follows_laws:
         assert y["mean"] is flat["mean"] is life["b_lives"]["B10"]["value"] is None
-        assert y["failed"] == found["rows_used"] == life["failed"]
+        assert y["failed"] == statistics["rows_used"] == life["failed"]
         assert all(fit["refused"] for fit in life["fits"].values())
         assert curve.sizes["time"] == 0 == compared.sizes["regime"]
         return
@@ -234,11 +234,11 @@ def test_running_estimates_and_whether_it_is_enough(design, damage):
         assert damage == "interrupted" and DESIGNS[design].crossed and "missing" in str(refusal)
         return
     last = table[table["samples"] == 256].set_index(["output", "estimate"])["value"]
-    found = summarised(ds)["outputs"]
+    outputs = summarised(ds)["outputs"]
     for name in ("y", "flat", "life"):
         for label, value in (
-            ("mean", found[name]["mean"]),
-            ("quantile 0.5", found[name]["quantiles"]["0.5"]["value"]),
+            ("mean", outputs[name]["mean"]),
+            ("quantile 0.5", outputs[name]["quantiles"]["0.5"]["value"]),
         ):
             assert last[name, label] == pytest.approx(
                 np.nan if value is None else value, nan_ok=True
@@ -284,11 +284,11 @@ def test_twin(damage):
         ds = ds.isel(row=slice(None, 193))
     elif damage == "constant":
         ds["y"][:] = 0.1
-    found = strict(twin_json(with_twin(Result(ds), PAIRED)))["outputs"]
+    outputs = strict(twin_json(with_twin(Result(ds), PAIRED)))["outputs"]
     if damage == "all failed":
-        assert found == {}
+        assert outputs == {}
         return
-    mean, above = found["y"]["mean"], found["y"]["P(>2.0)"]
+    mean, above = outputs["y"]["mean"], outputs["y"]["P(>2.0)"]
     if damage == "constant":
         assert mean["value"] == pytest.approx(0.1) and mean["low"] is mean["high"] is None
         assert above["value"] == above["low"] == 0 < above["high"] < 0.05
@@ -296,8 +296,8 @@ def test_twin(damage):
     half = (mean["high"] - mean["low"]) / 2
     assert 0 < half < 0.05 and mean["value"] == pytest.approx(PLAIN_MEAN, abs=3 * half)
     # Half of the lives never end: they have no mean, and are above everything.
-    assert "mean" not in found["life"]
-    assert found["life"]["P(<1.25)"]["value"] == pytest.approx(0.2, abs=0.08)
+    assert "mean" not in outputs["life"]
+    assert outputs["life"]["P(<1.25)"]["value"] == pytest.approx(0.2, abs=0.08)
 
 
 @pytest.mark.parametrize("method", RARE)

@@ -53,9 +53,9 @@ def holds(estimate, truth):
 
 @pytest.mark.parametrize("size", [3, 40_000])
 def test_fleets_of_units_never_inspected_are_those_of_the_closed_form(posterior, rate, size):
-    found = fleet_of(Result(posterior), size, [TIME], allow=size // 3)
-    assert found.integrated == ("depth",) and 100 < found.weights.effective < 1000
-    failed, kept = found.by[TIME]
+    fleet = fleet_of(Result(posterior), size, [TIME], allow=size // 3)
+    assert fleet.integrated == ("depth",) and 100 < fleet.weights.effective < 1000
+    failed, kept = fleet.by[TIME]
     holds(failed.estimate, size * over_worlds(lambda z: ended(rate, z)))
     at_most = over_worlds(lambda z: stats.binom.cdf(size // 3, size, ended(rate, z)))
     holds(kept.estimate, at_most)
@@ -92,17 +92,17 @@ def test_equal_weights_change_nothing():
     values = np.random.default_rng(1).standard_normal((30, 4, 3)) + np.arange(30)[:, None, None]
     assert nested_shares(values, weights=np.ones(30)) == nested_shares(values)
     for factor in (0.5, 3.0):
-        found = nested_shares(values, weights=np.full(30, factor))
-        assert found.outer.numbers == pytest.approx(nested_shares(values).outer.numbers)
+        shares = nested_shares(values, weights=np.full(30, factor))
+        assert shares.outer.numbers == pytest.approx(nested_shares(values).outer.numbers)
 
 
 def test_a_weight_of_zero_is_no_sample():
     values = np.random.default_rng(2).standard_normal((30, 4, 3)) + np.arange(30)[:, None, None]
     kept = np.arange(30) % 3 > 0
-    found = nested_shares(values, weights=kept.astype(float))
-    assert found.left_out == 0
-    for one, other in zip(found[:3], nested_shares(values[kept])[:3], strict=True):
-        assert one.numbers == pytest.approx(other.numbers)
+    shares = nested_shares(values, weights=kept.astype(float))
+    assert shares.left_out == 0
+    for share, other in zip(shares[:3], nested_shares(values[kept])[:3], strict=True):
+        assert share.numbers == pytest.approx(other.numbers)
 
 
 def test_an_event_that_the_inspections_make_rare_has_no_shares(posterior):

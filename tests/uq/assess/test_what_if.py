@@ -47,25 +47,25 @@ def result():
 
 
 def test_the_law_of_what_only_scales_is_replaced_exactly(result):
-    found = answer(Result(result), {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
-    life = what_if_json(found)["outputs"]["life"]
+    changed = answer(Result(result), {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
+    life = what_if_json(changed)["outputs"]["life"]
     z = result["z"].values
     below = special.ndtr((np.log(0.8) - np.log(2.0) - z / 2) / 0.9)
     assert life["thresholds"]["0.8"]["below"]["value"] == pytest.approx(below.mean(), rel=1e-12)
     assert life["integrated"]["inputs"] == ["a"]
-    assert "y" not in what_if_json(found)["outputs"]  # the weights of a are not to be trusted
-    assert any(re.match("y: .*Pareto k", note) for note in found.summary.notes)
+    assert "y" not in what_if_json(changed)["outputs"]  # the weights of a are not to be trusted
+    assert any(re.match("y: .*Pareto k", note) for note in changed.summary.notes)
 
 
 def test_the_same_laws_change_nothing(result):
-    found = what_if_json(answer(Result(result), {"uncertain.z.sd": 1.0}))
+    document = what_if_json(answer(Result(result), {"uncertain.z.sd": 1.0}))
     plain = summarised(result)
-    assert found["effective_rows"] == 1000 and found["pareto_k"] is None
+    assert document["effective_rows"] == 1000 and document["pareto_k"] is None
     for name in ("life", "y"):
-        one, other = found["outputs"][name], plain["outputs"][name]
-        assert one["thresholds"].keys() == other["thresholds"].keys()
-        assert one["mean"] == pytest.approx(other["mean"])
-        assert one["quantiles"]["0.5"]["value"] == pytest.approx(
+        entry, other = document["outputs"][name], plain["outputs"][name]
+        assert entry["thresholds"].keys() == other["thresholds"].keys()
+        assert entry["mean"] == pytest.approx(other["mean"])
+        assert entry["quantiles"]["0.5"]["value"] == pytest.approx(
             other["quantiles"]["0.5"]["value"], abs=0.01
         )
 
@@ -97,10 +97,10 @@ def test_a_fresh_run_of_the_other_study_agrees(result, case):
     else:
         changes, inputs = CHANGES[case]
         fresh = study(inputs, samples=20_000)
-    found = what_if(result, changes)
+    table = what_if(result, changes)
     truth = summarised(computed(with_seed(fresh, 9)))["outputs"]
-    for name in found.index:
-        line, other = found.loc[name], truth[name]
+    for name in table.index:
+        line, other = table.loc[name], truth[name]
         for column, value in (
             ("mean", other["mean"]),
             ("q0.5", other["quantiles"]["0.5"]["value"]),
@@ -124,8 +124,8 @@ def test_quantiles_of_an_angle_keep_its_sign():
     nothing = np.zeros(400, dtype=bool)
     values = np.linspace(-2.0, 1.0, 400)
     element = Element("psi", "psi", angle, {}, values, nothing, nothing, None, np.ones(400))
-    found = Population(element, None).quantile(0.1)
-    assert found.low < -1.7 < found.high < -1.4
+    quantile = Population(element, None).quantile(0.1)
+    assert quantile.low < -1.7 < quantile.high < -1.4
 
 
 def test_a_multiple_and_listed_values_are_weighted(result):
@@ -135,20 +135,20 @@ def test_a_multiple_and_listed_values_are_weighted(result):
         "z": {"distribution": "discrete-choice", "values": [0.0, 1.0]},
     }
     rows = computed(study(inputs, samples=2000))
-    found = what_if(rows, {"uncertain.z.weights": [3.0, 1.0]}).loc["y"]
+    row = what_if(rows, {"uncertain.z.weights": [3.0, 1.0]}).loc["y"]
     share = rows["z"].values.mean()
-    assert found["mean"] == pytest.approx(share / (share + 3 * (1 - share)))
+    assert row["mean"] == pytest.approx(share / (share + 3 * (1 - share)))
     factor = rows["b"].values / rows["a"].values
-    found = answer(Result(rows), {"uncertain.b.upper": 1.0})
-    assert found.effective_rows == pytest.approx((factor < 1).sum(), rel=0.02)
+    changed = answer(Result(rows), {"uncertain.b.upper": 1.0})
+    assert changed.effective_rows == pytest.approx((factor < 1).sum(), rel=0.02)
 
 
 def test_other_designs_have_the_intervals_of_their_replicates():
     design = {"method": "sobol", "replicates": 8}
     rows = computed(study(samples=64, design=design))
-    found = what_if(rows, {"uncertain.z.sd": 0.8}).loc["y"]
-    assert found["mean_low"] < 0 < found["mean_high"]
-    assert found["mean_high"] - found["mean_low"] < 0.1
+    row = what_if(rows, {"uncertain.z.sd": 0.8}).loc["y"]
+    assert row["mean_low"] < 0 < row["mean_high"]
+    assert row["mean_high"] - row["mean_low"] < 0.1
 
 
 def test_a_refusal_names_the_samples_that_it_takes(result):
@@ -191,31 +191,36 @@ def test_a_scale_may_leave_the_values_of_the_rows():
     rows = computed(
         study({"a": {"distribution": "uniform", "lower": 1.0, "upper": 2.0}, "z": NORMAL})
     )
-    found = answer(Result(rows), {"uncertain.a.upper": 4.0})
-    life = what_if_json(found)["outputs"]["life"]
+    changed = answer(Result(rows), {"uncertain.a.upper": 4.0})
+    life = what_if_json(changed)["outputs"]["life"]
     least = 0.8 * np.exp(-rows["z"].values / 2)
     below = ((least - 1) / 3).clip(0, 1).mean()
     assert life["thresholds"]["0.8"]["below"]["value"] == pytest.approx(below)
     assert life["mean"] is None and "no row is there" in life["reasons"]["mean"]
-    assert any(note.startswith("y: uncertain.a: has 0.67") for note in found.summary.notes)
+    assert any(note.startswith("y: uncertain.a: has 0.67") for note in changed.summary.notes)
 
 
 def test_a_law_that_is_replaced_keeps_its_level():
     shared = {"a": lognormal(0.5), "z": NORMAL | {"level": "shared"}}
     rows = computed(study(shared, samples=200, design={"units": 2}))
     changes = ({"uncertain.z": NORMAL | {"sd": 0.9}}, {"uncertain.z.sd": 0.9})
-    first, second = (what_if(rows, one) for one in changes)
+    first, second = (what_if(rows, change) for change in changes)
     assert first.equals(second)
 
 
 def test_a_single_row_says_why_a_number_is_missing():
     rows = computed(study(samples=1))
-    for found in (summarised(rows), what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.4}))):
-        life = found["outputs"]["life"]
+    for document in (
+        summarised(rows),
+        what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.4})),
+    ):
+        life = document["outputs"]["life"]
         below = life["thresholds"]["0.8"]
         assert 0 < below["below"]["value"] < 1 and below["below"]["low"] is None
-        said = (below["reason"], life["b_lives"]["B10"]["reason"], life["reasons"]["sd"])
-        assert all("a single row" in one or "1 independent part," in one for one in said)
+        reasons = (below["reason"], life["b_lives"]["B10"]["reason"], life["reasons"]["sd"])
+        assert all(
+            "a single row" in reason or "1 independent part," in reason for reason in reasons
+        )
     with pytest.raises(RunError, match="1 independent part, and more than 10"):
         what_if(rows, {"uncertain.z.sd": 0.9})
     with pytest.raises(RunError, match="5 independent parts, and more than 10"):
@@ -224,8 +229,8 @@ def test_a_single_row_says_why_a_number_is_missing():
 
 def test_rows_that_all_failed_say_nothing():
     rows = computed(study(samples=20, settings={"fail_above": -99.0}))
-    found = what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
-    assert found["failed"] == 20 and found["thresholds"]["0.8"]["below"]["value"] is None
+    statistics = what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
+    assert statistics["failed"] == 20 and statistics["thresholds"]["0.8"]["below"]["value"] is None
 
 
 def test_on_the_command_line(result, tmp_path):
@@ -235,8 +240,8 @@ def test_on_the_command_line(result, tmp_path):
     assert run.exit_code == 0 and "a integrated exactly" in run.output
     assert re.search(r"worth\s+\d+\s+independent\s+ones", run.output)
     run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--json"])
-    found = json.loads(run.output)
-    assert found["effective_rows"] < 1000 and set(found["outputs"]) == {"life", "y"}
+    document = json.loads(run.output)
+    assert document["effective_rows"] < 1000 and set(document["outputs"]) == {"life", "y"}
 
 
 @pytest.mark.slow
@@ -252,16 +257,16 @@ def test_the_interval_of_the_difference_holds_zero():
     held, rows = [], {}
     before, after = study(samples=300), study(CHANGES["both"][1], samples=300)
     for seed in range(200):
-        one = what_if(computed(with_seed(before, seed)), CHANGES["both"][0])
+        table = what_if(computed(with_seed(before, seed)), CHANGES["both"][0])
         other = summarised(computed(with_seed(after, 1000 + seed)))["outputs"]
         for name, key in (("life", "0.8"), ("y", "0.5")):
             fresh = other[name]["thresholds"][key]["below"]
-            line = one.loc[name]
+            line = table.loc[name]
             ends = line[f"P(<{key})_low"], line[f"P(<{key})_high"]
             half = [(b - a) / 2 for a, b in (ends, (fresh["low"], fresh["high"]))]
             apart = line[f"P(<{key})"] - fresh["value"]
             rows.setdefault(name, []).append(abs(apart) <= np.hypot(*half))
-    for name, one in rows.items():
-        held.append(np.mean(one))
-        print(f"what if, {name}: {np.mean(one):.1%}")
-    assert all(0.90 <= one <= 0.99 for one in held)
+    for name, covers in rows.items():
+        held.append(np.mean(covers))
+        print(f"what if, {name}: {np.mean(covers):.1%}")
+    assert all(0.90 <= coverage <= 0.99 for coverage in held)

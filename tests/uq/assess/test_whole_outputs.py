@@ -36,23 +36,23 @@ def with_elements(ds, like, *columns):
 
 
 def numbers(entry, kind):
-    return [one["value"] for one in entry[kind].values()]
+    return [estimate["value"] for estimate in entry[kind].values()]
 
 
 def test_parts_of_the_variance_are_added_over_the_elements():
     ds = curves()
-    found = indices(ds)["outputs"]
+    outputs = indices(ds)["outputs"]
     a, *mixed, b = np.moveaxis(ds["front"].values.reshape(-1, 7, 8), 1, 0)
-    elements = [found[f"front[time={time}]"] for time in whole.TIMES]
+    elements = [outputs[f"front[time={time}]"] for time in whole.TIMES]
     variances = {
         "S1": [(b.var(axis=0) + ab.var(axis=0)) / 2 for ab in mixed],
         "ST": [np.r_[a, b].var(axis=0) for _ in mixed],
     }
     for kind, of_inputs in variances.items():
-        own = np.array([numbers(one, kind) for one in elements])
+        indices_of_elements = np.array([numbers(element, kind) for element in elements])
         weights = np.array(of_inputs).T
-        expected = (weights * own).sum(axis=0) / weights.sum(axis=0)
-        assert numbers(found["front[:]"], kind) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+        expected = (weights * indices_of_elements).sum(axis=0) / weights.sum(axis=0)
+        assert numbers(outputs["front[:]"], kind) == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -60,16 +60,16 @@ def test_parts_of_the_variance_are_added_over_the_elements():
 )
 def test_an_output_of_equal_shape_in_all_elements_has_the_indices_of_one(method, samples):
     ds = curves(method, samples, 1 if method in ("monte-carlo", "shapley") else 2)
-    one = ds["worn"].values[:, 2]
-    ds = with_elements(ds, "worn", one, 5 - 3e3 * one, np.full(len(one), 7.0))
+    worn = ds["worn"].values[:, 2]
+    ds = with_elements(ds, "worn", worn, 5 - 3e3 * worn, np.full(len(worn), 7.0))
     ds = asking(ds, outputs=["worn"])
-    found = indices(ds)["outputs"]
-    assert "same value" in found["worn[place=c]"]["refused"]
-    for kind, values in found["worn[place=a]"].items():
+    outputs = indices(ds)["outputs"]
+    assert "same value" in outputs["worn[place=c]"]["refused"]
+    for kind, values in outputs["worn[place=a]"].items():
         if isinstance(values, dict) and kind != "dummy":
             for name, index in values.items():
                 for end, value in index.items():
-                    together = found["worn[:]"][kind][name][end]
+                    together = outputs["worn[:]"][kind][name][end]
                     assert (value is together is None) or together == pytest.approx(value, rel=1e-9)
 
 
@@ -96,27 +96,27 @@ def test_an_input_that_counts_by_correlation_alone_is_named():
         "dependence": {"parameters": names, "rank_correlation": correlation},
         "analysis": {"outputs": ["worn"]},
     }
-    found = indices(computed(study_of(tables, whole.NAME)))["outputs"]["worn[:]"]
-    assert found["by_correlation"] == ["x3"]
+    entry = indices(computed(study_of(tables, whole.NAME)))["outputs"]["worn[:]"]
+    assert entry["by_correlation"] == ["x3"]
 
 
 def test_intervals_are_those_of_all_elements_together():
-    found = indices(curves(samples=256, replicates=8))["outputs"]
+    outputs = indices(curves(samples=256, replicates=8))["outputs"]
     for name, kinds_of in whole.truths().items():
         for kind in ("S1", "ST"):
             for label, truth in kinds_of[kind].items():
-                one = found[f"{name}[:]"][kind][label]
-                assert one["low"] < one["value"] < one["high"]
-                reach = one["high"] - one["low"]
-                assert one["low"] - reach < truth < one["high"] + reach
+                index = outputs[f"{name}[:]"][kind][label]
+                assert index["low"] < index["value"] < index["high"]
+                reach = index["high"] - index["low"]
+                assert index["low"] - reach < truth < index["high"] + reach
 
 
 def test_a_row_without_one_element_leaves_with_its_group():
     ds = curves()
     ds["front"][10, 3] = np.nan
-    found = indices(with_status(ds, [10], 2))["outputs"]
-    assert found["front[:]"]["groups_dropped"] == 1
-    assert found["front[time=0.0]"]["groups_dropped"] == 0
+    outputs = indices(with_status(ds, [10], 2))["outputs"]
+    assert outputs["front[:]"]["groups_dropped"] == 1
+    assert outputs["front[time=0.0]"]["groups_dropped"] == 0
 
 
 def test_without_variance_there_is_no_index():
@@ -127,15 +127,15 @@ def test_without_variance_there_is_no_index():
 
 def test_all_elements_have_one_form():
     ds = kinds("saltelli", analysis={"outputs": ["work", "life"]})
-    found = indices(ds)["outputs"]
-    assert {"work[:]", "rank(life[:])"} <= found.keys()
-    assert "all 2 elements together" in found["work[:]"]["notes"][0]
+    outputs = indices(ds)["outputs"]
+    assert {"work[:]", "rank(life[:])"} <= outputs.keys()
+    assert "all 2 elements together" in outputs["work[:]"]["notes"][0]
     ds = curves()
     heavy = ds["worn"].values[:, 0] ** 4
     ds = with_elements(ds, "worn", heavy, ds["worn"].values[:, 1])
-    found = indices(asking(ds, outputs=["worn"]))["outputs"]
-    assert "log(worn[:])" in found and "worn[place=b]" in found
-    assert "ask for worn[:] for their own" in " ".join(found["log(worn[:])"]["notes"])
+    outputs = indices(asking(ds, outputs=["worn"]))["outputs"]
+    assert "log(worn[:])" in outputs and "worn[place=b]" in outputs
+    assert "ask for worn[:] for their own" in " ".join(outputs["log(worn[:])"]["notes"])
     assert "log(worn[:]) is more" in " ".join(
         indices(ds, output="worn[:]")["outputs"]["worn[:]"]["notes"]
     )
@@ -165,8 +165,10 @@ def test_it_is_in_arrays_convergence_and_traces():
     running = uq.running_estimates(ds, "front")
     last = running[(running["output"] == "front[:]") & (running["estimate"] == "ST x1")].iloc[-1]
     assert last["value"] == index["value"]
-    found = traced(Result(ds), "sensitivity/outputs/front[:]/ST/x1")
-    assert found.equal and found.states == {"in groups with a value in each row": 7 * 4 * 32}
+    traced_number = traced(Result(ds), "sensitivity/outputs/front[:]/ST/x1")
+    assert traced_number.equal and traced_number.states == {
+        "in groups with a value in each row": 7 * 4 * 32
+    }
     assert traced(Result(ds), "convergence/outputs/front[:]/estimates/ST x1/0/value").equal
 
 
@@ -174,16 +176,20 @@ def test_curves_of_indices_are_those_of_the_elements():
     ds = curves(samples=32, replicates=4)
     figure = plots.index_curves(ds, "front")
     (axes,) = figure.axes
-    found = indices(ds)["outputs"]
+    outputs = indices(ds)["outputs"]
     first = axes.lines[0]
     assert first.get_xdata() == pytest.approx(whole.TIMES)
-    leading = max(found["front[:]"]["ST"], key=lambda name: found["front[:]"]["ST"][name]["value"])
-    own = [found[f"front[time={time}]"]["ST"][leading] for time in whole.TIMES]
-    assert first.get_ydata() == pytest.approx([one["value"] for one in own])
+    leading = max(
+        outputs["front[:]"]["ST"], key=lambda name: outputs["front[:]"]["ST"][name]["value"]
+    )
+    leading_indices = [outputs[f"front[time={time}]"]["ST"][leading] for time in whole.TIMES]
+    assert first.get_ydata() == pytest.approx([estimate["value"] for estimate in leading_indices])
     band = axes.collections[0].get_paths()[0].vertices
     at = band[np.isclose(band[:, 0], whole.TIMES[3]), 1]
-    assert (at.min(), at.max()) == pytest.approx((own[3]["low"], own[3]["high"]))
-    together = found["front[:]"]["ST"][leading]["value"]
+    assert (at.min(), at.max()) == pytest.approx(
+        (leading_indices[3]["low"], leading_indices[3]["high"])
+    )
+    together = outputs["front[:]"]["ST"][leading]["value"]
     assert "[s]" in axes.get_xlabel() and f"{together:.3f} all together" in words(figure)
     with pytest.raises(InputError, match="no dimension of 3 or more numbers"):
         plots.index_curves(kinds("saltelli"), "work")
@@ -200,10 +206,10 @@ def test_intervals_cover_the_indices_of_curves(method):
 
 def test_an_element_that_no_row_has_is_named():
     ds = curves("shapley", samples=64, replicates=1, outputs=["worn"])
-    one = ds["worn"].values[:, 2]
-    found = indices(with_elements(ds, "worn", one, np.full(len(one), np.nan)))["outputs"]
+    worn = ds["worn"].values[:, 2]
+    outputs = indices(with_elements(ds, "worn", worn, np.full(len(worn), np.nan)))["outputs"]
     assert (
-        found["worn[:]"]["refused"]
+        outputs["worn[:]"]["refused"]
         == "no row has a worn[place=b]; ask for the other elements by name"
     )
-    assert "shapley" in found["worn[place=a]"]
+    assert "shapley" in outputs["worn[place=a]"]

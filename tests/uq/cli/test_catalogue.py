@@ -43,8 +43,8 @@ def test_a_parameter_may_be_infinite_unless_given(uq):
     described = strict_json(uq("models", "sample_models:MOUNTED", "--json").out)
     shown = described["parameters"]["mount_stiffness"]
     assert (shown["nominal"], shown["bounds"]) == (None, [1e4, None])
-    found = strict_json(uq("simulate", "sample_models:MOUNTED", "--json").out)
-    assert found["inputs"] == {"mount_stiffness": None, "mass": 2.0}
+    document = strict_json(uq("simulate", "sample_models:MOUNTED", "--json").out)
+    assert document["inputs"] == {"mount_stiffness": None, "mass": 2.0}
     nominal = uq("simulate", "sample_models:MOUNTED")
     assert nominal.code == 0
     assert nominal == uq("simulate", "sample_models:MOUNTED", "--set", "mount_stiffness=inf")

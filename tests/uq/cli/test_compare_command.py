@@ -41,18 +41,18 @@ def test_compare_on_the_command_line(uq, folder):
     ended = uq("compare", "a.nc", "b.nc")
     words = " ".join(ended.out.split())
     assert ended.code == 0 and ended.err == ""
-    for said in (
+    for line in (
         "A a.nc one (200 rows)",
         "x4 A uniform(lower = 0.0, upper = 1.0) B uniform(lower = 0.3, upper = 0.7)",
         "Only x4 differs (sd 0.2",
         "less variance",
         "rows with the same number are paired",
     ):
-        assert said in words, said
+        assert line in words, line
     assert max(map(len, ended.out.splitlines())) <= 80
-    found = json.loads(uq("compare", "a.nc", "b.nc", "--json").out)
-    assert found["a"]["file"] == "a.nc" and found["pairing"] == "rows"
-    assert set(found["outputs"]["y"]["sd"]) == {"a", "b", "difference", "ratio"}
+    document = json.loads(uq("compare", "a.nc", "b.nc", "--json").out)
+    assert document["a"]["file"] == "a.nc" and document["pairing"] == "rows"
+    assert set(document["outputs"]["y"]["sd"]) == {"a", "b", "difference", "ratio"}
     assert "\nnone" in "\n".join(map(str.strip, uq("compare", "a.nc", "a.nc").out.splitlines()))
 
 

@@ -16,8 +16,8 @@ DAY = 86400.0
 def compared(uq, folder):
     """Return a function that compares two results: the lines printed, split into words."""
 
-    def lines(one, other):
-        write_result(one, folder / "a.nc")
+    def lines(first, other):
+        write_result(first, folder / "a.nc")
         write_result(other, folder / "b.nc")
         ended = uq("compare", "a.nc", "b.nc")
         assert (ended.code, ended.err) == (0, "")
@@ -35,7 +35,7 @@ def lives(factor):
 
 def line(lines, *label):
     """Return what stands behind a label, where it stands first."""
-    return next(one[len(label) :] for one in lines if tuple(one[: len(label)]) == label)
+    return next(text[len(label) :] for text in lines if tuple(text[: len(label)]) == label)
 
 
 def test_lives_are_given_in_days_with_all_that_belongs_to_them(compared):
@@ -49,7 +49,7 @@ def test_lives_are_given_in_days_with_all_that_belongs_to_them(compared):
 
 def test_a_mark_stands_where_an_interval_excludes_no_difference(compared):
     lines = compared(lives(1.0), lives(1.0))
-    assert not any("*" in one for one in lines)
+    assert not any("*" in text for text in lines)
     assert line(lines, "sd,", "B", "over", "A") == ["1", "identical", "rows"]
     assert line(lines, "mean")[-3:] == ["0", "identical", "rows"]
     fewer = compared(lives(1.5), lives(1.0))
@@ -66,6 +66,6 @@ def test_what_a_change_of_one_input_did_is_a_sentence(compared, lower, moved):
         return computed(study_of(tables | {"uncertain": {"x1": law}}))
 
     lines = compared(study(0.0, 1.0), study(lower, lower + 0.5))
-    words = " ".join(" ".join(one) for one in lines)
+    words = " ".join(" ".join(text) for text in lines)
     assert re.search(rf"Only x1 differs \(sd 0\.28\d* to 0\.14\d*{moved}\)\.", words)
     assert "sd of y: 0.5 times what it was" in words and "75% less variance." in words

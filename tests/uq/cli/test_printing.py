@@ -24,7 +24,9 @@ def test_no_text_acts_on_a_terminal(show, capsys, monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     show()
     out = capsys.readouterr().out
-    assert "a\\u001b[31m" in out and all(one == "\n" or one.isprintable() for one in out)
+    assert "a\\u001b[31m" in out and all(
+        character == "\n" or character.isprintable() for character in out
+    )
 
 
 def test_json_with_a_hostile_text_is_json(capsys):

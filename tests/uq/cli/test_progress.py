@@ -81,8 +81,8 @@ def test_a_terminal_of_80_columns_holds_the_progress(monkeypatch):
     with os.fdopen(theirs, "w") as terminal:
         monkeypatch.setattr(sys, "stderr", terminal)
         with progress.shown(quiet=False) as show:
-            for one in (compiling, MUCH):
-                show(one)
+            for progress_text in (compiling, MUCH):
+                show(progress_text)
                 time.sleep(0.5)
     out = b""
     with contextlib.suppress(OSError):

@@ -19,11 +19,11 @@ def test_the_command_shows_and_writes_json(uq, write_study):
     ended = uq("rare-event", path, *options)
     assert ended.code == 0 and "95 % interval" in ended.out
     assert ended.out.startswith("P(y > 9.5)")
-    found = json.loads(uq("rare-event", path, *options, "--json").out)
-    low, value, high = (found["probability"][key] for key in ("low", "value", "high"))
+    document = json.loads(uq("rare-event", path, *options, "--json").out)
+    low, value, high = (document["probability"][key] for key in ("low", "value", "high"))
     assert low < value < high
     assert low <= 0.5**4 / 576 <= high
-    assert list(found["typical"]) == ["x1", "x2", "x3", "x4"]
+    assert list(document["typical"]) == ["x1", "x2", "x3", "x4"]
     point = json.loads(uq("rare-event", path, *options, "--method", "importance", "--json").out)
     assert point["design_points"][0]["location"]["x4"] > 0.9
     assert uq("rare-event", path, "--output", "y").err.startswith("uq: give one of")

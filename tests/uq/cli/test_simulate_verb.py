@@ -27,9 +27,9 @@ def simulate(uq, *arguments):
 
 
 def test_simulate_as_json(uq):
-    code, found = simulate(uq, "--set", "x1=0.1", "--set", "x2=0.1")
+    code, document = simulate(uq, "--set", "x1=0.1", "--set", "x2=0.1")
     assert code == 0
-    assert found == {
+    assert document == {
         "model": "kinds",
         "inputs": {"x1": 0.1, "x2": 0.1},
         "outputs": {
@@ -43,18 +43,18 @@ def test_simulate_as_json(uq):
         "censored": [],
         "undefined": ["angle"],
     }
-    code, found = simulate(uq, "--set", f"x1={1 / 1.1!r}")
+    code, document = simulate(uq, "--set", f"x1={1 / 1.1!r}")
     assert code == 0
-    assert found["outputs"]["life"][0][0] == 1 / 1.1 + 0.5
-    assert len(found["censored"]) == 4
-    assert found["never"] == found["undefined"] == []
+    assert document["outputs"]["life"][0][0] == 1 / 1.1 + 0.5
+    assert len(document["censored"]) == 4
+    assert document["never"] == document["undefined"] == []
 
 
 @pytest.mark.parametrize("how", ["nan", "inf"])
 def test_a_setting_may_be_a_word_that_toml_reads_as_a_number(uq, how):
     faults = ("--set", "x1=0.9", "--setting", "fail_above=0.5", "--setting", f"fail_how={how}")
-    found = strict_json(uq("simulate", "linear", "--json", *faults).out)
-    assert found["status"] == {"code": "non-finite", "meaning": f"'y' is {how}"}
+    document = strict_json(uq("simulate", "linear", "--json", *faults).out)
+    assert document["status"] == {"code": "non-finite", "meaning": f"'y' is {how}"}
 
 
 def test_a_failed_row_is_reported(uq):
@@ -63,10 +63,10 @@ def test_a_failed_row_is_reported(uq):
     assert ended.code == 1
     assert "raised" in ended.out
     assert "ValueError: x1 is above fail_above = 0.5" in ended.out
-    found = strict_json(uq("simulate", "linear", "--json", *faults).out)
-    assert found["outputs"] == {"y": None}
-    assert found["undefined"] == []
-    assert found["status"] == {
+    document = strict_json(uq("simulate", "linear", "--json", *faults).out)
+    assert document["outputs"] == {"y": None}
+    assert document["undefined"] == []
+    assert document["status"] == {
         "code": "raised",
         "meaning": "ValueError: x1 is above fail_above = 0.5",
     }

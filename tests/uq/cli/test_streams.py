@@ -58,9 +58,9 @@ def test_a_mistake_that_nobody_can_read_keeps_its_exit_code(shell, lost):
 
 
 def test_a_mistake_keeps_its_exit_code(shell):
-    said = "no such model 'nothing'"
+    sentence = "no such model 'nothing'"
     code, printed = shell("init nothing >&-")
-    assert (code, printed[: len(said)], printed.count("\n")) == (2, said, 1)
+    assert (code, printed[: len(sentence)], printed.count("\n")) == (2, sentence, 1)
 
 
 @pytest.mark.slow

@@ -23,8 +23,8 @@ def printed(uq, folder):
 
 
 def cells(lines, label):
-    found = next(line for line in lines if line[0].strip() == label)
-    return [cell.strip() for cell in found[1:] if cell.strip()]
+    row = next(line for line in lines if line[0].strip() == label)
+    return [cell.strip() for cell in row[1:] if cell.strip()]
 
 
 def test_a_summary_names_units_sides_and_rows_that_failed(printed):

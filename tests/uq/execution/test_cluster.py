@@ -32,12 +32,12 @@ from uq.study.definition import load_study
 
 def workers():
     """Return the living processes that compute for this one."""
-    found = set()
+    process_ids = set()
     for child in psutil.Process().children():
         with contextlib.suppress(psutil.NoSuchProcess):  # also one that is just ending
             if "uq.execution.child" in child.cmdline():
-                found.add(child)
-    return found
+                process_ids.add(child)
+    return process_ids
 
 
 @contextlib.contextmanager

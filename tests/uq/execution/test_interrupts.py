@@ -79,11 +79,11 @@ def wait_until(condition):
 
 
 def workers_of(process):
-    found = []
+    children = []
     for child in psutil.Process(process.pid).children():
         with contextlib.suppress(psutil.NoSuchProcess):  # it may end meanwhile
-            found += [child] * ("uq.execution.child" in child.cmdline())
-    return found
+            children += [child] * ("uq.execution.child" in child.cmdline())
+    return children
 
 
 def to_process(process):
@@ -142,7 +142,8 @@ def test_while_workers_start(started):
 
 
 @pytest.mark.parametrize(
-    "delay", [0.5, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.2, 0.35, 0.65))]
+    "delay",
+    [0.5, *(pytest.param(seconds, marks=pytest.mark.slow) for seconds in (0.2, 0.35, 0.65))],
 )
 def test_while_modules_are_loaded(started, delay):
     process, _ = started("SLEEPING", "--workers", "0", seconds=1.0)

@@ -68,11 +68,12 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
     whole = compute(study, workers=0)
     pilot = whole.isel(row=slice(0, 400))
     expected = expected_widths(Result(pilot))["y"]
-    found = summarised(whole)["outputs"]["y"]
-    pairs = [(expected.mean, found["mean_interval"])]
-    pairs += [(width, found["quantiles"][repr(p)]) for p, width in expected.quantiles.items()]
+    statistics = summarised(whole)["outputs"]["y"]
+    pairs = [(expected.mean, statistics["mean_interval"])]
+    pairs += [(width, statistics["quantiles"][repr(p)]) for p, width in expected.quantiles.items()]
     pairs += [
-        (width, found["thresholds"][repr(t)]["above"]) for t, width in expected.thresholds.items()
+        (width, statistics["thresholds"][repr(t)]["above"])
+        for t, width in expected.thresholds.items()
     ]
     assert len(pairs) == 4
     for width, interval in pairs:

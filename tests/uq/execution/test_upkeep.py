@@ -142,10 +142,10 @@ def test_status_of_a_complete_result(uq, result):
     shown = uq("status", "out.nc")
     assert shown.code == 0
     assert "out.nc: complete" in shown.out
-    found = json.loads(uq("status", "out.nc", "--json").out)
-    failed = found["failed"]
+    status = json.loads(uq("status", "out.nc", "--json").out)
+    failed = status["failed"]
     assert 0 < failed < 200
-    assert found == {
+    assert status == {
         "output": "out.nc",
         "state": "complete",
         "rows": 200,

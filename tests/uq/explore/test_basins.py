@@ -100,8 +100,8 @@ def test_all_outputs_but_errors_are_compared_by_default():
 
 
 def test_a_grid_may_have_any_number_of_dimensions():
-    one = uq.basins(WELLS, {"displacement": (0.5, 1.5, 3)})
-    assert one["attractor"].dims == ("displacement",)
+    basin = uq.basins(WELLS, {"displacement": (0.5, 1.5, 3)})
+    assert basin["attractor"].dims == ("displacement",)
     three = uq.basins(WELLS, {"shift": (-0.2, 0.3, 2), **AXES}, by=["mean"])
     assert three["place"].dims == ("shift", "displacement", "velocity")
     assert three["place"][1, 0, 4] == pytest.approx(-0.7, abs=1e-5)
@@ -238,9 +238,9 @@ def test_the_two_attractors_of_the_paper_at_47_rad_s():
         {"formulation": "as-printed", "transient": 300, "duration": 200},
         workers=0,
     )
-    one, other = ds["attractor"].values[1, 1], ds["attractor"].values[0, 0]
-    assert one != other
+    upper, other = ds["attractor"].values[1, 1], ds["attractor"].values[0, 0]
+    assert upper != other
     rates = ds["representative_progression_rate"]
-    np.testing.assert_allclose(rates[[one, other]], [0.0357, 0.0427], atol=1e-4)
+    np.testing.assert_allclose(rates[[upper, other]], [0.0357, 0.0427], atol=1e-4)
     assert ds["representative_regime"].values.tolist().count("quasi-periodic") >= 1
     assert ds["representative_regime"].values[other] == "undecided"

@@ -16,10 +16,10 @@ def flat(u, share=2e-5):
 
 
 def test_a_plateau_supports_what_its_independent_rows_do():
-    found = subset_simulation(flat, 2, 1000, np.random.default_rng(1).spawn(8))
-    assert [one.ended for one in found] == ["plateau"] * 8
-    assert [one.levels for one in found] == [1] * 8
-    low, high = subset_interval(found, 1000)
+    replicates = subset_simulation(flat, 2, 1000, np.random.default_rng(1).spawn(8))
+    assert [replicate.ended for replicate in replicates] == ["plateau"] * 8
+    assert [replicate.levels for replicate in replicates] == [1] * 8
+    low, high = subset_interval(replicates, 1000)
     assert low == 0 and high == pytest.approx(4.6e-4, rel=0.01)  # 1 - 0.025^(1/8000)
 
 
@@ -42,17 +42,20 @@ LIFE_ENDS = stats.norm.sf(np.log(1.8e-9 / 2.5e-10) / 0.5)
 def test_intervals_on_a_plateau_hold_the_truth(share):
     held = 0
     for seed in range(60):
-        found = subset_simulation(
+        replicates = subset_simulation(
             lambda u: flat(u, share), 2, 500, np.random.default_rng(seed).spawn(8)
         )
-        low, high = subset_interval(found, 500)
+        low, high = subset_interval(replicates, 500)
         held += low <= share <= high
     assert held >= 55
 
 
 def test_replicates_that_never_got_there_count_with_the_level_they_reached():
     inside = np.zeros((1, 2))
-    there = [Found(one, 5, inside, 1e-4, 0, "event") for one in (1e-6, 2e-6, 1.5e-6, 1.2e-6)]
+    there = [
+        Found(probability, 5, inside, 1e-4, 0, "event")
+        for probability in (1e-6, 2e-6, 1.5e-6, 1.2e-6)
+    ]
     stuck = [Found(0.0, 3, inside, 1e-3, 0, "plateau")]
     low, high = subset_interval(there + stuck, 1000)
     assert 0 <= low < 1e-6 and 2e-4 < high <= 1 - 0.025 ** (1 / 5000)
@@ -76,13 +79,16 @@ def test_intervals_hold_the_truth(margin, method):
     for seed in range(300):
         generators = np.random.default_rng(seed).spawn(8)
         if method == "subset":
-            found = [one.probability for one in subset_simulation(margin, 4, 1000, generators)]
+            probabilities = [
+                replicate.probability
+                for replicate in subset_simulation(margin, 4, 1000, generators)
+            ]
         else:
             drawn = [drawn_around(points, 1000, rng) for rng in generators]
-            found = [np.mean(weight * (margin(u) > 0)) for u, weight in drawn]
-        low, high = log_scatter_interval(np.array(found))
+            probabilities = [np.mean(weight * (margin(u) > 0)) for u, weight in drawn]
+        low, high = log_scatter_interval(np.array(probabilities))
         held.append(low <= 1e-6 <= high)
-        estimates.append(np.mean(found))
+        estimates.append(np.mean(probabilities))
     bias = np.mean(estimates) / 1e-6 - 1
     print(f"\n{margin.__name__} {method}: {np.mean(held):.1%}, bias {bias:.1%}")
     assert 0.92 <= np.mean(held) <= 0.98

@@ -46,11 +46,11 @@ def test_the_limit_of_what_is_seen_stands_beside_the_number(capsys):
     assert ds.attrs["estimated_by"] == "subset"
     assert float(ds["hidden_high"]) == pytest.approx(1 - 0.05 ** (1 / 10_000), rel=1e-3)
     assert "excluded only above 0.0003" in ds.attrs["notes"]
-    found = as_json(ds)
-    assert found["hidden_high"] == float(ds["hidden_high"])
-    assert found["interval_of"] == "of the part that the method reaches"
-    assert found["wide"]["rows"] == 8000 and found["wide"]["hits"] > 20
-    assert found["wide"]["low"] < 1e-6 < 3 * found["wide"]["value"]
+    document = as_json(ds)
+    assert document["hidden_high"] == float(ds["hidden_high"])
+    assert document["interval_of"] == "of the part that the method reaches"
+    assert document["wide"]["rows"] == 8000 and document["wide"]["hits"] > 20
+    assert document["wide"]["low"] < 1e-6 < 3 * document["wide"]["value"]
     show(ds, False, of, 4.753424)
     shown = capsys.readouterr().out
     assert "a hidden part" in shown and "rows drawn wide" in shown
@@ -67,7 +67,9 @@ def of_cliff(u):
 
 
 def replicates(*estimates):
-    return [Found(one, 6, np.zeros((1, 2)), 10 * one, 0, "event") for one in estimates]
+    return [
+        Found(estimate, 6, np.zeros((1, 2)), 10 * estimate, 0, "event") for estimate in estimates
+    ]
 
 
 def test_replicates_that_enter_by_luck_disagree():

@@ -109,12 +109,12 @@ def test_workers_change_no_bit():
 
 
 def test_the_seed_of_the_study_decides():
-    one, same, other = (
+    first, same, other = (
         rare_event(of, "y", 9.0, samples=100, replicates=1)
         for of in (linear(), linear(), with_seed(linear(), 4))
     )
-    assert one.identical(same)
-    assert not np.array_equal(one["estimate"], other["estimate"])
+    assert first.identical(same)
+    assert not np.array_equal(first["estimate"], other["estimate"])
 
 
 def test_random_numbers_of_a_model_are_part_of_the_event():

@@ -53,8 +53,8 @@ def test_subset_simulation_agrees_with_that_of_openturns(names, beyond):
     algorithm.setBlockSize(100)
     algorithm.run()
     theirs = algorithm.getResult().getProbabilityEstimate()
-    found = subset_simulation(margin, d, 1000, np.random.default_rng(1).spawn(8))
-    ours = np.mean([one.probability for one in found])
+    replicates = subset_simulation(margin, d, 1000, np.random.default_rng(1).spawn(8))
+    ours = np.mean([replicate.probability for replicate in replicates])
     truth = stats.norm.sf(beyond)
     assert ours == pytest.approx(truth, rel=0.25)
     assert ours == pytest.approx(theirs, rel=0.5)
@@ -139,9 +139,9 @@ def test_a_rare_angle_of_the_vibrator_against_brute_force():
         angle = alone.batch(x, seed, of.settings)[0]["theory_disphasing_angle"]
         hits += int((np.abs(angle) > limit).sum())
     brute = stats.binomtest(hits, total).proportion_ci(method="wilson")
-    found = rare_event(of, "theory_disphasing_angle", limit)
+    estimate = rare_event(of, "theory_disphasing_angle", limit)
     full = rare_event(of, "disphasing_angle", limit, method="importance")
-    print(f"\nbrute force {hits / total:.3g}, subset {interval(found)}, full {interval(full)}")
+    print(f"\nbrute force {hits / total:.3g}, subset {interval(estimate)}, full {interval(full)}")
     assert 3e-6 < hits / total < 3e-5
-    for ds in (found, full):
+    for ds in (estimate, full):
         assert interval(ds)[0] < brute.high and brute.low < interval(ds)[1]

@@ -42,29 +42,29 @@ def test_rows_of_every_design_are_computed_again_to_the_bit(case):
     make, model = CASES[case]
     ds = make()
     for number in np.linspace(0, ds.sizes["row"] - 1, 7).astype(int):
-        found = row_again(Result(ds), int(number), model=model)
-        assert found.equal and not found.reason
-        assert found.again.status[0] == ds["status"][number]
+        recomputed = row_again(Result(ds), int(number), model=model)
+        assert recomputed.equal and not recomputed.reason
+        assert recomputed.again.status[0] == ds["status"][number]
         changed = ds.assign(x1=ds["x1"] * (1 + 2e-16))
         assert row_again(Result(changed), int(number), model=model).differing == ("x1",)
 
 
 def test_a_row_is_that_of_simulate_and_says_where_it_comes_from(uq, write_study):
     uq("run", write_study("linear", "saltelli", 16, uncertain=("x1", "x3")), "-o", "out.nc")
-    found = strict_json(uq("row", "out.nc", 6, "--json").out)
+    document = strict_json(uq("row", "out.nc", 6, "--json").out)
     ds = api.open_result("out.nc")
-    values = [f"--set={name}={value!r}" for name, value in found["inputs"].items()]
+    values = [f"--set={name}={value!r}" for name, value in document["inputs"].items()]
     once = strict_json(uq("simulate", "linear", "--json", *values).out)
-    assert once.items() <= found.items()
-    assert found["row"] == 6 and found["equal"] is True
-    assert found["inputs"]["x1"] == ds["x1"][6] and found["inputs"]["x2"] == 0.5
-    assert found["place"] == {"replicate": 0, "group": 1, "block": "AB_x3"}
+    assert once.items() <= document.items()
+    assert document["row"] == 6 and document["equal"] is True
+    assert document["inputs"]["x1"] == ds["x1"][6] and document["inputs"]["x2"] == 0.5
+    assert document["place"] == {"replicate": 0, "group": 1, "block": "AB_x3"}
     shown = uq("row", "out.nc", 6).out
     assert "linear, row 6 of 64: ok" in shown and "block AB_x3" in shown
     assert f"x1  {ds['x1'][6].item():.5g}" in shown and "x2  " not in shown
     assert "Computed again: equal to the bit." in shown
-    one = api.row("out.nc", 6)
-    assert one["equal"].item() is True and one["y"].item() == ds["y"][6]
+    row = api.row("out.nc", 6)
+    assert row["equal"].item() is True and row["y"].item() == ds["y"][6]
 
 
 def test_units_are_prefixed(uq, write_study):
@@ -101,10 +101,12 @@ def test_the_row_near_a_quantile_is_the_closest_to_that_of_the_summary(p):
     ds = kinds(samples=200, analysis={"quantiles": [p]})
     quantile = api.summary(ds)[f"q{p}"]
     for name in ("work[side=left]", "angle"):
-        found = row_again(Result(ds), near_quantile=(p, name), model=KINDS)
+        recomputed = row_again(Result(ds), near_quantile=(p, name), model=KINDS)
         values = ds["angle"] if name == "angle" else ds["work"].sel(side="left")
         distance = np.abs(values - quantile[name]).values
-        assert distance[found.number] == pytest.approx(np.nanmin(distance)) and found.equal
+        assert (
+            distance[recomputed.number] == pytest.approx(np.nanmin(distance)) and recomputed.equal
+        )
 
 
 def test_the_row_near_a_quantile_of_lives_may_never_end():
@@ -159,10 +161,10 @@ def test_a_failed_row_fails_again_for_the_same_reason(uq, write_study):
     ended = uq("row", "out.nc", number)
     assert ended.code == 0 and "equal to the bit" in ended.out  # with the settings of this row
     last = int((api.open_result("out.nc")["status"].values == Status.RAISED).argmax())
-    found = strict_json(uq("row", "out.nc", last, "--json").out)
+    document = strict_json(uq("row", "out.nc", last, "--json").out)
     meaning = "ValueError: x1 is above fail_above = 0.6"
-    assert found["status"] == {"code": "raised", "meaning": meaning}
-    assert found["equal"] and found["outputs"] == {"y": None}
+    assert document["status"] == {"code": "raised", "meaning": meaning}
+    assert document["equal"] and document["outputs"] == {"y": None}
     assert f"raised  {meaning}" in " ".join(uq("row", "out.nc", last).out.split("\n"))
 
 
@@ -173,25 +175,25 @@ def test_a_row_that_crashed_crashes_again_but_not_this_process(uq, write_study):
     assert uq("run", path, "-o", "out.nc", "--quiet").code == 0
     ds = api.open_result("out.nc")
     number = int((ds["status"].values == Status.CRASHED).argmax())
-    found = strict_json(uq("row", "out.nc", number, "--json").out)
-    assert found["status"]["code"] == "crashed" and found["equal"]
-    assert "killed its process" in found["status"]["meaning"]
+    document = strict_json(uq("row", "out.nc", number, "--json").out)
+    assert document["status"]["code"] == "crashed" and document["equal"]
+    assert "killed its process" in document["status"]["meaning"]
 
 
 def test_a_row_that_outlived_its_limit_is_not_computed_again():
-    found = row_again(Result(with_status(linear(), 3, Status.TIMED_OUT)), 3)
-    assert not found.equal and found.again is None
-    assert found.reason == "it cannot be computed again: it outlived its time limit"
+    recomputed = row_again(Result(with_status(linear(), 3, Status.TIMED_OUT)), 3)
+    assert not recomputed.equal and recomputed.again is None
+    assert recomputed.reason == "it cannot be computed again: it outlived its time limit"
 
 
 def test_what_differs_is_named_with_its_reason(uq, write_study):
     uq("run", write_study(samples=12), "-o", "out.nc", "--quiet", "--workers", 0)
     with netCDF4.Dataset("out.nc", "a") as file:
         file["y"][3] += 1e-12
-    found = strict_json(uq("row", "out.nc", 3, "--json").out)
-    there, here = found["outputs"]["y"], found["again"]["outputs"]["y"]
-    assert (found["equal"], found["differing"]) == (False, ["y"]) and here != there
-    assert found["reason"] == (
+    document = strict_json(uq("row", "out.nc", 3, "--json").out)
+    there, here = document["outputs"]["y"], document["again"]["outputs"]["y"]
+    assert (document["equal"], document["differing"]) == (False, ["y"]) and here != there
+    assert document["reason"] == (
         "either out.nc has been changed, which 'uq verify' checks, or the model does not return the"
         " same for the same row"
     )
@@ -215,9 +217,9 @@ def test_without_its_model_a_row_is_shown_alone(uq, write_study):
     path = write_study(uncertain=("x1", "x2"))
     uq("run", path, "-o", "out.nc", "--model", KINDS, "--quiet", "--workers", 0)
     assert strict_json(uq("row", "out.nc", 1, "--model", KINDS, "--json").out)["equal"]
-    found = strict_json(uq("row", "out.nc", 1, "--json").out)
-    assert found["equal"] is False and found["outputs"]["regime"] in ("slow", "fast")
-    assert found["reason"].startswith("it cannot be computed again: ")
+    document = strict_json(uq("row", "out.nc", 1, "--json").out)
+    assert document["equal"] is False and document["outputs"]["regime"] in ("slow", "fast")
+    assert document["reason"].startswith("it cannot be computed again: ")
     with netCDF4.Dataset("out.nc", "a") as file:
         file.setncattr("study", file.study.replace('"ishigami"', '"gone"'))
     ended = uq("row", "out.nc", 1)
@@ -240,21 +242,21 @@ def test_imported_rows_are_computed_again_too(tmp_path):
 
     given = tables({"x1": UNIFORM, "x2": UNIFORM}, "imported", 20, design={"file": "rows.nc"})
     ds = computed(study_from_text(as_text(given), folder=tmp_path))
-    found = row_again(Result(ds), 7)
-    assert found.equal and found.again.values["x2"] == x[7, 1]
+    recomputed = row_again(Result(ds), 7)
+    assert recomputed.equal and recomputed.again.values["x2"] == x[7, 1]
 
 
 def test_the_trajectory_of_a_row_is_that_of_its_inputs_and_seed(uq, write_study, folder):
     path = write_study(uncertain=("x1",))
     uq("run", path, "-o", "out.nc", "--model", KINDS, "--quiet", "--workers", 0)
-    found = api.row("out.nc", lowest="work[side=left]", model=KINDS)
+    recomputed = api.row("out.nc", lowest="work[side=left]", model=KINDS)
     lowest = api.open_result("out.nc")["x1"].min().item()
-    assert found["trajectory"].sel(quantity="x")[-1] == found["x1"].item() == lowest
+    assert recomputed["trajectory"].sel(quantity="x")[-1] == recomputed["x1"].item() == lowest
     assert "trajectory" not in api.row("out.nc", 0, model=KINDS, trajectory=False)
     given = ("--lowest", "work", "--model", KINDS)
     assert uq("row", "out.nc", *given, "--plot", "new/t.png").code == 0
     assert Path("new/t.png").read_bytes().startswith(b"\x89PNG")
-    found.to_netcdf("kept.nc")
+    recomputed.to_netcdf("kept.nc")
     refused = uq("row", "out.nc", *given, "--plot", "t.xyz")
     assert refused.code == 2 and "t.xyz: Format 'xyz' is not supported" in refused.err
     refused = uq("row", "out.nc", *given, "--plot", "/proc/t.png")
@@ -264,17 +266,17 @@ def test_the_trajectory_of_a_row_is_that_of_its_inputs_and_seed(uq, write_study,
 
 def test_a_row_of_a_sample_of_several_units_is_drawn():
     ds = computed(nested({"x1": "own", "x2": "chance"}, KINDS, samples=2))
-    found = api.row(ds, 3, model=KINDS)
-    assert found["unit"].item() == ds["unit"].values[3]
-    assert found["trajectory"]["units"].values[0] == "m"
-    assert "[" in words(api.plots.motion(found))
+    recomputed = api.row(ds, 3, model=KINDS)
+    assert recomputed["unit"].item() == ds["unit"].values[3]
+    assert recomputed["trajectory"]["units"].values[0] == "m"
+    assert "[" in words(api.plots.motion(recomputed))
 
 
 def test_a_study_of_one_row_has_a_row():
-    one = {"method": "monte-carlo", "samples": 1}
+    design = {"method": "monte-carlo", "samples": 1}
     given = {
         "study": {"name": "one", "model": "linear"},
-        "design": one,
+        "design": design,
         "uncertain": {"x1": UNIFORM},
     }
     assert row_again(Result(computed(study_of(given))), 0).equal

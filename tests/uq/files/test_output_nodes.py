@@ -18,8 +18,8 @@ def fifo(path):
 
 
 def bound(path):
-    with socket.socket(socket.AF_UNIX) as one:
-        one.bind(str(path))
+    with socket.socket(socket.AF_UNIX) as bound_socket:
+        bound_socket.bind(str(path))
     return "a socket"
 
 
@@ -93,8 +93,10 @@ def test_a_name_too_long_is_refused(uq, result, folder, length):
         ended = uq(*line.replace("node", name).split())
         assert (ended.code, ended.out) == (2, ""), line
         assert ended.err.startswith(f"{name}: ") and ended.err.count("\n") == 1, line
-        said = ended.err.removeprefix(f"{name}: ")
-        assert said.startswith("is too long a name") or (length == 230 and "no such" in said), line
+        message = ended.err.removeprefix(f"{name}: ")
+        assert message.startswith("is too long a name") or (
+            length == 230 and "no such" in message
+        ), line
         assert state(folder) == before
 
 

@@ -23,8 +23,8 @@ def of_case(words, samples, seed=1):
     return problems.computed(problems.with_seed(of, seed)), case
 
 
-def widths(found):
-    return np.array([one.high - one.low for one in found.values()])
+def widths(effects):
+    return np.array([estimate.high - estimate.low for estimate in effects.values()])
 
 
 def controlled_and_alone(ds, output):
@@ -36,31 +36,33 @@ def controlled_and_alone(ds, output):
 @pytest.mark.parametrize("words", ["correlation 0", "correlation 0.9", "interaction"])
 def test_effects_of_polynomials_in_normal_inputs_are_exact(words):
     ds, case = of_case(words, 128)
-    found = entry_of(ds)["shapley"]
+    effects = entry_of(ds)["shapley"]
     for name, value in case.truth.items():
-        assert found[name]["value"] == pytest.approx(value, abs=1e-10)
+        assert effects[name]["value"] == pytest.approx(value, abs=1e-10)
         if value:
-            assert found[name]["low"] < value < found[name]["high"] < found[name]["low"] + 1e-8
+            assert (
+                effects[name]["low"] < value < effects[name]["high"] < effects[name]["low"] + 1e-8
+            )
 
 
 def test_effects_of_polynomials_of_higher_degree_are_exact():
     # Given one of two scores with correlation r, the mean of the other's Hermite polynomial of
     # degree n has r^2n of its variance: here 2 of the square of x1, 1.5 of the cube of x4.
-    r, square, cube, own = 0.6, 2.0, 1.5, 1.0
+    r, square, cube, cross = 0.6, 2.0, 1.5, 1.0
     ds = weighted(r, 256)
     x1, x3, x4 = (ds[name].values for name in ("x1", "x3", "x4"))
     y = x1**2 + (x4**3 - 3 * x4) / 2 + x3
-    found = entry_of(with_output(ds, "weighted", y))["shapley"]
+    effects = entry_of(with_output(ds, "weighted", y))["shapley"]
     alone = square + cube * r**6, cube + square * r**4
-    both, whole = square + cube, square + cube + own
+    both, whole = square + cube, square + cube + cross
     truth = {
         "x1": (alone[0] + both - alone[1]) / 2 / whole,
         "x4": (alone[1] + both - alone[0]) / 2 / whole,
-        "x2": own * r**2 / 2 / whole,
-        "x3": own * (1 - r**2 / 2) / whole,
+        "x2": cross * r**2 / 2 / whole,
+        "x3": cross * (1 - r**2 / 2) / whole,
     }
     for name, value in truth.items():
-        assert found[name]["value"] == pytest.approx(value, abs=1e-9)
+        assert effects[name]["value"] == pytest.approx(value, abs=1e-9)
 
 
 def test_values_of_polynomials_are_those_of_many_rows():
@@ -69,7 +71,7 @@ def test_values_of_polynomials_are_those_of_many_rows():
     terms = polynomials.terms_of(range(3), c, 100)
     rng = np.random.default_rng(1)
     weights = rng.standard_normal((len(terms), 1))
-    found = polynomials.shapley_values(weights, terms, c)
+    values = polynomials.shapley_values(weights, terms, c)
 
     def y(z):
         return (polynomials.products(z, terms, c) @ weights)[:, 0]
@@ -95,7 +97,7 @@ def test_values_of_polynomials_are_those_of_many_rows():
         for some in combinations(range(3), size)
     }
     many = dependent_effects.shares(lambda some: explained[tuple(sorted(some))], 3)
-    assert found / found.sum() == pytest.approx(many, abs=0.03)
+    assert values / values.sum() == pytest.approx(many, abs=0.03)
 
 
 def test_the_degree_is_what_the_rows_allow():
@@ -119,7 +121,7 @@ def test_what_resembles_a_polynomial_has_narrower_intervals():
         assert (widths(ours) < factor * widths(alone)).all()
         for name, value in case.truth.items():
             assert abs(ours[name].value - value) < 0.75 * (ours[name].high - ours[name].low)
-        assert sum(one.value for one in ours.values()) == pytest.approx(1.0)
+        assert sum(estimate.value for estimate in ours.values()) == pytest.approx(1.0)
 
 
 def test_what_does_not_resemble_one_has_intervals_as_without():
@@ -135,20 +137,20 @@ def test_elements_of_an_output_add_up():
     r = 0.6
     ds = weighted(r, 256)
     both = np.stack([ds["weighted"].values, ds["x3"].values], axis=1)
-    found = METHODS["shapley"].indices(replace(sample_of(Result(ds)), values=both))
+    result = METHODS["shapley"].indices(replace(sample_of(Result(ds)), values=both))
     sizes = 6.0 + 4.0 * r, 1.0
     alone = {"x2": r**2 / 2, "x3": 1 - r**2 / 2}
     for name, value in dependent.of_normal(r).items():
         truth = (sizes[0] * value + sizes[1] * alone.get(name, 0.0)) / sum(sizes)
-        assert found.values[SHAPLEY][name].value == pytest.approx(truth, abs=1e-9)
+        assert result.values[SHAPLEY][name].value == pytest.approx(truth, abs=1e-9)
 
 
 def test_discrete_inputs_stay_with_the_paths():
     # A sign, independent of the numbers, with a third of the variance.
     laws = {"x1": dependent.SIGN, "x2": dependent.NORMAL, "x3": dependent.NORMAL}
     of = dependent.study("sum", laws, np.eye(3), 512)
-    found = entry_of(problems.computed(of))["shapley"]
-    assert_near(found, dict.fromkeys(laws, 1 / 3))
+    effects = entry_of(problems.computed(of))["shapley"]
+    assert_near(effects, dict.fromkeys(laws, 1 / 3))
 
 
 @pytest.mark.parametrize("words", ["correlation 0.9", "exponential, correlation 0.6"])
@@ -160,6 +162,6 @@ def test_intervals_are_narrower_than_those_of_nearest_neighbours(words):
     rows = problems.computed(rows)
     x = rows[list(case.laws)].to_dataarray().values.T
     y = rows[case.output].values
-    found = np.array([by_neighbours(x[i::8], y[i::8]) for i in range(8)])
-    theirs = 2 * 2.365 * found.std(axis=0, ddof=1) / np.sqrt(8)
+    estimates = np.array([by_neighbours(x[i::8], y[i::8]) for i in range(8)])
+    theirs = 2 * 2.365 * estimates.std(axis=0, ddof=1) / np.sqrt(8)
     assert (widths(ours) < 0.5 * theirs).all()

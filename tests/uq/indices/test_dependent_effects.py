@@ -17,7 +17,9 @@ def test_shapley_effects_of_dependent_inputs_are_the_known_ones():
     for r in (0.3, 0.9):
         entry = entry_of(weighted(r))
         assert_near(entry["shapley"], dependent.of_normal(r))
-        assert sum(one["value"] for one in entry["shapley"].values()) == pytest.approx(1.0)
+        assert sum(estimate["value"] for estimate in entry["shapley"].values()) == pytest.approx(
+            1.0
+        )
 
 
 def test_shapley_effects_of_discrete_inputs_are_the_known_ones():
@@ -33,7 +35,7 @@ def test_shapley_effects_of_a_factor_and_a_truncated_law_are_the_known_ones():
     c_law = {"distribution": "uniform", "lower": 0.0, "upper": 9.0}
     both = {"parameters": ["a", "c"], "rank_correlation": dependent.ranks([[1.0, r], [r, 1.0]])}
     given = tables({"a": a_law, "b": factor, "c": c_law}, "shapley", 4096, dependence=both)
-    found = entry_of(computed(study_of(given, "sample_models:ADDED")))["shapley"]
+    effects = entry_of(computed(study_of(given, "sample_models:ADDED")))["shapley"]
 
     z = np.linspace(-7.0, 7.0, 701)
     density = stats.multivariate_normal(cov=[[1.0, r], [r, 1.0]])
@@ -51,7 +53,7 @@ def test_shapley_effects_of_a_factor_and_a_truncated_law_are_the_known_ones():
         mid -= (weight * (of_a * (1 + mean) + rest)).sum() ** 2
         return mid, sd**2 * (weight * (of_a + 0 * c) ** 2).sum()
 
-    one = {
+    variances = {
         (): (0.0, sd**2 * float((weight * a).sum()) ** 2),
         (0,): variance(a, given_a[:, None]),
         (2,): variance(given_c[None, :], c),
@@ -59,11 +61,11 @@ def test_shapley_effects_of_a_factor_and_a_truncated_law_are_the_known_ones():
     }
 
     def explained(some):
-        without, of_factor = one[tuple(sorted(i for i in some if i != 1))]
+        without, of_factor = variances[tuple(sorted(i for i in some if i != 1))]
         return without + of_factor * (1 in some)
 
     truth = dict(zip(("a", "b", "c"), dependent_effects.shares(explained, 3), strict=True))
-    assert_near(found, truth)
+    assert_near(effects, truth)
 
 
 def test_linear_models_of_correlated_normal_inputs_have_the_published_effects():
@@ -82,9 +84,14 @@ def test_failed_rows_leave_with_their_paths():
     ds = weighted(0.6, 256)
     y = ds["weighted"].values.copy()
     y[7] = np.nan
-    found = sensitivities(with_status(with_output(ds, "weighted", y), [7], 2), output="weighted")
-    assert (found["groups_dropped"], found["rows_used"]) == (1, 255 * 5)
-    total = sum(one["value"] for one in found["outputs"]["weighted"]["shapley"].values())
+    sensitivity_result = sensitivities(
+        with_status(with_output(ds, "weighted", y), [7], 2), output="weighted"
+    )
+    assert (sensitivity_result["groups_dropped"], sensitivity_result["rows_used"]) == (1, 255 * 5)
+    total = sum(
+        estimate["value"]
+        for estimate in sensitivity_result["outputs"]["weighted"]["shapley"].values()
+    )
     assert total == pytest.approx(1.0)
 
 
@@ -97,9 +104,11 @@ def test_rows_of_another_dependence_are_refused():
 
 
 def test_designs_for_dependent_inputs_are_named_with_what_they_feed():
-    said = refusal(tables({"x1": UNIFORM, "x3": UNIFORM}, "saltelli", 128, dependence=PAIR))
-    assert "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and" in said
-    assert said.endswith(", or shapley for shapley")
+    message = refusal(tables({"x1": UNIFORM, "x3": UNIFORM}, "saltelli", 128, dependence=PAIR))
+    assert (
+        "use monte-carlo or latin-hypercube or sobol or halton or rbd-fast for delta and" in message
+    )
+    assert message.endswith(", or shapley for shapley")
 
 
 def test_paths_have_no_effects_within_a_regime():

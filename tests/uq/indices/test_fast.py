@@ -13,22 +13,22 @@ from computed import (
     with_status,
 )
 from SALib.analyze import fast as salib_fast
-from screened import A, found, g_function, ishigami
+from screened import A, g_function, index_entry, ishigami
 
 
 def test_a_failed_row_takes_its_curve_along():
     ds = linear("fast", 129, 4)
-    full = found(ds)
+    full = index_entry(ds)
     y = ds["y"].values.copy()
     y[0] = np.nan
     hurt = with_status(with_output(ds, "z", y), [0], 2)
     indices = sensitivities(asking(hurt, outputs=["z"]))
     assert (indices["groups_dropped"], indices["rows_used"]) == (1, 15 * 129)
     for kind in ("S1", "ST"):
-        for name, one in indices["outputs"]["z"][kind].items():
-            assert one["value"] == pytest.approx(full[kind][name]["value"], abs=0.02)
+        for name, estimate in indices["outputs"]["z"][kind].items():
+            assert estimate["value"] == pytest.approx(full[kind][name]["value"], abs=0.02)
     y[ds["block"].values == 0] = np.nan
-    gone = found(asking(with_output(ds, "z", y), outputs=["z"]), "z")
+    gone = index_entry(asking(with_output(ds, "z", y), outputs=["z"]), "z")
     assert gone["refused"] == "none of 4 curves for x1 has a value in each row"
 
 
@@ -50,11 +50,11 @@ G_FUNCTION = {
     ids=["ishigami", "g-function"],
 )
 def test_extended_fast_comes_close_and_claims_no_interval(study, exact):
-    entry = found(computed(study))
+    entry = index_entry(computed(study))
     for kind, values in exact.items():
-        for one, value in zip(entry[kind].values(), values, strict=True):
-            assert one["value"] == pytest.approx(value, abs=0.05)  # ST of x2 is 0.045 off
-            assert one["low"] is None and one["high"] is None
+        for estimate, value in zip(entry[kind].values(), values, strict=True):
+            assert estimate["value"] == pytest.approx(value, abs=0.05)  # ST of x2 is 0.045 off
+            assert estimate["low"] is None and estimate["high"] is None
     assert entry["notes"][0].startswith("no intervals: the method's own error")
 
 
@@ -65,20 +65,20 @@ def test_extended_fast_is_that_of_salib():
     with pytest.warns(UserWarning, match="FAST confidence intervals"):
         theirs = salib_fast.analyze(problem, ds["y"].values[order], num_resamples=2)
     for kind in ("S1", "ST"):
-        ours = [one["value"] for one in found(ds)[kind].values()]
+        ours = [estimate["value"] for estimate in index_entry(ds)[kind].values()]
         np.testing.assert_allclose(ours, theirs[kind], rtol=1e-9, atol=1e-12)
 
 
 def test_too_few_points_for_the_inputs_are_refused():
-    (_, note) = found(computed(g_function("fast", 129)))["notes"]
+    (_, note) = index_entry(computed(g_function("fast", 129)))["notes"]
     assert note == "7 inputs share 2 frequencies; samples = 449 would give each its own"
-    assert len(found(computed(g_function("fast", 449)))["notes"]) == 1
+    assert len(index_entry(computed(g_function("fast", 449)))["notes"]) == 1
 
 
 @pytest.mark.parametrize("study", [ishigami, g_function])
 def test_a_random_balance_design_feeds_rbd_fast(study):
     exact = ISHIGAMI if study is ishigami else G_FUNCTION
-    entry = found(computed(study("rbd-fast", 2048, 1)))
-    for one, value in zip(entry["S1"].values(), exact["S1"], strict=True):
-        assert one["value"] == pytest.approx(value, abs=0.06)
+    entry = index_entry(computed(study("rbd-fast", 2048, 1)))
+    for estimate, value in zip(entry["S1"].values(), exact["S1"], strict=True):
+        assert estimate["value"] == pytest.approx(value, abs=0.06)
     assert 0 < entry["dummy"]["S1"] < 0.1

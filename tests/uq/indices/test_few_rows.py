@@ -41,10 +41,10 @@ def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
 
 
 def test_an_event_with_fewer_than_twenty_hits_is_warned_of():
-    found = of_event(0.05)
-    assert "hits in 2 048 rows, 1" in found["notes"][0] and "rough" in found["notes"][0]
-    assert "too narrow" not in found["notes"][0] and "are conservative" in found["notes"][1]
-    assert found["S1"]["x1"]["value"] == pytest.approx(0.169, abs=0.15)
+    entry = of_event(0.05)
+    assert "hits in 2 048 rows, 1" in entry["notes"][0] and "rough" in entry["notes"][0]
+    assert "too narrow" not in entry["notes"][0] and "are conservative" in entry["notes"][1]
+    assert entry["S1"]["x1"]["value"] == pytest.approx(0.169, abs=0.15)
     assert not any("rough" in note for note in of_event(0.3)["notes"])
 
 
@@ -90,15 +90,17 @@ def test_rows_that_a_variance_rests_on():
 def test_an_output_of_two_values_is_an_event(hits, refused, values):
     ds = linear("saltelli", samples=64, replicates=2)
     some = ds["x1"].values < hits / 128
-    found = sensitivities(with_output(ds, "hit", np.where(some, values[1], values[0])), "sobol")
-    (entry,) = [one for name, one in found["outputs"].items() if "hit" in name]
+    sensitivity_result = sensitivities(
+        with_output(ds, "hit", np.where(some, values[1], values[0])), "sobol"
+    )
+    (entry,) = [indices for name, indices in sensitivity_result["outputs"].items() if "hit" in name]
     assert ("needed for an index" in entry.get("refused", "")) is refused
 
 
 def of_paths(values, samples=33):
     ds = linear("shapley", samples=samples)
-    found = sensitivities(with_output(ds, "z", values(ds)), None, "z")
-    (entry,) = found["outputs"].values()
+    sensitivity_result = sensitivities(with_output(ds, "z", values(ds)), None, "z")
+    (entry,) = sensitivity_result["outputs"].values()
     return entry
 
 

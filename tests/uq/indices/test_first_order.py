@@ -53,14 +53,14 @@ def step(u):
 )
 def test_a_share_is_without_bias_and_its_interval_covers(function, within):
     """Random balance gives 0.948, 0.31, 0.73 and 0.46 instead of 0.962, 0.6, 0.85 and 0.52."""
-    found, held = [], []
+    estimates, held = [], []
     for seed in range(REPETITIONS):
         u = np.random.default_rng(seed).random((1000, 2))
         y, truth = function(u)
-        one = shares_of(y, a=u[:, 0], b=u[:, 1]).values[S1]["a"]
-        found.append(one.value)
-        held += [one.low <= truth <= one.high] if one.has_interval else []
-    assert np.mean(found) == pytest.approx(truth, abs=within)
+        share = shares_of(y, a=u[:, 0], b=u[:, 1]).values[S1]["a"]
+        estimates.append(share.value)
+        held += [share.low <= truth <= share.high] if share.has_interval else []
+    assert np.mean(estimates) == pytest.approx(truth, abs=within)
     assert len(held) >= REPETITIONS // 2 and np.mean(held) > 0.85
 
 
@@ -141,21 +141,21 @@ def test_of_few_rows_no_index_has_an_interval_and_none_leads():
 
 def test_rows_of_a_sequence_are_compared_between_replicates():
     """Neighbours in one Sobol' sequence differ more than independent rows: 0.06 too low."""
-    found = []
+    estimates = []
     for seed in range(12):
         u = np.vstack([qmc.Sobol(4, seed=8 * seed + k).random(64) for k in range(8)])
         y, part = u @ np.array([1.0, 2.0, 3.0, 4.0]), np.repeat(np.arange(8), 64)
-        one = shares_of(y, part, a=u[:, 0], d=u[:, 3]).values[S1]["d"]
-        assert one.low < 16 / 30 < one.high
-        found.append(one.value)
-    assert np.mean(found) == pytest.approx(16 / 30, abs=0.02)
+        share = shares_of(y, part, a=u[:, 0], d=u[:, 3]).values[S1]["d"]
+        assert share.low < 16 / 30 < share.high
+        estimates.append(share.value)
+    assert np.mean(estimates) == pytest.approx(16 / 30, abs=0.02)
 
 
 def test_one_replicate_has_no_interval():
     ds = linear("sobol", samples=128)
-    found = shares_of(ds["y"].values, ds["replicate"].values, x4=ds["x4"].values)
-    assert not found.values[S1]["x4"].has_interval and found.nulls
-    assert found.notes[0].startswith("the rows of one replicate depend on each other")
+    result = shares_of(ds["y"].values, ds["replicate"].values, x4=ds["x4"].values)
+    assert not result.values[S1]["x4"].has_interval and result.nulls
+    assert result.notes[0].startswith("the rows of one replicate depend on each other")
 
 
 def product(of_pair):
@@ -171,20 +171,20 @@ def product(of_pair):
 @pytest.mark.parametrize("of_pair", [np.array, np.sign])
 def test_what_leads_alone_is_called_so_and_what_is_beyond_single_inputs_stated(of_pair):
     """Polynomials do not represent the sign of a product: the design that shows it is named."""
-    found = answer(product(of_pair))
-    ranking = found.lead.ranking
+    conclusions = answer(product(of_pair))
+    ranking = conclusions.lead.ranking
     assert ranking.sentence.startswith("x3 alone contributes most: ")
     assert ranking.contributions[0].inputs == ("x3",) and ranking.may_be_overturned
-    said = answer_json(found)["quantities"]["life"]["ranking"]
-    assert said["unexplained"]["value"] == pytest.approx(0.91, abs=0.06)
+    ranking_json = answer_json(conclusions)["quantities"]["life"]["ranking"]
+    assert ranking_json["unexplained"]["value"] == pytest.approx(0.91, abs=0.06)
     *_, text = ranking.sentence.split("No single input explains ")
-    assert numbers_in(text)[0] == round(100 * said["unexplained"]["value"])
+    assert numbers_in(text)[0] == round(100 * ranking_json["unexplained"]["value"])
     if of_pair is np.sign:
         assert "interactions could change the order; a 'saltelli' design shows them." in text
     else:
-        assert list(said["totals"])[:2] in (["x1", "x2"], ["x2", "x1"])
-        assert said["totals"]["x1"] == pytest.approx(0.92, abs=0.06)
-    assert not any(one.rule in ("measure", "source") for one in found.advice)
+        assert list(ranking_json["totals"])[:2] in (["x1", "x2"], ["x2", "x1"])
+        assert ranking_json["totals"]["x1"] == pytest.approx(0.92, abs=0.06)
+    assert not any(advice.rule in ("measure", "source") for advice in conclusions.advice)
 
 
 def test_random_balance_is_a_method_by_name_and_ranks_nothing():

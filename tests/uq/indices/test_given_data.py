@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import openturns as ot
 import pytest
-from asked_indices import sensitivities
+from asked_indices import sensitivities, values
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
@@ -54,10 +54,6 @@ def entry_of(ds, method, output="y"):
     return sensitivities(ds, method, output)["outputs"][output]
 
 
-def values(entry, kind):
-    return [index["value"] for index in entry[kind].values()]
-
-
 def columns(ds, names):
     return ot.Sample(np.column_stack([ds[name].values for name in names]))
 
@@ -65,17 +61,17 @@ def columns(ds, names):
 @pytest.mark.parametrize("model", CASES)
 def test_first_order_indices_by_rbd_fast_are_the_known_ones_and_openturns(model):
     ds = plain(model, 2048)
-    found = values(entry_of(ds, "rbd-fast"), "S1")
-    assert found == pytest.approx(FIRST[model], abs=0.05)
+    first_order_values = values(entry_of(ds, "rbd-fast"), "S1")
+    assert first_order_values == pytest.approx(FIRST[model], abs=0.05)
     rank = ot.RankSobolSensitivityAlgorithm(
         columns(ds, CASES[model][0]), ot.Sample(ds["y"].values[:, None])
     )
     # Chatterjee's ranks, a noisier estimate of the same number.
-    assert found == pytest.approx(list(rank.getFirstOrderIndices()), abs=0.1)
+    assert first_order_values == pytest.approx(list(rank.getFirstOrderIndices()), abs=0.1)
 
 
 @pytest.mark.parametrize(
-    "model", [pytest.param(one, marks=[pytest.mark.slow] * (one != "linear")) for one in CASES]
+    "model", [pytest.param(case, marks=[pytest.mark.slow] * (case != "linear")) for case in CASES]
 )
 def test_expansion_gives_the_known_indices_and_those_of_openturns(model):
     ds = plain(model)
@@ -130,8 +126,12 @@ def test_the_method_that_a_refusal_names_accepts_what_was_refused():
     ):
         with pytest.raises(RefusedError, match="use pawn$"):
             METHODS[method].indices(DesignSample.plain(y, inputs))
-        found = METHODS["pawn"].indices(DesignSample.plain(y, inputs))
-        assert all(np.isfinite(one.value) for own in found.values.values() for one in own.values())
+        result = METHODS["pawn"].indices(DesignSample.plain(y, inputs))
+        assert all(
+            np.isfinite(index.value)
+            for indices_of_kind in result.values.values()
+            for index in indices_of_kind.values()
+        )
 
 
 @pytest.mark.slow
@@ -140,24 +140,24 @@ def test_delta_and_pawn_are_those_of_brute_force(model):
     ds, big = plain(model, 2048), plain(model, 400_000, seed=2)
     names, y = CASES[model][0], big["y"].values
     for method, distance, tolerance in (("delta", _area, 0.1), ("pawn", _ks_median, 0.08)):
-        found = dict(zip(names, values(entry_of(ds, method), method), strict=True))
+        value_by_name = dict(zip(names, values(entry_of(ds, method), method), strict=True))
         dummy = entry_of(ds, method)["dummy"][method]
         for name in names[:4]:
             order = np.argsort(big[name].values)
             expected = distance(y, [y[part] for part in np.array_split(order, 50)])
             # An index of an input that plays no part is not zero in slices of few rows.
-            assert found[name] == pytest.approx(expected, abs=max(tolerance, dummy)), name
+            assert value_by_name[name] == pytest.approx(expected, abs=max(tolerance, dummy)), name
 
 
 def _area(y, slices):
     edges = np.quantile(y, np.linspace(0, 1, 101))
     whole = np.histogram(y, edges)[0] / len(y)
-    areas = [abs(np.histogram(one, edges)[0] / len(one) - whole).sum() / 2 for one in slices]
+    areas = [abs(np.histogram(part, edges)[0] / len(part) - whole).sum() / 2 for part in slices]
     return np.mean(areas)
 
 
 def _ks_median(y, slices):
-    return np.median([stats.ks_2samp(one, y[::40], method="asymp").statistic for one in slices])
+    return np.median([stats.ks_2samp(part, y[::40], method="asymp").statistic for part in slices])
 
 
 def test_quantile_indices_of_a_normal_sum_are_the_closed_form():
@@ -208,16 +208,16 @@ def test_arrays_hold_indices_of_other_names_side_by_side():
     ds = linear(samples=2000)
     ds = with_output(ds, "life", 1.0 + ds["x1"].values, kind="lifetime")
     ds = with_output(ds, "late", np.where(ds["x2"] > 0.9, np.inf, 1 + ds["x2"]), kind="lifetime")
-    found = sensitivity(asking(ds, quantiles=[0.5]), "quantile")
+    arrays = sensitivity(asking(ds, quantiles=[0.5]), "quantile")
     plain = sensitivities(asking(ds, quantiles=[0.5]), "quantile")["outputs"]
     assert {"Q0.5", "B10", "B50"} <= {kind for entry in plain.values() for kind in entry}
     for name, entry in plain.items():
         for kind in ("Q0.5", "B10", "B50"):
-            row = found[kind].sel(output=name)
+            row = arrays[kind].sel(output=name)
             expected = values(entry, kind) if kind in entry else np.full(4, np.nan)
             np.testing.assert_array_equal(row, expected)
             dummy = entry["dummy"].get(kind, np.nan)
-            np.testing.assert_array_equal(found[f"dummy_{kind}"].sel(output=name), dummy)
+            np.testing.assert_array_equal(arrays[f"dummy_{kind}"].sel(output=name), dummy)
 
 
 def test_quantiles_without_rows_enough_are_left_out_with_a_note():
@@ -277,6 +277,6 @@ def test_inputs_without_effect_are_estimated_only_where_they_are_wanted(method):
     assert compared.nulls
     corrected = method == "quantile"  # by the inputs without effect themselves
     assert bool(alone.nulls) == corrected
-    for kind, found in compared.values.items():
-        for name, one in found.items():
-            assert alone.values[kind][name].value == pytest.approx(one.value, nan_ok=True, abs=0)
+    for kind, index_of_inputs in compared.values.items():
+        for name, index in index_of_inputs.items():
+            assert alone.values[kind][name].value == pytest.approx(index.value, nan_ok=True, abs=0)

@@ -31,7 +31,9 @@ def test_given_data_methods_rank_ishigami_and_carry_no_interval(
     assert values(entry, index) == pytest.approx(expected, abs=tolerance)
     x1, x2, x3 = values(entry, index)
     assert x2 > x1 > x3
-    assert all(one["low"] is None and one["high"] is None for one in entry[index].values())
+    assert all(
+        estimate["low"] is None and estimate["high"] is None for estimate in entry[index].values()
+    )
     assert 0 < entry["dummy"][index] < min(expected[:2])
 
 
@@ -55,10 +57,10 @@ def test_the_null_of_the_largest_is_passed_in_one_study_of_twenty_at_most(method
     (kind,) = METHODS[method].kinds
     for _ in range(repetitions):
         x = {f"x{i}": column for i, column in enumerate(rng.random((60, 100)))}
-        found = of_plain_sample(method, x, rng.random(100), {})
-        largest = max(index.value for index in found.values[kind].values())
-        alarms += largest > found.nulls[kind].largest
-        single += largest > found.nulls[kind].limit
+        result = of_plain_sample(method, x, rng.random(100), {})
+        largest = max(index.value for index in result.values[kind].values())
+        alarms += largest > result.nulls[kind].largest
+        single += largest > result.nulls[kind].limit
     assert alarms <= 5 and single > 20  # of sixty inputs some three pass that for one
     alone = of_plain_sample(method, {"x0": x["x0"]}, rng.random(100), {})
     assert list(alone.nulls) == [kind] and np.isnan(alone.nulls[kind].largest)
@@ -70,10 +72,10 @@ def test_given_data_values_are_those_of_salib():
     problem = {"num_vars": 3, "names": list(INPUTS)}
     fast = indices(ds, "rbd-fast")["outputs"]["y"]
     assert values(fast, "S1") == pytest.approx(rbd_fast.analyze(problem, x, y, seed=1)["S1"])
-    for one, name in ((ds, "y"), (with_output(ds, "rounded", y.round(0)), "rounded")):
+    for dataset, name in ((ds, "y"), (with_output(ds, "rounded", y.round(0)), "rounded")):
         # Which leaves out the row with the largest value of an input.
-        expected = pawn.analyze(problem, x, one[name].values)["median"]
-        assert values(indices(one, "pawn")["outputs"][name], "pawn") == pytest.approx(expected)
+        expected = pawn.analyze(problem, x, dataset[name].values)["median"]
+        assert values(indices(dataset, "pawn")["outputs"][name], "pawn") == pytest.approx(expected)
     scores = stats.norm.ppf((stats.rankdata(y) - 0.5) / 303)
     grid, ends = np.linspace(scores.min(), scores.max(), 100), np.linspace(0, 303, 6)
     assert values(indices(ds, "delta")["outputs"]["y"], "delta") == pytest.approx(
@@ -100,9 +102,9 @@ def test_delta_and_pawn_do_not_depend_on_the_scale_of_the_output():
     ds = ishigami("monte-carlo", samples=500, replicates=1)
     ds = with_output(ds, "grown", np.exp(3 * ds["y"].values))
     for method in ("delta", "pawn"):
-        found = indices(ds, method)["outputs"]
-        assert values(found["grown"], method) == pytest.approx(values(found["y"], method))
-        assert max(values(found["grown"], method)) < 1
+        outputs = indices(ds, method)["outputs"]
+        assert values(outputs["grown"], method) == pytest.approx(values(outputs["y"], method))
+        assert max(values(outputs["grown"], method)) < 1
 
 
 def test_quantile_indices_of_noise_are_about_zero():
@@ -116,13 +118,13 @@ def test_quantile_indices_of_noise_are_about_zero():
 def test_given_data_drops_rows_and_counts_them():
     ds = linear(samples=200, settings={"fail_above": 0.8})
     for method in ("rbd-fast", "delta", "pawn"):
-        found = indices(ds, method)
-        assert found["groups_dropped"] == int(ds["y"].isnull().sum()) > 0
-        assert found["rows_used"] == 200 - found["groups_dropped"]
-        assert found["outputs"]["y"]["rows_used"] == found["rows_used"]
+        sensitivity_result = indices(ds, method)
+        assert sensitivity_result["groups_dropped"] == int(ds["y"].isnull().sum()) > 0
+        assert sensitivity_result["rows_used"] == 200 - sensitivity_result["groups_dropped"]
+        assert sensitivity_result["outputs"]["y"]["rows_used"] == sensitivity_result["rows_used"]
         sound = ds.isel(row=~np.isnan(ds["y"].values))
         alone = indices(sound, method)["outputs"]["y"]
-        assert alone == found["outputs"]["y"] | {"groups_dropped": 0}
+        assert alone == sensitivity_result["outputs"]["y"] | {"groups_dropped": 0}
 
 
 def test_given_data_judges_64_rows():
@@ -137,7 +139,7 @@ def test_given_data_refuses_what_it_cannot_judge():
     ds = with_output(ds, "short", np.where(np.arange(200) < 63, y, np.nan))
     ds = with_output(ds, "event", y > 5)
     for method in ("rbd-fast", "delta", "pawn"):
-        found = indices(ds, method)["outputs"]
-        assert "same value" in found["flat"]["refused"]
-        assert "63 rows with a value (of 200)" in found["short"]["refused"]
-        assert ("refused" in found["event"]) == (method == "delta")
+        outputs = indices(ds, method)["outputs"]
+        assert "same value" in outputs["flat"]["refused"]
+        assert "63 rows with a value (of 200)" in outputs["short"]["refused"]
+        assert ("refused" in outputs["event"]) == (method == "delta")

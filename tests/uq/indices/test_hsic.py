@@ -28,7 +28,7 @@ def entry_of(ds, method, output=EVENT):
 
 
 def values(entry, kind="hsic"):
-    return {name: one["value"] for name, one in entry[kind].items()}
+    return {name: estimate["value"] for name, estimate in entry[kind].items()}
 
 
 def gram(values):
@@ -49,7 +49,7 @@ def permuted(a, b, times=200):
     """Return the share of shuffled inputs with as large a dependence."""
     rng, k, m = np.random.default_rng(0), centred(gram(a)), centred(gram(b))
     orders = (rng.permutation(len(a)) for _ in range(times))
-    return np.mean([(k[np.ix_(one, one)] * m).sum() >= (k * m).sum() for one in orders])
+    return np.mean([(k[np.ix_(order, order)] * m).sum() >= (k * m).sum() for order in orders])
 
 
 def test_what_decides_an_event_and_what_matters_given_that_it_happens_differ():
@@ -83,18 +83,18 @@ def test_indices_are_those_of_the_estimators_of_openturns_for_target_and_conditi
     beyond = ot.IndicatorFunction(ot.Interval(9.0, float("inf")))
 
     def arguments(x, y):
-        kernels = [ot.SquaredExponential([one.std()]) for one in (x, y)]
+        kernels = [ot.SquaredExponential([column.std()]) for column in (x, y)]
         return kernels, ot.Sample(x[:, None]), ot.Sample(z[:, None])
 
     x = rankdata(ds["x1"].values) / 300
-    own = ot.HSICEstimatorTargetSensitivity(*arguments(x, hits), ot.HSICVStat(), beyond)
-    assert values(entry_of(ds, TARGET))["x1"] == pytest.approx(own.getR2HSICIndices()[0])
+    reference = ot.HSICEstimatorTargetSensitivity(*arguments(x, hits), ot.HSICVStat(), beyond)
+    assert values(entry_of(ds, TARGET))["x1"] == pytest.approx(reference.getR2HSICIndices()[0])
     # Kernels as wide as the spread among the hits, whose ranks replace all values.
     x[hits], z[hits] = rankdata(ds["x2"].values[hits]), 9 + rankdata(z[hits])
-    kernels = [ot.SquaredExponential([one[hits].std()]) for one in (x, z)]
+    kernels = [ot.SquaredExponential([column[hits].std()]) for column in (x, z)]
     _, inputs, outputs = arguments(x, z)
-    own = ot.HSICEstimatorConditionalSensitivity(kernels, inputs, outputs, beyond)
-    assert values(entry_of(ds, CONDITIONAL))["x2"] == pytest.approx(own.getR2HSICIndices()[0])
+    reference = ot.HSICEstimatorConditionalSensitivity(kernels, inputs, outputs, beyond)
+    assert values(entry_of(ds, CONDITIONAL))["x2"] == pytest.approx(reference.getR2HSICIndices()[0])
 
 
 def test_the_index_of_two_signs_is_their_squared_correlation():
@@ -115,10 +115,10 @@ def test_an_increasing_function_of_input_or_output_changes_nothing():
 
 def test_events_of_lives_and_regimes_are_decided_by_default():
     ds = kinds(samples=400, analysis={"outputs": ["regime", "life"], "thresholds": {"life": 3.0}})
-    found = sensitivities(ds, TARGET)["outputs"]
-    assert {"P(regime=slow)", "P(regime=fast)"} <= set(found)
+    outputs = sensitivities(ds, TARGET)["outputs"]
+    assert {"P(regime=slow)", "P(regime=fast)"} <= set(outputs)
     life = "P(life[side=left,depth=0.5]<3.0)"
-    assert life in found and "refused" not in found["P(regime=slow)"]
+    assert life in outputs and "refused" not in outputs["P(regime=slow)"]
     given = sensitivities(ds, CONDITIONAL)["outputs"]
     assert life in given and "P(regime=slow)" not in given
     asked = entry_of(ds, CONDITIONAL, "P(regime=slow)")
@@ -196,5 +196,5 @@ def test_small_p_values_are_shown_as_such(uq, tmp_path):
     path = tmp_path / "decided.nc"
     decided().to_netcdf(path)
     shown = uq("sensitivity", str(path), "--method", TARGET, "--output", "P(z > 9)").out
-    (line,) = (one for one in shown.splitlines() if one.split()[:1] == ["x1"])
+    (line,) = (text for text in shown.splitlines() if text.split()[:1] == ["x1"])
     assert line.split()[1:3] == ["<", "0.001"]

@@ -15,7 +15,7 @@ from computed import (
     with_status,
 )
 from SALib.analyze import morris as salib_morris
-from screened import A, found, g_function, ishigami
+from screened import A, g_function, index_entry, ishigami
 
 from uq.sampling.unit_cube import LEVELS, STEP, TAIL
 
@@ -48,7 +48,7 @@ def g_of_four(u):
 
 
 def test_effects_of_a_linear_function_are_its_coefficients():
-    entry = found(linear("morris", 8, 4))
+    entry = index_entry(linear("morris", 8, 4))
     for i in (1, 2, 3, 4):
         assert entry["mu"][f"x{i}"]["value"] == pytest.approx(i)
         assert entry["mu_star"][f"x{i}"]["value"] == pytest.approx(i)
@@ -65,18 +65,18 @@ def test_effects_of_a_linear_function_are_its_coefficients():
     ids=["ishigami", "g-function"],
 )
 def test_effects_are_those_of_all_steps_that_the_levels_allow(study, exact, kinds):
-    entry = found(computed(study))
+    entry = index_entry(computed(study))
     for kind in kinds:
         for i, value in enumerate(exact[kind]):
-            one = entry[kind][f"x{i + 1}"]
+            effect = entry[kind][f"x{i + 1}"]
             # Twice the half width is four standard errors.
-            width = 0.0 if one["high"] is None else one["high"] - one["low"]
-            assert one["value"] == pytest.approx(value, abs=max(width, 1e-9))
+            width = 0.0 if effect["high"] is None else effect["high"] - effect["low"]
+            assert effect["value"] == pytest.approx(value, abs=max(width, 1e-9))
 
 
 def test_mu_star_of_ishigami_is_the_published_one():
     # SALib's regression test, with levels at the very ends: 7.70, 7.88, 6.25.
-    entry = found(computed(ishigami("morris", 256, 16)))
+    entry = index_entry(computed(ishigami("morris", 256, 16)))
     published = {"x1": 7.70, "x2": 7.88, "x3": 6.25}
     for name, value in published.items():
         assert entry["mu_star"][name]["value"] == pytest.approx(value, rel=0.08)
@@ -90,7 +90,7 @@ def test_measures_are_those_of_salib():
     problem = {"num_vars": 8, "names": list("abcdefgh"), "bounds": [[0.0, 1.0]] * 8}
     theirs = salib_morris.analyze(problem, x[order], ds["y"].values[order], num_resamples=2, seed=1)
     for kind in ("mu", "sigma", "mu_star"):
-        ours = [one["value"] for one in found(ds)[kind].values()]
+        ours = [estimate["value"] for estimate in index_entry(ds)[kind].values()]
         # SALib divides by the step between the ends of a law, ours stop short of them.
         np.testing.assert_allclose(ours, np.array(theirs[kind]) / (1 - 2 * TAIL), rtol=1e-9)
 
@@ -100,17 +100,17 @@ def test_intervals_of_effects_hold_as_often_as_they_say():
     exact, study = exact_effects(ishigami_of, 3), ishigami("morris", 16, 8)
     hits = {(kind, i): [] for kind in ("mu", "mu_star") for i in (0, 2)}
     for seed in range(400):
-        entry = found(computed(with_seed(study, seed)))
+        entry = index_entry(computed(with_seed(study, seed)))
         for (kind, i), hit in hits.items():
-            one = entry[kind][f"x{i + 1}"]
-            hit.append(one["low"] <= exact[kind][i] <= one["high"])
+            effect = entry[kind][f"x{i + 1}"]
+            hit.append(effect["low"] <= exact[kind][i] <= effect["high"])
     for hit in hits.values():
         assert 0.92 <= np.mean(hit) <= 0.98  # four standard errors are 0.044
 
 
 def test_optimised_trajectories_say_that_they_are_biased():
     optimised, plain = (
-        found(computed(ishigami(method, 32, 4))) for method in ("morris-optimised", "morris")
+        index_entry(computed(ishigami(method, 32, 4))) for method in ("morris-optimised", "morris")
     )
     assert any("favour the corners" in note for note in optimised["notes"])
     assert plain["notes"] == []

@@ -12,7 +12,7 @@ from computed import (
     with_output,
     with_status,
 )
-from screened import found
+from screened import index_entry
 
 from uq.assess.sensitivity_table import sensitivity
 from uq.assess.summary_table import summary
@@ -23,10 +23,10 @@ from uq.sampling.designs import DESIGNS
 
 def values_of(entry):
     return {
-        (kind, name): one["value"]
+        (kind, name): estimate["value"]
         for kind, table in entry.items()
         if isinstance(table, dict)
-        for name, one in table.items()
+        for name, estimate in table.items()
     }
 
 
@@ -35,7 +35,7 @@ def values_of(entry):
 def test_an_output_without_variance_is_refused_not_zero(method, value):
     ds = linear(method, 80, 2)
     ds = with_output(ds, "flat", np.full(ds.sizes["row"], value))
-    entry = found(asking(ds, outputs=["flat"]), "flat")
+    entry = index_entry(asking(ds, outputs=["flat"]), "flat")
     assert entry["refused"] and not {"S1", "ST", "mu_star"} & entry.keys()
 
 
@@ -45,13 +45,20 @@ def test_missing_rows_are_refused():
         with pytest.raises(InputError, match="rows of the design are missing"):
             sensitivities(ds.isel(row=slice(1, None)))
         shuffled = ds.isel(row=np.random.default_rng(1).permutation(ds.sizes["row"]))
-        assert values_of(found(shuffled)) == pytest.approx(values_of(found(ds)), abs=1e-9)
+        assert values_of(index_entry(shuffled)) == pytest.approx(
+            values_of(index_entry(ds)), abs=1e-9
+        )
 
 
 # The border to SALib: what is lacking never reaches it, and no seed is taken for none.
 
 # One design for each method, the last that feeds it; 'regional' takes regimes, not numbers.
-_LAST = {method: name for name, one in DESIGNS.items() if one.draw for method in fed_by(one)}
+_LAST = {
+    method: name
+    for name, declared in DESIGNS.items()
+    if declared.draw
+    for method in fed_by(declared)
+}
 FED = [
     pytest.param(design, method, marks=[pytest.mark.slow] * (method == "hdmr"))
     for method, design in _LAST.items()
@@ -67,7 +74,7 @@ def samples_of(design):
 @pytest.mark.parametrize(("design", "method"), FED)
 def test_one_lacking_value_changes_little_and_zeroes_nothing(design, method):
     ds = linear(design, samples_of(design), 4)
-    full = found(ds, method=method)
+    full = index_entry(ds, method=method)
     assert "refused" not in full
     y = ds["y"].values.copy()
     y[5] = np.nan
@@ -76,17 +83,19 @@ def test_one_lacking_value_changes_little_and_zeroes_nothing(design, method):
     assert hurt["groups_dropped"] == 1
     for kind, values in full.items():
         if isinstance(values, dict) and kind not in ("dummy", "sigma"):
-            for name, one in values.items():
+            for name, estimate in values.items():
                 value = hurt["outputs"]["z"][kind][name]["value"]
-                assert value == pytest.approx(one["value"], abs=0.05)
+                assert value == pytest.approx(estimate["value"], abs=0.05)
             if kind != "S2":  # a linear function has no interactions
-                assert max(abs(one["value"]) for one in values.values()) > 0.1
+                assert max(abs(estimate["value"]) for estimate in values.values()) > 0.1
 
 
 @pytest.mark.parametrize(("design", "method"), FED)
 def test_seed_zero_is_a_seed(design, method):
     n = samples_of(design)
-    once, again, other = (found(linear(design, n, 4, seed=s), method=method) for s in (0, 0, 1))
+    once, again, other = (
+        index_entry(linear(design, n, 4, seed=s), method=method) for s in (0, 0, 1)
+    )
     assert once == again and "refused" not in once
     if design not in ("morris", "morris-optimised"):  # which know a linear function exactly
         assert once != other
@@ -97,11 +106,11 @@ def test_seed_zero_is_a_seed(design, method):
 
 def test_there_are_no_statistics_of_trajectories_and_it_is_said():
     ds = linear("morris", 8, 4)
-    found = summarised(ds)
-    assert (found["samples"], found["rows_used"]) == (160, 0)
-    assert found["outputs"]["y"]["mean"] is None
-    assert found["outputs"]["y"]["quantiles"]["0.5"]["value"] is None
-    assert found["notes"] == [
+    statistics = summarised(ds)
+    assert (statistics["samples"], statistics["rows_used"]) == (160, 0)
+    assert statistics["outputs"]["y"]["mean"] is None
+    assert statistics["outputs"]["y"]["quantiles"]["0.5"]["value"] is None
+    assert statistics["notes"] == [
         "no statistics: the rows of a 'morris' design do not follow the laws of the inputs;"
         " see 'uq sensitivity'"
     ]
@@ -109,9 +118,9 @@ def test_there_are_no_statistics_of_trajectories_and_it_is_said():
 
 
 def test_curves_are_as_good_as_any_rows_for_statistics():
-    found = summarised(linear("fast", 257, 8))
-    assert found["rows_used"] == 257 * 8 * 4
-    assert found["outputs"]["y"]["mean"] == pytest.approx(5, abs=0.05)
+    statistics = summarised(linear("fast", 257, 8))
+    assert statistics["rows_used"] == 257 * 8 * 4
+    assert statistics["outputs"]["y"]["mean"] == pytest.approx(5, abs=0.05)
 
 
 def test_measures_stand_in_arrays_tables_and_figures(uq, write_study, folder):

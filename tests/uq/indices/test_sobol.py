@@ -52,8 +52,8 @@ def test_values_are_those_of_scipy():
         np.mean(b * a) * np.mean((a - ab) ** 2) / 2 / np.var([a, ab]) / np.var([a, b])
         for ab in mixed
     ]
-    own = [np.var([a, b]) / np.var([b, ab]) for ab in mixed]
-    scipys = np.array(values(entry, "S1")) / own - change
+    first_order = [np.var([a, b]) / np.var([b, ab]) for ab in mixed]
+    scipys = np.array(values(entry, "S1")) / first_order - change
     assert scipys == pytest.approx(np.ravel(expected.first_order), abs=1e-3)
 
 
@@ -67,8 +67,8 @@ def test_interval_is_students_of_the_replicates():
     ds = ishigami(samples=128, replicates=5)  # of 64, so few rows count that it is widened
     entry = indices(ds)["outputs"]["y"]
     alone = [ds.isel(row=ds["replicate"].values == r).assign_attrs(replicates=1) for r in range(5)]
-    found = [indices(one)["outputs"]["y"]["ST"]["x2"]["value"] for one in alone]
-    half = stats.t.ppf(0.975, 4) * np.std(found, ddof=1) / np.sqrt(5)
+    values_alone = [indices(replicate)["outputs"]["y"]["ST"]["x2"]["value"] for replicate in alone]
+    half = stats.t.ppf(0.975, 4) * np.std(values_alone, ddof=1) / np.sqrt(5)
     index = entry["ST"]["x2"]
     assert index["high"] - index["value"] == pytest.approx(half, rel=1e-6)
     assert index["value"] - index["low"] == pytest.approx(half, rel=1e-6)
@@ -85,14 +85,25 @@ def test_one_replicate_gives_values_without_intervals_and_says_so():
 def test_a_failed_row_removes_its_whole_group_and_is_counted(how):
     settings = {"fail_above": 0.97, "fail_how": how}
     ds = linear("saltelli", samples=64, replicates=4, settings=settings)
-    found = indices(ds)
+    sensitivity_result = indices(ds)
     lacking = np.isnan(ds["y"].values.reshape(64 * 4, 6)).any(axis=1)
-    assert 0 < lacking.sum() == found["groups_dropped"] == found["outputs"]["y"]["groups_dropped"]
-    assert found["rows_used"] == found["outputs"]["y"]["rows_used"] == (~lacking).sum() * 6
+    assert (
+        0
+        < lacking.sum()
+        == sensitivity_result["groups_dropped"]
+        == sensitivity_result["outputs"]["y"]["groups_dropped"]
+    )
+    assert (
+        sensitivity_result["rows_used"]
+        == sensitivity_result["outputs"]["y"]["rows_used"]
+        == (~lacking).sum() * 6
+    )
     kept = ds["y"].values.reshape(64 * 4, 6)[~lacking]
     problem = {"num_vars": 4, "names": ["x1", "x2", "x3", "x4"]}
     expected = salib.analyze(problem, kept.ravel(), calc_second_order=False, seed=1)
-    assert values(found["outputs"]["y"], "ST") == pytest.approx(expected["ST"], rel=1e-12)
+    assert values(sensitivity_result["outputs"]["y"], "ST") == pytest.approx(
+        expected["ST"], rel=1e-12
+    )
 
 
 def test_an_undefined_row_removes_its_group_like_a_failed_one():
@@ -106,13 +117,13 @@ def test_constant_failed_and_missing_rows_are_refused_not_zero():
     ds = with_output(ds, "flat", np.full(ds.sizes["row"], 0.1))
     ds = with_output(ds, "gone", np.full(ds.sizes["row"], np.nan))
     few = np.where(ds["group"].values + ds["replicate"].values > 1, np.nan, ds["y"].values)
-    found = indices(with_output(ds, "few", few))["outputs"]
-    assert "same value" in found["flat"]["refused"]
-    assert "no whole groups (of 64)" in found["gone"]["refused"]
-    assert "3 whole groups (of 64)" in found["few"]["refused"]
+    outputs = indices(with_output(ds, "few", few))["outputs"]
+    assert "same value" in outputs["flat"]["refused"]
+    assert "no whole groups (of 64)" in outputs["gone"]["refused"]
+    assert "3 whole groups (of 64)" in outputs["few"]["refused"]
     for name in ("flat", "gone", "few"):
-        assert "S1" not in found[name]
-    assert found["y"]["ST"]["x4"]["value"] == pytest.approx(16 / 30, abs=0.1)
+        assert "S1" not in outputs[name]
+    assert outputs["y"]["ST"]["x4"]["value"] == pytest.approx(16 / 30, abs=0.1)
     # Outputs without indices do not count against those with.
     assert indices(ds)["groups_dropped"] == 0
     for rows in (slice(1, None), [0, 1, 2, 9, 10, 11]):
@@ -151,5 +162,5 @@ def test_a_replicate_without_rows_takes_the_intervals_away():
 def test_mean_far_from_zero_does_not_spoil_the_indices():
     ds = ishigami(samples=128, replicates=4)
     far = with_output(ds, "far", ds["y"].values + 1e6)
-    found = indices(far)["outputs"]
-    assert values(found["far"], "S1") == pytest.approx(values(found["y"], "S1"), abs=1e-6)
+    outputs = indices(far)["outputs"]
+    assert values(outputs["far"], "S1") == pytest.approx(values(outputs["y"], "S1"), abs=1e-6)

@@ -24,9 +24,9 @@ def rows(share=0.03, seed=1):
 
 
 def estimated(method, y, quantiles=QUANTILES, **x):
-    found = of_plain_sample(method, x, y, quantiles)
-    kind = next(iter(found.values))
-    return {name: index.value for name, index in found.values[kind].items()}, found
+    result = of_plain_sample(method, x, y, quantiles)
+    kind = next(iter(result.values))
+    return {name: index.value for name, index in result.values[kind].items()}, result
 
 
 @pytest.mark.parametrize("method", ["pawn", "delta", "quantile"])
@@ -42,29 +42,29 @@ def test_a_binary_input_has_the_same_index_whatever_its_values_are(method, share
 
 def test_pawn_of_a_binary_input_is_the_median_distance_of_its_two_laws():
     binary, x1, y = rows()
-    found, _ = estimated("pawn", y, x1=x1, x2=binary)
+    values_by_input, _ = estimated("pawn", y, x1=x1, x2=binary)
     p = binary.mean()
     # F(y | 0) = y, F(y | 1) = y - 0.8: 0.8 apart, of which p and 1 - p to the law of all rows.
-    assert found["x2"] == pytest.approx(np.median([0.8 * p, 0.8 * (1 - p)]), abs=0.04)
+    assert values_by_input["x2"] == pytest.approx(np.median([0.8 * p, 0.8 * (1 - p)]), abs=0.04)
 
 
 def test_delta_of_a_binary_input_is_the_area_between_its_two_laws():
     binary, x1, _ = rows(0.5)
-    found, _ = estimated("delta", x1 + 5.0 * binary, x1=x1, x2=binary)
-    assert found["x2"] == pytest.approx(0.5, abs=0.05)  # two laws that do not meet
+    values_by_input, _ = estimated("delta", x1 + 5.0 * binary, x1=x1, x2=binary)
+    assert values_by_input["x2"] == pytest.approx(0.5, abs=0.05)  # two laws that do not meet
     four = np.random.default_rng(2).integers(0, 4, N).astype(float)
-    found, _ = estimated("delta", x1 + 5.0 * four, x1=x1, x2=four)
-    assert found["x2"] == pytest.approx(0.75, abs=0.07)
+    values_by_input, _ = estimated("delta", x1 + 5.0 * four, x1=x1, x2=four)
+    assert values_by_input["x2"] == pytest.approx(0.75, abs=0.07)
 
 
 @pytest.mark.parametrize("method", ["pawn", "delta", "quantile"])
 def test_a_rare_value_without_effect_is_recognised_by_its_own_shuffled_rows(method):
     binary, x1, _ = rows(0.02)
-    found, indices_ = estimated(method, x1, x1=x1, x2=binary)
+    values_by_input, indices_ = estimated(method, x1, x1=x1, x2=binary)
     (note,) = indices_.notes
     assert note.startswith("x2 has many equal values: shuffled")
     reached = float(note.partition(" = ")[2].split()[0])
-    assert found["x2"] < max(3 * reached, 0.02)
+    assert values_by_input["x2"] < max(3 * reached, 0.02)
 
 
 @pytest.mark.parametrize("method", ["pawn", "delta", "quantile"])
@@ -72,8 +72,8 @@ def test_an_input_whose_rare_values_fill_no_slice_has_no_index(method):
     _, x1, _ = rows()
     rare = np.zeros(N)
     rare[::500] = 1.0  # six rows, which hold nearly all the variance
-    found, indices_ = estimated(method, x1 + 100 * rare, x1=x1, x2=rare)
-    assert np.isnan(found["x2"]) and found["x1"] > 0.1
+    values_by_input, indices_ = estimated(method, x1 + 100 * rare, x1=x1, x2=rare)
+    assert np.isnan(values_by_input["x2"]) and values_by_input["x1"] > 0.1
     kind = next(iter(indices_.values))
     assert indices_.notes == (f"x2 has too few rows of any value but one: no {kind.key}",)
     with pytest.raises(RefusedError, match="x2 has too few rows of any value but one"):
@@ -87,8 +87,10 @@ def test_regional_distance_of_a_choice_is_the_same_whatever_its_values_are():
     with_, without = (np.bincount(choice[event == side], minlength=4) for side in (1, 0))
     apart = np.abs(with_ / with_.sum() - without / without.sum()).sum() / 2
     for labels in ([0.0, 1.0, 2.0, 3.0], [3.0, 0.0, 2.0, 1.0], [10.0, -5.0, 1e3, 0.1]):
-        found, _ = estimated("regional", event, x1=rng.random(N), x2=np.array(labels)[choice])
-        assert found["x2"] == pytest.approx(apart), labels
+        values_by_input, _ = estimated(
+            "regional", event, x1=rng.random(N), x2=np.array(labels)[choice]
+        )
+        assert values_by_input["x2"] == pytest.approx(apart), labels
 
 
 def test_quantile_indices_of_few_values_are_not_corrected_for_many_slices():
@@ -125,15 +127,17 @@ def test_slices_part_no_equal_values_and_hold_all_rows():
 def test_the_first_order_index_of_an_input_with_equal_values_is_the_known_one(values):
     rng = np.random.default_rng(3)
     for effect in (0.0, 0.3, 3.0):
-        found = []
+        estimates = []
         for _ in range(20):
             x1, x2 = rng.random(N), rng.integers(0, values, N) / (values - 1)
             y = x1 + effect * (x2 - 0.5) ** 3 + 0.2 * (x2 - 0.5) * (x1 - 0.5)
             first, indices_ = estimated("rbd-fast", y, x1=x1, x2=x2)
-            found.append([first["x1"], first["x2"]])
+            estimates.append([first["x1"], first["x2"]])
         level = np.arange(values) / (values - 1) - 0.5
-        own = np.array([1 / 12, np.var(effect * level**3), 0.04 / 12 * np.mean(level**2)])
-        assert np.mean(found, axis=0) == pytest.approx(own[:2] / own.sum(), abs=0.006)
+        variances = np.array([1 / 12, np.var(effect * level**3), 0.04 / 12 * np.mean(level**2)])
+        assert np.mean(estimates, axis=0) == pytest.approx(
+            variances[:2] / variances.sum(), abs=0.006
+        )
         assert indices_.notes[0].startswith("x2 has many equal values: shuffled 19 times")
 
 
@@ -172,9 +176,11 @@ def test_hdmr_takes_few_values_at_the_degree_that_they_allow():
     rng = np.random.default_rng(1)
     x1, x2 = rng.random(N), rng.integers(0, 2, N).astype(float)
     y = x1 + 2 * x2 + x1 * x2
-    found, indices_ = estimated("hdmr", y, x1=x1, x2=x2)
+    values_by_input, indices_ = estimated("hdmr", y, x1=x1, x2=x2)
     truth = np.array([1.5**2 / 12, 2.5**2 / 4, 1 / 48])
-    assert [found["x1"], found["x2"]] == pytest.approx(list(truth[:2] / truth.sum()), abs=0.03)
+    assert [values_by_input["x1"], values_by_input["x2"]] == pytest.approx(
+        list(truth[:2] / truth.sum()), abs=0.03
+    )
     assert "polynomials of degree 1 " in indices_.notes[0]
     three = rng.integers(0, 3, N).astype(float)
     _, indices_ = estimated("hdmr", np.exp(x1) + three**2, x1=x1, x2=three)
@@ -188,9 +194,13 @@ def test_hdmr_of_a_choice_does_not_depend_on_what_its_values_are_called(labels):
     rng = np.random.default_rng(6)
     x1, choice = rng.random(N), rng.integers(0, 4, N)
     moved = np.array([0.0, 2.0, -1.0, 0.5])[choice]
-    found, indices_ = estimated("hdmr", moved + 3 * x1, x1=x1, x2=np.array(labels)[choice])
+    values_by_input, indices_ = estimated(
+        "hdmr", moved + 3 * x1, x1=x1, x2=np.array(labels)[choice]
+    )
     share = moved.var() / (moved.var() + 0.75)
-    assert [found["x1"], found["x2"]] == pytest.approx([1 - share, share], abs=0.03)
+    assert [values_by_input["x1"], values_by_input["x2"]] == pytest.approx(
+        [1 - share, share], abs=0.03
+    )
     assert "polynomials of degree" in indices_.notes[0]
 
 
@@ -207,9 +217,9 @@ def test_an_input_of_one_value_has_no_effect(method):
     ds = linear(samples=1000)
     ds = with_output(ds, "z", ds["x1"].values > 0.5 if method == "regional" else ds["x1"].values)
     x = {"x1": ds["x1"].values, "x2": np.ones(1000)}
-    found = of_plain_sample(method, x, ds["z"].values, QUANTILES)
-    for one in found.values.values():
-        assert one["x2"].value == pytest.approx(0, abs=1e-12)
+    result = of_plain_sample(method, x, ds["z"].values, QUANTILES)
+    for by_input in result.values.values():
+        assert by_input["x2"].value == pytest.approx(0, abs=1e-12)
 
 
 def test_an_imported_column_with_many_ties_is_judged_whatever_the_order_of_its_rows():

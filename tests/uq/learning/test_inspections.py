@@ -26,7 +26,7 @@ def read(*lines, head=HEAD):
 
 
 def test_all_columns_that_are_needed():
-    found = read(
+    inspections = read(
         "A1,3.15e7,depth,measured,1e-4,,0.1,,",
         "A2,3.15e7,depth,below,5e-5,,,,",
         "A3,3.15e7,depth,below,,,,3e-5,6e-5",
@@ -34,7 +34,7 @@ def test_all_columns_that_are_needed():
         "",
         "B 1,,angle,measured,-0.1,0.01,,,",
     )
-    assert found == [
+    assert inspections == [
         Inspection("A1", "depth", InspectionKind.MEASURED, 3.15e7, 1e-4, cv=0.1),
         Inspection("A2", "depth", InspectionKind.BELOW, 3.15e7, 5e-5),
         Inspection(
@@ -46,17 +46,17 @@ def test_all_columns_that_are_needed():
 
 
 def test_columns_in_any_order_and_names_with_commas():
-    found = read(
+    inspections = read(
         '"time_to_depth[site=left,depth=0.00025]", survived, A1, 6.3e7',
         head="output, kind, unit, time\n",
     )
-    assert found == [
+    assert inspections == [
         Inspection("A1", "time_to_depth[site=left,depth=0.00025]", InspectionKind.SURVIVED, 6.3e7)
     ]
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "message"),
     {
         "A,1,depth,measured,1e-4,,,,": "sd or cv is missing: the error of the measurement",
         "A,1,depth,measured,,1e-5,,,": "value is missing: what was measured",
@@ -99,10 +99,10 @@ def test_columns_in_any_order_and_names_with_commas():
         ",1,life,ended,,,,,": "unit is missing",
     }.items(),
 )
-def test_a_mistake_is_named(line, said):
+def test_a_mistake_is_named(line, message):
     with pytest.raises(InputError) as refused:
         read("A,1,life,survived,,,,,", line)
-    assert str(refused.value) == f"found.csv, line 3: {said}"
+    assert str(refused.value) == f"found.csv, line 3: {message}"
 
 
 def test_every_mistake_is_named_at_once():
@@ -115,7 +115,7 @@ def test_every_mistake_is_named_at_once():
 
 
 @pytest.mark.parametrize(
-    ("head", "said"),
+    ("head", "message"),
     [
         (
             "unit,output,kind,valeu\n",
@@ -127,10 +127,10 @@ def test_every_mistake_is_named_at_once():
         ("unit;output;kind\n", "found.csv, line 1: separate cells by commas"),
     ],
 )
-def test_columns_that_do_not_fit(head, said):
+def test_columns_that_do_not_fit(head, message):
     with pytest.raises(InputError) as refused:
         read(head=head)
-    assert str(refused.value).startswith(said)
+    assert str(refused.value).startswith(message)
 
 
 def test_files_that_are_none():

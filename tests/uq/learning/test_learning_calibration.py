@@ -82,16 +82,16 @@ def test_ranks_of_the_truth_are_uniform(problem):
     ranks = {name: [] for name in names}
     for number in np.unique(world)[:REPETITIONS]:
         truth = truths.isel(row=world == number)
-        found = posterior(Result(rows), read_tables(inspect(truth, rng)))
-        unit = found.units["A"]
+        learned = posterior(Result(rows), read_tables(inspect(truth, rng)))
+        unit = learned.units["A"]
         for name in names:
             drawn = rows[name].values[unit.rows]
-            if found.scale is not None and found.scale.name == name:
+            if learned.scale is not None and learned.scale.name == name:
                 drawn = unit.scale
             below = np.average(drawn < float(truth[name][0]), weights=unit.weights.weights)
             ranks[name].append(below)
-    for name, found in ranks.items():
-        assert stats.kstest(found, "uniform").pvalue > 0.01, name
+    for name, ranks_of_input in ranks.items():
+        assert stats.kstest(ranks_of_input, "uniform").pvalue > 0.01, name
 
 
 @pytest.fixture(scope="module")
@@ -102,8 +102,8 @@ def worlds():
 @pytest.mark.slow
 def test_it_agrees_with_a_random_walk_that_runs_the_model(worlds):
     lives = np.array([6e5, 1e6, 1.2e6])
-    found = posterior(Result(worlds), read_tables(measured(*lives)))
-    assert_agrees(worlds, found, random_walks(lives))
+    learned = posterior(Result(worlds), read_tables(measured(*lives)))
+    assert_agrees(worlds, learned, random_walks(lives))
 
 
 @pytest.mark.slow
@@ -127,11 +127,11 @@ def test_it_agrees_with_openturns(worlds):
         chain = ot.RandomWalkMetropolisHastings(ot.JointDistribution(laws), list(middle), moves)
         chain.setLikelihood(ot.LogNormal(), seen, one_hot, ot.Sample(np.eye(3).tolist()))
         walks.append(np.log(np.asarray(chain.getSample(8_000))[500:]))
-    found = posterior(Result(worlds), read_tables(measured(*lives, cv=0.2)))
-    assert_agrees(worlds, found, np.stack(walks))
+    learned = posterior(Result(worlds), read_tables(measured(*lives, cv=0.2)))
+    assert_agrees(worlds, learned, np.stack(walks))
 
 
-def assert_agrees(worlds, found, walks):
+def assert_agrees(worlds, learned, walks):
     """Compare logarithms with walks (walk, step, rate and depths) within 5 % of their scatter.
 
     The error of the walks themselves, from the scatter between them, is below 2 %.
@@ -141,15 +141,15 @@ def assert_agrees(worlds, found, walks):
     squares = ((walks - means) ** 2).mean(axis=1)
     of_variance = squares.std(axis=0, ddof=1) / len(walks) ** 0.5
     assert (of_mean < 0.02 * sds).all() and (of_variance < 2 * 0.02 * sds**2).all()
-    for column, name, one in (
-        (0, "rate", found.any_unit),
-        (1, "depth", found.units["A"]),
-        (3, "depth", found.units["C"]),
+    for column, name, marginal in (
+        (0, "rate", learned.any_unit),
+        (1, "depth", learned.units["A"]),
+        (3, "depth", learned.units["C"]),
     ):
-        integrated = found.scale is not None and found.scale.name == name
-        logs = np.log(one.scale if integrated else worlds[name].values[one.rows])
-        mean = np.average(logs, weights=one.weights.weights)
-        sd = np.average((logs - mean) ** 2, weights=one.weights.weights) ** 0.5
+        integrated = learned.scale is not None and learned.scale.name == name
+        logs = np.log(marginal.scale if integrated else worlds[name].values[marginal.rows])
+        mean = np.average(logs, weights=marginal.weights.weights)
+        sd = np.average((logs - mean) ** 2, weights=marginal.weights.weights) ** 0.5
         assert abs(mean - means[column]) < 0.05 * sds[column]
         assert sd == pytest.approx(sds[column], rel=0.05)
 
@@ -175,11 +175,11 @@ def random_walks(lives, count=200, steps=1500, dropped=200):
     _, cov = exactly(lives, shared_rate=True)
     here = np.tile(middle, (count, 1))
     density = log_density(here)
-    found = np.empty((count, steps, 4))
+    walks = np.empty((count, steps, 4))
     for step in range(steps):
         there = here + rng.multivariate_normal(np.zeros(4), 1.2**2 * cov, count)
         new = log_density(there)
         moved = np.log(rng.random(count)) < new - density
         here[moved], density[moved] = there[moved], new[moved]
-        found[:, step] = here
-    return found[:, dropped:]
+        walks[:, step] = here
+    return walks[:, dropped:]

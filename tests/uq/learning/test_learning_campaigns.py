@@ -36,16 +36,16 @@ def covered(rods, count):
     everywhere = np.sort(rods["first_time_to_depth"].values[:, -1] * of_rows)
     for number in np.unique(rods["world"].values)[:count]:
         truth, rows = apart(rods, number)
-        found, last = campaign(truth, rng)
-        learnt = posterior(Result(rows), found)
-        if any(one.refusal for one in learnt.weights):
+        inspections, last = campaign(truth, rng)
+        learnt = posterior(Result(rows), inspections)
+        if any(weight.refusal for weight in learnt.weights):
             refused += 1
             continue
         everyone = learnt.any_unit
         true = truth["wear_coefficient"].values[0]
         low, high = quantiles(everyone.scale, everyone.weights.weights)
         coefficient.append(low <= true <= high)
-        after = as_result(Result(rows), learnt, found, 0.0)
+        after = as_result(Result(rows), learnt, inspections, 0.0)
         life = lifetimes(after, "first_time_to_depth")[-1]
         low, high = over_shared(Result(after), life, 0.0, 2 * last).values()
         share = np.searchsorted(everywhere, 2 * last * true) / len(everywhere)
@@ -53,10 +53,10 @@ def covered(rods, count):
         lives = rows["first_time_to_depth"].values[:, -1] * rows["wear_coefficient"].values
         for rod, life in enumerate(truth["first_time_to_depth"].values[:, -1]):
             unit = learnt.units[str(rod)]
-            own = lives[unit.rows] / unit.scale
-            runs = own > last
+            unit_lives = lives[unit.rows] / unit.scale
+            runs = unit_lives > last
             if life > last and unit.weights.weights[runs].sum() > 0:
-                low, high = quantiles(own[runs], unit.weights.weights[runs])
+                low, high = quantiles(unit_lives[runs], unit.weights.weights[runs])
                 remaining.append(low <= life <= high)
     return np.mean(coefficient), np.mean(ended), np.mean(remaining), refused / count
 

@@ -76,32 +76,36 @@ CASES = {
 def held_by(ds, rate, name, life, unit):
     """Yield what has an interval in a posterior, and whether that holds the closed form."""
     time = life.ppf(0.2)
-    after = next(one for one in inputs_learnt(Result(ds)) if one.name == name).posterior
-    left = next(one for one in remaining(Result(ds), [time]) if one.unit == unit)
-    for what, found, exact in (
+    after = next(input_ for input_ in inputs_learnt(Result(ds)) if input_.name == name).posterior
+    left = next(
+        remaining_life
+        for remaining_life in remaining(Result(ds), [time])
+        if remaining_life.unit == unit
+    )
+    for what, estimate, exact in (
         ("mean", after.mean, rate.mean()),
         ("sd", after.sd, rate.std()),
         ("by", left.by[time], 0.2),
         ("median", left.life[0.5], life.ppf(0.5)),
     ):
-        if found.has_interval:
-            yield (name, what), found.low <= exact <= found.high
+        if estimate.has_interval:
+            yield (name, what), estimate.low <= exact <= estimate.high
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_intervals_hold_the_closed_form(case):
     """Mean and standard deviation of an input, P(T < t), and the median of the remaining life."""
-    make, known = CASES[case]
+    make, truths = CASES[case]
     held = defaultdict(list)
     for seed in range(REPETITIONS):
         try:
             ds = make(seed)
         except RunError:
             continue
-        for what, is_held in (one for exact in known for one in held_by(ds, *exact)):
+        for what, is_held in (covers for exact in truths for covers in held_by(ds, *exact)):
             held[what].append(is_held)
-    assert len(held) == 4 * len(known)
+    assert len(held) == 4 * len(truths)
     for (name, what), those in held.items():
         assert len(those) > 0.85 * REPETITIONS, (name, what)  # others have a reason
         # Eight repetitions show their scatter roughly.

@@ -42,10 +42,10 @@ def test_it_finds_the_worse_bearing():
             }
             for output, sd in ERRORS.items()
         ]
-        found = posterior(Result(rows), read_tables(seen))
-        if distrust(found):
+        learned = posterior(Result(rows), read_tables(seen))
+        if distrust(learned):
             continue
-        weights = found.units["A"].weights.weights
+        weights = learned.units["A"].weights.weights
         order = np.argsort(differs)
         share = np.cumsum(weights[order]) / weights.sum()
         low, high = np.interp([0.025, 0.975], share, differs[order])

@@ -40,9 +40,9 @@ def test_each_row_is_the_law_of_its_life_given_that_it_runs(time):
     element, rate = element_of([told])
     assert element.law.inputs == ("depth",)
     counts = element.weights > 0.01
-    exact, found = truncated(rate)(time), element.below(time)
-    assert np.abs(found - exact)[counts].max() < 2e-3
-    assert np.average(found - exact, weights=element.weights) == pytest.approx(0, abs=4e-4)
+    exact, probability = truncated(rate)(time), element.below(time)
+    assert np.abs(probability - exact)[counts].max() < 2e-3
+    assert np.average(probability - exact, weights=element.weights) == pytest.approx(0, abs=4e-4)
 
 
 def test_a_life_known_within_a_narrow_window_is_that_life():
@@ -51,8 +51,8 @@ def test_a_life_known_within_a_narrow_window_is_that_life():
         {"unit": "A", "output": "life", "kind": "survived", "time": 4e5},
         {"unit": "A", "output": "life", "kind": "ended", "time": 4e5 * 1.002},
     ]
-    found = posterior(Result(wear(samples=6000)), read_tables(told)).units["A"]
-    depth, weights = np.log(found.scale), found.weights.weights
+    unit_posterior = posterior(Result(wear(samples=6000)), read_tables(told)).units["A"]
+    depth, weights = np.log(unit_posterior.scale), unit_posterior.weights.weights
     mean, cov = exactly([4e5 * 1.001], cv=1e-9)
     center = np.average(depth, weights=weights)
     sd = np.average((depth - center) ** 2, weights=weights) ** 0.5
@@ -63,7 +63,7 @@ def test_a_life_known_within_a_narrow_window_is_that_life():
 def test_a_unit_seen_running_has_not_ended_before():
     told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
     ds = update(wear(samples=2000), [told])
-    unit = next(one for one in remaining(Result(ds), [SEEN, 2e6]) if one.unit == "A")
+    unit = next(life for life in remaining(Result(ds), [SEEN, 2e6]) if life.unit == "A")
     assert unit.runs.value == 1.0 and unit.by[SEEN].value == 0.0
     assert unit.life[0.05].value < unit.life[0.5].value < unit.life[0.95].value
 
@@ -85,25 +85,25 @@ def test_without_inspections_it_is_the_law_of_the_study(exponent):
     inputs = inputs_of(Result(wear(samples=50)))
     of = ("rate",), inputs.laws["rate"], inputs.bounds["rate"], exponent, inputs.values["rate"]
     lives = np.append(np.linspace(5e5, 2e6, 48), [np.inf, np.nan])
-    found = LearntScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
+    scale = LearntScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
     study = ConditionalScale(*of, mean=np.zeros(50))
     for time in (4e5, 1e6, 3e6):
-        np.testing.assert_allclose(found.below(lives, time), study.below(lives, time), atol=1e-8)
+        np.testing.assert_allclose(scale.below(lives, time), study.below(lives, time), atol=1e-8)
 
 
 def test_an_input_on_which_other_outputs_depend_is_not_integrated():
     """They would keep the values for the input as drawn: here the life, as another output."""
     rows, told = wear(samples=500).copy(), read_tables(measured(5e5))
     rows["life_error"] = 1e-3 * rows["life"]
-    kept = {name: one for name, one in rows["life"].attrs.items() if name != "scales"}
+    kept = {name: attribute for name, attribute in rows["life"].attrs.items() if name != "scales"}
     rows["life_error"].attrs = kept
     assert posterior(Result(rows), told).scale.name == "depth"  # errors scale with their lives
     rows["power"] = rows["life"] * 2
     rows["power"].attrs = kept
     assert list(dependent_outputs(Result(rows), "depth")) == ["power"]
-    found = posterior(Result(rows), told)
-    assert found.scale is None
-    (why,) = found.not_integrated
+    learned = posterior(Result(rows), told)
+    assert learned.scale is None
+    (why,) = learned.not_integrated
     assert why == "depth is not integrated: power depends on it otherwise."
 
 
@@ -118,13 +118,17 @@ def test_a_unit_never_inspected_runs_on_where_all_is_shared_with_one_that_does()
 def test_the_mean_of_an_integrated_input_scatters_as_its_interval_says():
     """Values drawn as evenly as its law would seem to scatter three times as much."""
     lives = measured(6e5, 1e6, 1.2e6, cv=0.3)
-    found = [
-        next(one.posterior.mean for one in inputs_learnt(Result(ds)) if one.name == "depth[unit=A]")
+    means = [
+        next(
+            input_.posterior.mean
+            for input_ in inputs_learnt(Result(ds))
+            if input_.name == "depth[unit=A]"
+        )
         for seed in range(20)
         for ds in [update(wear(samples=300, seed=seed, rate="shared", units=3), lives)]
     ]
-    scatter = np.std([one.value for one in found], ddof=1)
-    width = np.mean([one.high - one.low for one in found]) / 3.92
+    scatter = np.std([mean.value for mean in means], ddof=1)
+    width = np.mean([mean.high - mean.low for mean in means]) / 3.92
     assert 0.6 < width / scatter < 1.6
 
 

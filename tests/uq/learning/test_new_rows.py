@@ -34,7 +34,7 @@ def result():
 
 
 @pytest.fixture(scope="module")
-def found(result):
+def new_rows(result):
     return update(result, UNLIKELY, **SMALL)
 
 
@@ -55,8 +55,8 @@ def assert_exact(ds, mean, cov, unit="A"):
     assert np.abs(sds / sd - 1).max() < 0.15
 
 
-def test_what_contradicts_the_rows_ends_in_the_right_posterior(result, found):
-    check(result, UNLIKELY, found, *exactly([1e7], cv=0.1))
+def test_what_contradicts_the_rows_ends_in_the_right_posterior(result, new_rows):
+    check(result, UNLIKELY, new_rows, *exactly([1e7], cv=0.1))
 
 
 @pytest.mark.slow
@@ -64,11 +64,11 @@ def test_what_contradicts_the_rows_more_ends_in_the_right_posterior(result):
     check(result, FAR, update(result, FAR, **SMALL), *exactly([2e7], cv=0.05))
 
 
-def check(result, inspections, found, mean, cov):
+def check(result, inspections, ds, mean, cov):
     with pytest.raises(RunError, match=r"or update the result with --rows N"):
         update(result, inspections)
-    assert_exact(found, mean, cov)
-    answer = learnt_json(learnt(found))
+    assert_exact(ds, mean, cov)
+    answer = learnt_json(learnt(ds))
     assert answer["effective_rows"] >= 400 and answer["pareto_k"] < 0.7
     assert answer["strangeness"] < 0.01
     # The laws before the inspections are those of the study, whatever the rows were drawn from.
@@ -77,28 +77,30 @@ def check(result, inspections, found, mean, cov):
     assert before["sd"] == pytest.approx(before["mean"] * np.expm1(RATE[1] ** 2) ** 0.5, rel=0.2)
 
 
-def test_intervals_rest_on_independent_repetitions(result, found):
-    assert np.unique(found["replicate"]).tolist() == list(range(8))
-    assert found.attrs["replicates"] == 8
-    after = learnt_json(learnt(found))["inputs"]["rate[unit=A]"]["posterior"]
+def test_intervals_rest_on_independent_repetitions(result, new_rows):
+    assert np.unique(new_rows["replicate"]).tolist() == list(range(8))
+    assert new_rows.attrs["replicates"] == 8
+    after = learnt_json(learnt(new_rows))["inputs"]["rate[unit=A]"]["posterior"]
     assert after["mean_low"] < after["mean"] < after["mean_high"]
     assert after["sd_low"] < after["sd"] < after["sd_high"]
-    assert own_rows(Result(prior_of(Result(found)))).identical(result)
+    assert own_rows(Result(prior_of(Result(new_rows)))).identical(result)
 
 
-def test_bits_taught_are_exact(found):
+def test_bits_taught_are_exact(new_rows):
     mean, cov = exactly([1e7], cv=0.1)
     prior, start = np.diag([RATE[1] ** 2, DEPTH[1] ** 2]), np.log([RATE[0], DEPTH[0]])
     far = (mean - start) @ np.linalg.solve(prior, mean - start)
     volume = np.log(np.linalg.det(prior) / np.linalg.det(cov))
     bits = (np.trace(np.linalg.solve(prior, cov)) + far - 2 + volume) / 2 / np.log(2)
-    assert [one.bits for one in learnt(found).taught] == [pytest.approx(bits, rel=0.05)]
+    assert [inspection.bits for inspection in learnt(new_rows).taught] == [
+        pytest.approx(bits, rel=0.05)
+    ]
 
 
 @pytest.mark.slow
-def test_a_second_update_draws_its_own_rows(result, found):
+def test_a_second_update_draws_its_own_rows(result, new_rows):
     more = [{"unit": "A", "output": "life", "kind": "survived", "time": 9e6}]
-    assert update(found, more, **SMALL).identical(update(result, UNLIKELY + more, **SMALL))
+    assert update(new_rows, more, **SMALL).identical(update(result, UNLIKELY + more, **SMALL))
 
 
 @pytest.mark.slow
@@ -138,24 +140,24 @@ def test_several_units_of_a_sample():
     ds = wear(depth="shared", samples=200, units=2)
     with pytest.raises(RunError, match="or update the result with --rows N"):
         update(ds, measured(*lives, cv=0.05))
-    found = update(ds, measured(*lives, cv=0.05), **SMALL)
+    updated = update(ds, measured(*lives, cv=0.05), **SMALL)
     prior = np.diag([RATE[1] ** 2] * 2 + [DEPTH[1] ** 2])
     start = np.log([RATE[0]] * 2 + [DEPTH[0]])
     look = np.hstack([-np.eye(2), np.ones((2, 1))])
     gain = prior @ look.T @ np.linalg.inv(look @ prior @ look.T + np.log1p(0.05**2) * np.eye(2))
     mean, cov = start + gain @ (np.log(lives) - look @ start), prior - gain @ look @ prior
     for i, unit in enumerate("AB"):
-        assert_exact(found, mean[[i, 2]], cov[np.ix_([i, 2], [i, 2])], unit)
-    assert own_rows(Result(prior_of(Result(found)))).identical(ds)
+        assert_exact(updated, mean[[i, 2]], cov[np.ix_([i, 2], [i, 2])], unit)
+    assert own_rows(Result(prior_of(Result(updated)))).identical(ds)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("method", ["sobol", "monte-carlo"])
 def test_designs_with_replicates(method):
     ds = wear(samples=64, method=method, replicates=8)
-    found = update(ds, FAR, **SMALL)
-    assert_exact(found, *exactly([2e7], cv=0.05))
-    assert own_rows(Result(prior_of(Result(found)))).identical(ds)
+    updated = update(ds, FAR, **SMALL)
+    assert_exact(updated, *exactly([2e7], cv=0.05))
+    assert own_rows(Result(prior_of(Result(updated)))).identical(ds)
 
 
 @pytest.mark.slow
@@ -169,9 +171,9 @@ def test_an_input_that_is_a_multiple_of_another():
             "threshold": {"distribution": "uniform", "lower": 0.1, "upper": 0.5, "times": "rate"},
         },
     }
-    found = update(computed(study_of(tables)), FAR, **SMALL)
-    assert_exact(found, *exactly([2e7], cv=0.05))
-    factor = found["threshold"].values / found["rate"].values
+    updated = update(computed(study_of(tables)), FAR, **SMALL)
+    assert_exact(updated, *exactly([2e7], cv=0.05))
+    factor = updated["threshold"].values / updated["rate"].values
     assert 0.1 <= factor.min() and factor.max() <= 0.5
 
 
@@ -226,8 +228,8 @@ def test_the_command(uq, folder, result):
 
 
 @pytest.mark.slow
-def test_the_report_of_new_rows(uq, folder, found):
-    write_result(found, folder / "posterior.nc")
+def test_the_report_of_new_rows(uq, folder, new_rows):
+    write_result(new_rows, folder / "posterior.nc")
     assert uq("report", "posterior.nc").code == 0
     assert " -o posterior.nc --rows 8000\n" in (folder / "posterior.html").read_text()
 

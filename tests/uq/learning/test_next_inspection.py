@@ -25,27 +25,27 @@ def worn():
 
 def test_a_measurement_of_what_all_share_narrows_it_as_in_closed_form(worn):
     """The worn depth is rate x time, and the life 100 mm / rate."""
-    found = worth(worn, DEPTH, times=(20.0, 40.0), units=(1, 20), cv=0.3, life=LIFE)
-    assert found.spread == pytest.approx(RATE[1], rel=0.03)
+    information = worth(worn, DEPTH, times=(20.0, 40.0), units=(1, 20), cv=0.3, life=LIFE)
+    assert information.spread == pytest.approx(RATE[1], rel=0.03)
     for time in (20.0, 40.0):
         for units in (1, 20):
             noise = np.log1p(0.3**2) / units
             exact = 1 - (noise / (RATE[1] ** 2 + noise)) ** 0.5
-            assert found.narrowing[time, units] == pytest.approx(exact, abs=0.01)
+            assert information.narrowing[time, units] == pytest.approx(exact, abs=0.01)
 
 
 def test_what_is_each_unit_s_own_is_not_narrowed():
-    found = worth(pads(level="own", samples=1000), DEPTH, (20.0,), (1, 20), life=LIFE)
-    assert found.spread < 0.1 and not found.narrowing[20.0, 20] > 0.3
+    information = worth(pads(level="own", samples=1000), DEPTH, (20.0,), (1, 20), life=LIFE)
+    assert information.spread < 0.1 and not information.narrowing[20.0, 20] > 0.3
 
 
 def test_repeats_are_no_more_units():
     """Depths scatter between units alone: that a unit has three rows tells no more of it."""
-    found = worth(wear(samples=2000, rate="shared", units=2, repeats=3), "life", cv=0.1)
+    information = worth(wear(samples=2000, rate="shared", units=2, repeats=3), "life", cv=0.1)
     noise = LEARNT_DEPTH[1] ** 2 + np.log1p(0.1**2)
     exact = 1 - (noise / (LEARNT_RATE[1] ** 2 + noise)) ** 0.5
-    assert found.spread == pytest.approx(LEARNT_RATE[1], rel=0.03)
-    assert found.narrowing[None, 1] == pytest.approx(exact, abs=0.02)
+    assert information.spread == pytest.approx(LEARNT_RATE[1], rel=0.03)
+    assert information.narrowing[None, 1] == pytest.approx(exact, abs=0.02)
 
 
 def test_rows_as_those_of_one_unit_are_no_question():
@@ -58,9 +58,9 @@ def test_times_are_in_the_unit_of_the_life(uq, folder, worn):
     write_result(worn, folder / "pads.nc")
     ask = ("next-inspection", "pads.nc", "--inspect", DEPTH, "--life", LIFE)
     assert "at 20 h" in uq(*ask, "--at", "20").out
-    found = strict_json(uq(*ask, "--at", "20", "--json").out)
-    assert found["time_units"] == "h"
-    assert [one["time"] for one in found["narrowing"]] == [20.0] * 3
+    document = strict_json(uq(*ask, "--at", "20", "--json").out)
+    assert document["time_units"] == "h"
+    assert [row["time"] for row in document["narrowing"]] == [20.0] * 3
     wrong = uq(*ask, "--at", "1 day")
     assert wrong.err == (
         "--at 1 day: 'a life' is in 'h': give the number in that unit, without a unit\n"

@@ -12,7 +12,7 @@ STOPS = {"distribution": "discrete-choice", "values": [20.0, 1e8], "weights": [1
 """One pad in ten stops wearing before the first declared depth, 50 mm."""
 
 
-def found(kind, value, time=30.0):
+def inspection(kind, value, time=30.0):
     output = "depth[side=left]"
     return {"unit": "A", "time": time, "output": output, "kind": kind, "value": value}
 
@@ -23,7 +23,7 @@ def some_stop():
 
 
 def test_what_all_depths_between_agree_with_is_no_question(some_stop):
-    after = update(some_stop, [found("below", 60.0)])
+    after = update(some_stop, [inspection("below", 60.0)])
     stopped = after["stop"].values < 50
     share = np.average(stopped, weights=after["weight"].values)
     others = 0.9 * norm.cdf(np.log(60 / 30 / RATE[0]) / RATE[1])
@@ -32,9 +32,9 @@ def test_what_all_depths_between_agree_with_is_no_question(some_stop):
 
 def test_what_they_leave_open_asks_for_more_depths(some_stop):
     with pytest.raises(RunError, match="or their wear stops between two of its depths; .*depths"):
-        update(some_stop, [found("above", 10.0)])
+        update(some_stop, [inspection("above", 10.0)])
 
 
 def test_what_a_horizon_leaves_open_asks_for_a_longer_one():
     with pytest.raises(RunError, match="what its inspections found; run the study with a longer"):
-        update(pads(300, settings={"horizon": 80.0}), [found("below", 60.0, time=90.0)])
+        update(pads(300, settings={"horizon": 80.0}), [inspection("below", 60.0, time=90.0)])

@@ -18,12 +18,12 @@ from uq.result.result import Result
 LEFT = "life[side=left,depth=100.0]"
 
 
-def said(unit, kind, time, output="life"):
+def inspection(unit, kind, time, output="life"):
     return {"unit": unit, "output": output, "kind": kind, "time": time}
 
 
 def lives_of(ds, *by):
-    return {(one.unit, one.output): one for one in remaining(Result(ds), by)}
+    return {(life.unit, life.output): life for life in remaining(Result(ds), by)}
 
 
 @pytest.fixture(scope="module")
@@ -33,48 +33,48 @@ def worn():
 
 def test_a_life_counts_from_when_its_own_unit_was_last_seen():
     told = [
-        said("A", "survived", 3e5),
-        said("A", "survived", 5e5),
-        said("B", "survived", 8e5),
-        said("C", "survived", 2e5),
-        said("C", "ended", 9e5),
+        inspection("A", "survived", 3e5),
+        inspection("A", "survived", 5e5),
+        inspection("B", "survived", 8e5),
+        inspection("C", "survived", 2e5),
+        inspection("C", "ended", 9e5),
         measured(7e5)[0] | {"unit": "D"},
     ]
-    found = lives_of(update(wear(samples=300, rate="shared", units=5), told))
-    assert {unit: one.seen for (unit, _), one in found.items()} == {
+    lives = lives_of(update(wear(samples=300, rate="shared", units=5), told))
+    assert {unit: life.seen for (unit, _), life in lives.items()} == {
         ANY: 9e5,
         "A": 5e5,
         "B": 8e5,
         "D": 0.0,
     }  # what has ended has no life left
-    assert list(found["A", "life"].by) == [1e6]  # the threshold of the study
+    assert list(lives["A", "life"].by) == [1e6]  # the threshold of the study
 
 
 def test_it_agrees_with_the_closed_form():
     """Life is lognormal; nothing is shared, so that a unit never inspected is as before."""
-    ds = update(wear(samples=3000, units=2), [said("A", "survived", 6e5)])
+    ds = update(wear(samples=3000, units=2), [inspection("A", "survived", 6e5)])
     law = lognorm((RATE[1] ** 2 + DEPTH[1] ** 2) ** 0.5, scale=DEPTH[0] / RATE[0])
-    for (_, _), one in lives_of(ds, 5e5, 1.2e6).items():
-        assert one.seen == 6e5
-        runs = 1.0 if one.unit == "A" else law.sf(6e5)
-        assert one.runs.value == pytest.approx(runs, abs=0.01)
-        assert one.by[5e5].value == 0.0
+    for (_, _), life in lives_of(ds, 5e5, 1.2e6).items():
+        assert life.seen == 6e5
+        runs = 1.0 if life.unit == "A" else law.sf(6e5)
+        assert life.runs.value == pytest.approx(runs, abs=0.01)
+        assert life.by[5e5].value == 0.0
         gone = (law.cdf(1.2e6) - law.cdf(6e5)) / law.sf(6e5)
-        assert one.by[1.2e6].value == pytest.approx(gone, abs=0.01)
-        for p, left in one.life.items():
+        assert life.by[1.2e6].value == pytest.approx(gone, abs=0.01)
+        for p, left in life.life.items():
             assert left.value == pytest.approx(law.isf((1 - p) * law.sf(6e5)) - 6e5, rel=0.04)
             assert left.low < left.value < left.high
 
 
 def test_times_are_in_the_unit_of_the_life(uq, folder, worn):
     """Hours: as the times of inspections, so those asked for and those that are shown."""
-    told = [said("A", "survived", 60.0, LEFT)]
-    one = lives_of(update(worn, told), 150.0)["A", LEFT]
+    told = [inspection("A", "survived", 60.0, LEFT)]
+    life = lives_of(update(worn, told), 150.0)["A", LEFT]
     law = lognorm(WEAR[1], scale=100.0 / WEAR[0])
-    assert (one.units, one.seen) == ("h", 60.0)
+    assert (life.units, life.seen) == ("h", 60.0)
     gone = (law.cdf(150) - law.cdf(60)) / law.sf(60)
-    assert one.by[150.0].value == pytest.approx(gone, abs=0.03)
-    assert one.life[0.5].value == pytest.approx(law.isf(law.sf(60) / 2) - 60, rel=0.06)
+    assert life.by[150.0].value == pytest.approx(gone, abs=0.03)
+    assert life.life[0.5].value == pytest.approx(law.isf(law.sf(60) / 2) - 60, rel=0.06)
     write_result(worn, folder / "pads.nc")
     (folder / "found.csv").write_text(f'unit,time,output,kind\nA,60,"{LEFT}",survived\n')
     shown = uq("update", "pads.nc", "found.csv", "-o", "after.nc", "--by", "150").out
@@ -100,12 +100,12 @@ def test_seconds_may_be_asked_for_as_people_write_them(uq, folder):
 
 def test_lives_in_several_units_count_each_in_its_own(uq, folder):
     ds = pads(300, model="COUNTED", analysis={"outputs": ["life", "strokes"]})
-    told = [said("A", "survived", 60.0, LEFT), said("A", "survived", 5000.0, "strokes")]
+    told = [inspection("A", "survived", 60.0, LEFT), inspection("A", "survived", 5000.0, "strokes")]
     after = update(ds, told)
-    found = lives_of(after)
-    assert (found["A", LEFT].units, found["A", LEFT].seen) == ("h", 60.0)
-    assert (found["A", "strokes"].units, found["A", "strokes"].seen) == ("1", 5000.0)
-    assert found["A", "strokes"].life[0.05].value < 1500  # of 60 strokes an hour, not 5,000 hours
+    lives = lives_of(after)
+    assert (lives["A", LEFT].units, lives["A", LEFT].seen) == ("h", 60.0)
+    assert (lives["A", "strokes"].units, lives["A", "strokes"].seen) == ("1", 5000.0)
+    assert lives["A", "strokes"].life[0.05].value < 1500  # of 60 strokes an hour, not 5,000 hours
     write_result(ds, folder / "pads.nc")
     (folder / "found.csv").write_text(f'unit,time,output,kind\nA,60,"{LEFT}",survived\n')
     wrong = uq("update", "pads.nc", "found.csv", "-o", "after.nc", "--by", "150")
@@ -120,7 +120,7 @@ def test_lives_in_several_units_count_each_in_its_own(uq, folder):
 
 def test_rows_that_are_all_one_law_have_no_interval():
     """Nothing but the integrated input is uncertain: rows tell its law, and nothing else."""
-    told = [said("A", "survived", 7e5), said("A", "ended", 7.7e5)]
+    told = [inspection("A", "survived", 7e5), inspection("A", "ended", 7.7e5)]
     study = {
         "study": {"name": "wear", "model": "exponential-wear"},
         "design": {"method": "monte-carlo", "samples": 500, "seed": 1},
@@ -129,13 +129,13 @@ def test_rows_that_are_all_one_law_have_no_interval():
     }
     left = lives_of(update(computed(study_of(study)), told))[ANY, "life"].life
     law = lognorm(DEPTH[1], scale=DEPTH[0] / RATE[0])
-    for p, one in left.items():
-        assert one.value == pytest.approx(law.isf((1 - p) * law.sf(7.7e5)) - 7.7e5, rel=1e-3)
+    for p, estimate in left.items():
+        assert estimate.value == pytest.approx(law.isf((1 - p) * law.sf(7.7e5)) - 7.7e5, rel=1e-3)
 
 
 @pytest.mark.parametrize("time", [-1.0, np.nan, np.inf])
 def test_only_a_time_can_be_asked_for(worn, time):
-    after = update(worn, [said("A", "survived", 60.0, LEFT)])
+    after = update(worn, [inspection("A", "survived", 60.0, LEFT)])
     with pytest.raises(InputError, match="must be finite, and 0 or more"):
         learnt(after, [time])
 
@@ -143,12 +143,12 @@ def test_only_a_time_can_be_asked_for(worn, time):
 def test_what_hardly_runs_on_has_no_life_left(worn):
     """It was looked at, and running, after it must have worn through."""
     seen = {"unit": "A", "time": 99.0, "output": "noise", "kind": "above", "value": 1.5}
-    one = lives_of(update(worn, [seen]))["A", LEFT]
-    assert one.life == {} and "hardly any row agrees" in one.runs.reason
+    life = lives_of(update(worn, [seen]))["A", LEFT]
+    assert life.life == {} and "hardly any row agrees" in life.runs.reason
 
 
 def test_units_that_may_be_one_are_named():
-    told = [said(unit, "survived", 2e5) for unit in ("A 07", "a07", "A70")]
+    told = [inspection(unit, "survived", 2e5) for unit in ("A 07", "a07", "A70")]
     notes = learnt(update(wear(samples=200, rate="shared", units=3), told)).notes
     assert [note for note in notes if "taken" in note] == [
         "Warning: 'A 07' and 'a07' are taken for two units."
@@ -156,5 +156,7 @@ def test_units_that_may_be_one_are_named():
 
 
 def test_json_names_the_unit(worn):
-    found = learnt_json(learnt(update(worn, [said("A", "survived", 60.0, LEFT)]), [150.0]))
-    assert {one["units"] for unit in found["units"].values() for one in unit.values()} == {"h"}
+    document = learnt_json(learnt(update(worn, [inspection("A", "survived", 60.0, LEFT)]), [150.0]))
+    assert {entry["units"] for unit in document["units"].values() for entry in unit.values()} == {
+        "h"
+    }

@@ -71,9 +71,9 @@ def test_without_rows_of_their_own_they_have_no_life():
     ds = update(rows(2, samples=2000), measured(9.0, 20.0, cv=CV))
     why = "set [design] units = 3 or more"
     assert any(why in note for note in summarise(Result(ds)).notes)
-    found = learnt_json(learnt(ds))
-    assert found["uninspected"] == {} and found["units"].keys() == {"A", "B"}
-    assert any(why in note for note in found["notes"])
+    document = learnt_json(learnt(ds))
+    assert document["uninspected"] == {} and document["units"].keys() == {"A", "B"}
+    assert any(why in note for note in document["notes"])
     assert not any(why in note for note in summarise(Result(as_unit(ds, "A"))).notes)
 
 
@@ -82,21 +82,21 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     """All rows then count alike: what is shared is narrower, and the units are as before."""
     lives = np.array([6e5, 7e5, 5e5])
     ds = update(wear(3000, depth="shared", units=4), measured(*lives, cv=CV))
-    own, noise = RATE[1], np.hypot(RATE[1], np.log1p(CV**2) ** 0.5)
+    sd, noise = RATE[1], np.hypot(RATE[1], np.log1p(CV**2) ** 0.5)
     spread = (DEPTH[1] ** -2 + 3 * noise**-2) ** -0.5
     seen = np.log(lives) - np.log(DEPTH[0] / RATE[0])
     middle = np.log(DEPTH[0] / RATE[0]) + spread**2 * seen.sum() / noise**2
     z = np.linspace(-6, 6, 2001)
-    p = stats.norm.cdf((np.log(6e5) - middle - spread * z) / own)
+    p = stats.norm.cdf((np.log(6e5) - middle - spread * z) / sd)
     none = np.average((1 - p) ** 3, weights=np.exp(-(z**2) / 2))
     kept = fleet_of(Result(ds), 3, [6e5]).by[6e5][1].estimate
     assert kept.low < none < kept.high and kept.high - kept.low < 0.06
-    found = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
-    ends = stats.norm.cdf((np.log(6e5) - middle + spread * np.array([-1.96, 1.96])) / own)
-    assert list(found["over_shared"].values()) == pytest.approx(ends, abs=0.02)
+    probability = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
+    ends = stats.norm.cdf((np.log(6e5) - middle + spread * np.array([-1.96, 1.96])) / sd)
+    assert list(probability["over_shared"].values()) == pytest.approx(ends, abs=0.02)
     share = by_level(Result(ds)).outputs["log(life)"].shares["shared"]
-    truth = spread**2 / (spread**2 + own**2)
-    assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + own**2)
+    truth = spread**2 / (spread**2 + sd**2)
+    assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + sd**2)
     with pytest.raises(InputError, match="no fleets: these rows stand for unit 'A'"):
         fleet_of(Result(as_unit(ds, "A")), 3)
 

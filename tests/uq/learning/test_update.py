@@ -38,42 +38,44 @@ def inputs_of(ds):
     return learnt_json(learnt(ds))["inputs"]
 
 
-def assert_close(found, mean, sd):
+def assert_close(moments, mean, sd):
     """Compare with a lognormal law: mean within 1 %, deviation and quantiles within 3 %."""
     law = lognorm(sd, scale=np.exp(mean))
-    assert found["mean"] == pytest.approx(law.mean(), rel=0.01)
-    assert found["sd"] == pytest.approx(law.std(), rel=0.03)
-    for p, value in found["quantiles"].items():
+    assert moments["mean"] == pytest.approx(law.mean(), rel=0.01)
+    assert moments["sd"] == pytest.approx(law.std(), rel=0.03)
+    for p, value in moments["quantiles"].items():
         assert value == pytest.approx(law.ppf(float(p)), rel=0.03)
 
 
 def test_one_unit_agrees_with_the_closed_form(result):
-    found = inputs_of(update(result, measured(5e5)))
+    inputs = inputs_of(update(result, measured(5e5)))
     mean, cov = exactly([5e5])
-    assert set(found) == {"rate[unit=A]", "depth[unit=A]"}  # nothing is shared
-    for i, name in enumerate(found):
-        assert_close(found[name]["posterior"], mean[i], cov[i, i] ** 0.5)
+    assert set(inputs) == {"rate[unit=A]", "depth[unit=A]"}  # nothing is shared
+    for i, name in enumerate(inputs):
+        assert_close(inputs[name]["posterior"], mean[i], cov[i, i] ** 0.5)
 
 
 def test_moments_that_rest_on_a_few_rows_are_refused(three_units):
     """Pareto k of weight times value, not of the weights alone."""
     ds = update(three_units, measured(6e5))
     heavy = (ds["rate"] / 2.5e-10) ** 20
-    found = inputs_of(ds.assign(rate=heavy.assign_attrs(ds["rate"].attrs)))["rate"]["posterior"]
-    assert found["mean"] is None and found["sd"] is None and found["quantiles"]["0.5"] > 0
-    assert "(Pareto k " in found["mean_reason"]
+    posterior = inputs_of(ds.assign(rate=heavy.assign_attrs(ds["rate"].attrs)))["rate"]["posterior"]
+    assert (
+        posterior["mean"] is None and posterior["sd"] is None and posterior["quantiles"]["0.5"] > 0
+    )
+    assert "(Pareto k " in posterior["mean_reason"]
     assert "mean_reason" not in inputs_of(ds)["rate"]["posterior"]
 
 
 def test_what_is_shared_is_learnt_from_all_units(three_units):
     lives = [6e5, 1e6, 1.2e6]
-    found = inputs_of(update(three_units, measured(*lives)))
+    inputs = inputs_of(update(three_units, measured(*lives)))
     mean, cov = exactly(lives, shared_rate=True)
     law = lognorm(cov[0, 0] ** 0.5, scale=np.exp(mean[0]))
-    assert found["rate"]["posterior"]["mean"] == pytest.approx(law.mean(), rel=0.02)
-    assert found["rate"]["posterior"]["sd"] == pytest.approx(law.std(), rel=0.06)
+    assert inputs["rate"]["posterior"]["mean"] == pytest.approx(law.mean(), rel=0.02)
+    assert inputs["rate"]["posterior"]["sd"] == pytest.approx(law.std(), rel=0.06)
     for i, unit in enumerate("ABC", start=1):
-        of_unit = found[f"depth[unit={unit}]"]["posterior"]
+        of_unit = inputs[f"depth[unit={unit}]"]["posterior"]
         law = lognorm(cov[i, i] ** 0.5, scale=np.exp(mean[i]))
         assert of_unit["mean"] == pytest.approx(law.mean(), rel=0.02)
 
@@ -82,20 +84,20 @@ def test_what_is_shared_is_learnt_from_all_units(three_units):
 def test_an_integrated_input_that_all_share_is_exact():
     lives = [6e5, 1e6, 1.2e6]
     ds = wear(rate="own", depth="shared", samples=2000, units=3)
-    found = inputs_of(update(ds, measured(*lives)))["depth"]["posterior"]
+    posterior = inputs_of(update(ds, measured(*lives)))["depth"]["posterior"]
     of_logs = 0.5**2 + np.log1p(0.1**2)
     precision = 1 / 0.3**2 + 3 / of_logs
     seen = np.log(np.array(lives) * 2.5e-10).sum() / of_logs
     mean = (np.log(2.5e-4) / 0.3**2 + seen) / precision
-    assert_close(found, mean, precision**-0.5)
+    assert_close(posterior, mean, precision**-0.5)
 
 
 def test_units_of_a_sample_keep_one_value_of_what_they_share():
     ds = wear(rate="own", depth="shared", samples=100, units=3)
-    found = update(ds, measured(6e5))
-    by_sample = found["depth"].values.reshape(100, 3)
+    updated = update(ds, measured(6e5))
+    by_sample = updated["depth"].values.reshape(100, 3)
     assert (by_sample == by_sample[:, :1]).all()
-    np.testing.assert_allclose(found["life"], found["depth"] / found["rate"], rtol=1e-12)
+    np.testing.assert_allclose(updated["life"], updated["depth"] / updated["rate"], rtol=1e-12)
 
 
 def test_two_updates_are_one(result):
@@ -165,13 +167,14 @@ def test_a_model_error_blurs_a_limit_but_not_what_was_seen_to_run(result):
     """A limit of the life at the same time is blurred; see the guide."""
     seen = {"unit": "A", "output": "life", "kind": "survived", "time": 1e6}
     limit = {"unit": "A", "output": "life", "kind": "above", "value": 1e6}
-    found = {
+    units = {
         (told["kind"], cv): as_unit(update(result, [told], model_error=cv), "A")
         for told in (seen, limit)
         for cv in (0.0, 0.3)
     }
     early = {
-        key: np.average(one["life"] < 1e6, weights=one["weight"]) for key, one in found.items()
+        key: np.average(unit_rows["life"] < 1e6, weights=unit_rows["weight"])
+        for key, unit_rows in units.items()
     }
     assert early["survived", 0.0] == early["survived", 0.3] == early["above", 0.0] == 0
     assert early["above", 0.3] == pytest.approx(0.145, abs=0.02)
@@ -179,12 +182,12 @@ def test_a_model_error_blurs_a_limit_but_not_what_was_seen_to_run(result):
 
 def test_the_life_left_is_that_of_a_unit_that_runs(result):
     lived = [{"unit": "A", "output": "life", "kind": "survived", "time": 1e6}]
-    found = learnt_json(learnt(update(result, lived), [2e6]))["units"]["A"]["life"]
+    life = learnt_json(learnt(update(result, lived), [2e6]))["units"]["A"]["life"]
     lives = lognorm((0.5**2 + 0.3**2) ** 0.5, scale=1e6)
     gone = (lives.cdf(2e6) - lives.cdf(1e6)) / lives.sf(1e6)
-    assert found["by"]["2000000.0"]["value"] == pytest.approx(gone, abs=0.02)
+    assert life["by"]["2000000.0"]["value"] == pytest.approx(gone, abs=0.02)
     median = lives.isf(lives.sf(1e6) / 2) - 1e6
-    assert found["remaining"]["0.5"]["value"] == pytest.approx(median, rel=0.06)
+    assert life["remaining"]["0.5"]["value"] == pytest.approx(median, rel=0.06)
 
 
 def test_the_command(uq, folder, result):
@@ -192,9 +195,9 @@ def test_the_command(uq, folder, result):
     (folder / "found.csv").write_text("unit,output,kind,value,cv\nA,life,measured,5e5,0.1\n")
     ended = uq("update", "prior.nc", "found.csv", "-o", "posterior.nc", "--by", "1e6", "--json")
     assert (ended.code, ended.err) == (0, "")
-    found = strict_json(ended.out)
-    assert found["effective_rows"] > 1000 and found["pareto_k"] < 0.7
-    rate = found["inputs"]["rate[unit=A]"]
+    document = strict_json(ended.out)
+    assert document["effective_rows"] > 1000 and document["pareto_k"] < 0.7
+    rate = document["inputs"]["rate[unit=A]"]
     assert {"mean", "sd"} <= set(rate["prior"]) and "0.05" in rate["posterior"]["quantiles"]
     again = uq("update", "posterior.nc", "found.csv", "-o", "twice.nc")
     assert again.code == 2 and "already used" in again.err and again.err.count("\n") == 1
@@ -218,16 +221,16 @@ def test_a_study_is_run_first(uq, folder):
 
 def test_what_the_next_inspection_is_worth(uq, folder):
     ds = wear(rate="shared", samples=2000, units=5)
-    found = worth(ds, "life", units=(1, 20), cv=0.1)
+    information = worth(ds, "life", units=(1, 20), cv=0.1)
     for units in (1, 20):
         noise = (0.3**2 + np.log1p(0.1**2)) / units
         exact = 1 - (1 - 0.5**2 / (0.5**2 + noise)) ** 0.5
-        assert found.narrowing[None, units] == pytest.approx(exact, abs=0.015)
+        assert information.narrowing[None, units] == pytest.approx(exact, abs=0.015)
     posterior = update(ds, measured(6e5, 1e6, 1.2e6))
-    assert worth(posterior, "life").narrowing[None, 1] < found.narrowing[None, 1]
+    assert worth(posterior, "life").narrowing[None, 1] < information.narrowing[None, 1]
     write_result(posterior, folder / "posterior.nc")
     ended = uq("next-inspection", "posterior.nc", "--inspect", "life", "--json")
-    assert [one["units"] for one in strict_json(ended.out)["narrowing"]] == [1, 5, 20]
+    assert [row["units"] for row in strict_json(ended.out)["narrowing"]] == [1, 5, 20]
     assert uq("next-inspection", "posterior.nc", "--inspect", "lif").err.count("\n") == 1
 
 
@@ -249,32 +252,32 @@ def test_rows_as_those_of_one_unit(result):
 
 
 def test_what_an_inspection_taught_and_how_strange_it_was(result):
-    found = learnt(update(result, measured(5e5)))
+    learned = learnt(update(result, measured(5e5)))
     mean, cov = exactly([5e5])
     before, start = np.diag([0.5**2, 0.3**2]), np.log([2.5e-10, 2.5e-4])
     far = (mean - start) @ np.linalg.solve(before, mean - start)
     volume = np.log(np.linalg.det(before) / np.linalg.det(cov))
     bits = (np.trace(np.linalg.solve(before, cov)) + far - 2 + volume) / 2 / np.log(2)
-    assert [one.bits for one in found.taught] == [pytest.approx(bits, rel=0.03)]
+    assert [inspection.bits for inspection in learned.taught] == [pytest.approx(bits, rel=0.03)]
     deviation = (0.5**2 + 0.3**2 + np.log1p(0.1**2)) ** 0.5
-    assert found.strangeness == pytest.approx(2 * norm.sf(np.log(2) / deviation), abs=0.03)
-    assert found.notes == []
+    assert learned.strangeness == pytest.approx(2 * norm.sf(np.log(2) / deviation), abs=0.03)
+    assert learned.notes == []
 
 
 def test_what_survival_taught_where_units_share_an_input():
     ds = wear(rate="shared", samples=2000, units=1)
     survived = {"unit": "A", "time": 2e6, "output": "life", "kind": "survived"}
     bits = -norm.logsf(np.log(2) / (0.5**2 + 0.3**2) ** 0.5) / np.log(2)
-    assert [one.bits for one in learnt(update(ds, [survived])).taught] == [
+    assert [inspection.bits for inspection in learnt(update(ds, [survived])).taught] == [
         pytest.approx(bits, rel=0.05)
     ]
 
 
 def test_strange_inspections_come_with_a_warning():
     ds = wear(rate="own", depth="shared", samples=2000, units=3)
-    found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
-    assert found.strangeness < 0.01
-    assert any(note.startswith("Warning: inspections as improbable") for note in found.notes)
+    learned = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
+    assert learned.strangeness < 0.01
+    assert any(note.startswith("Warning: inspections as improbable") for note in learned.notes)
 
 
 def test_bounded_weights_need_no_light_tail():
@@ -282,7 +285,7 @@ def test_bounded_weights_need_no_light_tail():
     above = np.abs(0.003 * rng.standard_cauchy(300)).clip(0, 0.9)
     weights = 0.44 + np.concatenate([0.001 * rng.random(5700), above])
     assert smoothed(np.log(weights)).k > 0.6  # although none is much larger than the others
-    known = smoothed(np.log(weights), most=2.5)
-    assert (known.k, known.refusal) == (0.0, "")
-    np.testing.assert_allclose(known.weights, weights / weights.mean())
+    smoothing = smoothed(np.log(weights), most=2.5)
+    assert (smoothing.k, smoothing.refusal) == (0.0, "")
+    np.testing.assert_allclose(smoothing.weights, weights / weights.mean())
     assert smoothed(np.log(weights), most=100.0).k > 0.6  # a single row may carry too much

@@ -35,20 +35,22 @@ def of_weights(ds, numbers):
 
 def test_every_statistic_counts_rows_by_their_weight(unit):
     life = unit["life"].values
-    found = summarised(unit, plain=True)
-    assert found["effective_rows"] < 1500 and found["pareto_k"] < 0.7
-    one = found["outputs"]["life"]
-    assert one["effective_rows"] == pytest.approx(found["effective_rows"])
-    assert one["mean"] == pytest.approx(of_weights(unit, life))
-    assert one["sd"] == pytest.approx(of_weights(unit, (life - one["mean"]) ** 2) ** 0.5)
-    below = one["thresholds"]["520000.0"]["below"]
+    statistics = summarised(unit, plain=True)
+    assert statistics["effective_rows"] < 1500 and statistics["pareto_k"] < 0.7
+    statistics_of_life = statistics["outputs"]["life"]
+    assert statistics_of_life["effective_rows"] == pytest.approx(statistics["effective_rows"])
+    assert statistics_of_life["mean"] == pytest.approx(of_weights(unit, life))
+    assert statistics_of_life["sd"] == pytest.approx(
+        of_weights(unit, (life - statistics_of_life["mean"]) ** 2) ** 0.5
+    )
+    below = statistics_of_life["thresholds"]["520000.0"]["below"]
     assert below["value"] == pytest.approx(of_weights(unit, life < 5.2e5))
     assert below["low"] < below["value"] < below["high"]
     for name, p in (("B10", 0.1), ("B50", 0.5)):
-        at = one["b_lives"][name]
+        at = statistics_of_life["b_lives"][name]
         assert of_weights(unit, life < at["value"]) < p <= of_weights(unit, life <= at["value"])
         assert at["low"] < at["value"] < at["high"]
-    assert one["tolerance"] is None
+    assert statistics_of_life["tolerance"] is None
 
 
 def test_lives_of_an_inspected_unit_are_integrated(unit):
@@ -58,7 +60,7 @@ def test_lives_of_an_inspected_unit_are_integrated(unit):
     law = lognorm(sd, scale=np.exp(mean[1] - mean[0]))
     life, drawn = (summarised(unit, plain=plain)["outputs"]["life"] for plain in (False, True))
     assert life["integrated"]["inputs"] == ["depth"]
-    below, counted = (one["thresholds"]["520000.0"]["below"] for one in (life, drawn))
+    below, counted = (statistics["thresholds"]["520000.0"]["below"] for statistics in (life, drawn))
     assert below["low"] < law.cdf(5.2e5) < below["high"]
     assert below["high"] - below["low"] < (counted["high"] - counted["low"]) / 4
     for name, p in (("B10", 0.1), ("B50", 0.5)):
@@ -106,10 +108,10 @@ def test_regimes_are_weighted():
 
 
 def test_before_and_after_are_compared_with_cautious_intervals(posterior):
-    found = api.compare(wear(rate="shared", samples=600, units=2), posterior)
-    line = found.loc[("life", "B50")]
+    table = api.compare(wear(rate="shared", samples=600, units=2), posterior)
+    line = table.loc[("life", "B50")]
     assert line["second"] < line["first"] and line["low"] < line["difference"] < line["high"]
-    shares = found.loc[("life", "P(<1000000.0)")]
+    shares = table.loc[("life", "P(<1000000.0)")]
     assert shares["low"] < shares["difference"] < shares["high"]
 
 

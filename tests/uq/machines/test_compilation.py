@@ -46,8 +46,8 @@ numba.njit(lambda x: x)(1)
 @pytest.mark.parametrize(
     "program",
     [
-        pytest.param(one, marks=[pytest.mark.slow] * (one != LATE))
-        for one in (LATE, f"import numba\n{LATE}", LOOKED_FOR, NEVER)
+        pytest.param(code, marks=[pytest.mark.slow] * (code != LATE))
+        for code in (LATE, f"import numba\n{LATE}", LOOKED_FOR, NEVER)
     ],
 )
 def test_compilation_is_heard_of(program):
@@ -63,6 +63,6 @@ def test_a_terminal_shows_that_a_model_compiles(folder):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=theirs, env=environment)
     os.close(theirs)
-    said = os.read(ours, 1000).decode()
+    output = os.read(ours, 1000).decode()
     os.close(ours)
-    assert (ended.returncode, said) == (0, f"{sentence('compiling')}\r\n")
+    assert (ended.returncode, output) == (0, f"{sentence('compiling')}\r\n")

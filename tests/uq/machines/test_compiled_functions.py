@@ -49,13 +49,13 @@ def test_a_compiled_loop_over_rows_returns_what_each_row_returns(write_function)
     assert isinstance(batch, Compiled)
     chance = np.random.default_rng(1)
     x, seed = 2 * chance.random((500, 1)), chance.integers(0, 2**64 - 1, 500, dtype=np.uint64)
-    found = batch(x, seed, None)
+    returned = batch(x, seed, None)
     again = batch(x[123:], seed[123:], None)
     one_by_one = RowByRow.__call__(batch, x, seed, None)
-    for name, values in found[0].items():
+    for name, values in returned[0].items():
         assert values.tobytes() == one_by_one[0][name].tobytes()
         assert values[123:].tobytes() == again[0][name].tobytes()
-    assert (found[1] == one_by_one[1]).all() and found[2] == one_by_one[2]
+    assert (returned[1] == one_by_one[1]).all() and returned[2] == one_by_one[2]
     kinds = {Status.OK, Status.RAISED, Status.NON_FINITE, Status.BAD_SHAPE}
-    assert set(found[1].tolist()) == kinds
-    assert "ValueError: too heavy" in found[2].values()
+    assert set(returned[1].tolist()) == kinds
+    assert "ValueError: too heavy" in returned[2].values()

@@ -73,7 +73,7 @@ def test_an_fmu_alone_has_its_own_parameters_and_outputs(uq, body, folder):
     shown = uq("models", "body.fmu").out
     assert "0 to 50" in shown and "label" not in shown
     left = {"body.fmu", "body.toml", "own.toml", "own.nc"}
-    assert {one.name for one in folder.iterdir()} == left
+    assert {path.name for path in folder.iterdir()} == left
 
 
 def test_variables_are_reduced_over_time(uq, body):
@@ -134,21 +134,21 @@ def test_a_fault_costs_its_row_and_keeps_its_folder(uq, body, folder, fault):
     assert struck.any() and "Traceback" not in ended.err
     lost = ds["status"].values[struck]
     assert {Status(code).name.lower() for code in lost} == {label}
-    said = ds["status"].attrs[f"example_{label}"]
-    assert words in said
-    kept = Path(said.rpartition("; see ")[2])
+    sentence = ds["status"].attrs[f"example_{label}"]
+    assert words in sentence
+    kept = Path(sentence.rpartition("; see ")[2])
     assert kept.is_dir() and kept.parent == folder / "body.rows"
     if label == "raised":
         assert (kept / "log.txt").read_text() == "no heat is left"
         assert (kept / "trace.txt").is_file()
-    assert all(one.name.startswith("failed-") for one in kept.parent.iterdir())
+    assert all(path.name.startswith("failed-") for path in kept.parent.iterdir())
 
 
 @pytest.mark.slow
 def test_an_fmu_that_crashes_is_one_sentence_of_simulate(uq, body, folder):
     ended = uq("simulate", "body.toml", "--set", "fault=4")
-    said = "body: crashed killed its process (Aborted); see "
-    assert ended.code == 1 and " ".join(ended.out.split()).startswith(said)
+    sentence = "body: crashed killed its process (Aborted); see "
+    assert ended.code == 1 and " ".join(ended.out.split()).startswith(sentence)
     (kept,) = (folder / "body.rows").iterdir()
     assert f" {kept}\n" in ended.out  # in one piece
 

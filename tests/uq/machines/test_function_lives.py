@@ -29,8 +29,8 @@ def test_what_is_declared_is_not_looked_for(uq, write_function):
     uq("run", "own.toml", "--model", write_function(text), "-o", "own.nc", "--quiet")
     ds = package.open_result("own.nc")
     assert ds["life"].attrs["units"] == "s"
-    said = ds["status"].attrs["example_bad_shape"]
-    assert "returned 'profile' with shape (2,), expected ()" in said
+    sentence = ds["status"].attrs["example_bad_shape"]
+    assert "returned 'profile' with shape (2,), expected ()" in sentence
 
 
 @pytest.mark.parametrize(("unit", "fits"), [("m", True), ("mm", False), ("MPa", False)])
@@ -113,7 +113,7 @@ def test_what_only_scales_a_life_is_integrated(uq, write_function):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         (("/ load", "/ (load + 1e-6)"), "'life' does not scale as declared: at load = "),
         (("hard > 1.5", "load > 1.5"), "not inf|it is inf, not"),
@@ -127,8 +127,10 @@ def test_what_only_scales_a_life_is_integrated(uq, write_function):
         (("depth: float = 3.0", "depth: float = -3.0"), "value of 'depth' must be positive"),
     ],
 )
-def test_a_life_that_does_not_scale_as_declared_is_refused(uq, write_function, wrong, said):
+def test_a_life_that_does_not_scale_as_declared_is_refused(uq, write_function, wrong, message):
     file = write_function(SCALED.replace(*wrong), SCALES_STUDY)
     for verb in (("check", "own.toml"), ("run", "own.toml", "-o", "own.nc", "--quiet")):
         ended = uq(*verb, "--model", file)
-        assert ended.code == 2 and any(one in ended.err for one in said.split("|")), ended.err
+        assert ended.code == 2 and any(words in ended.err for words in message.split("|")), (
+            ended.err
+        )

@@ -22,12 +22,12 @@ def test_a_function_becomes_a_machine_with_units_bounds_lives_and_arrays(uq, wri
     assert "ValueError: too heavy" in ds["status"].attrs["example_raised"]
     heavy = load > 1.9
     assert (ds["status"].values == np.where(heavy, Status.RAISED, Status.OK)).all() and heavy.any()
-    known = ~heavy
+    is_exact = ~heavy
     expected = np.where(load < 0.1, np.inf, np.where(load < 0.2, 20.0, 3.0 / load))
-    assert (ds["life"].values[known] == expected[known]).all()
+    assert (ds["life"].values[is_exact] == expected[is_exact]).all()
     cut = (load >= 0.1) & (load < 0.2)
-    assert (ds["life_censored"].values[known] == cut[known]).all() and cut.any()
-    assert (ds["profile"].values[known] == np.stack([load, 2 * load], axis=1)[known]).all()
+    assert (ds["life_censored"].values[is_exact] == cut[is_exact]).all() and cut.any()
+    assert (ds["profile"].values[is_exact] == np.stack([load, 2 * load], axis=1)[is_exact]).all()
     assert ds["load"].attrs["units"] == "N" and ds["load"].attrs["long_name"] == "force on the pad"
 
 
@@ -53,13 +53,15 @@ def test_a_long_array_is_described_at_some_places_unless_it_is_named(
         file = write_function(text, study + more)
         uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet", "--fresh")
         ds = package.open_result("own.nc")
-        found = [one.name for one in elements.elements_of(ds, ["y"])]
-        assert len(found) == count and found[0] == "y[y_0=0,y_1=0]"
-        assert found[-1] == "y[y_0=89,y_1=2]" and len(elements.named_elements(ds, "y")) == 270
-        (one,) = elements.named_elements(ds, "y[y_0=17,y_1=1]")
-        assert one.place == {"y_0": 17, "y_1": 1}
-        said = "y: shown at evenly spread places, as it has 270 elements"
-        assert [one[: len(said)] for one in elements.notes_on_places(ds)] == [said] * (not more)
+        names = [element.name for element in elements.elements_of(ds, ["y"])]
+        assert len(names) == count and names[0] == "y[y_0=0,y_1=0]"
+        assert names[-1] == "y[y_0=89,y_1=2]" and len(elements.named_elements(ds, "y")) == 270
+        (element,) = elements.named_elements(ds, "y[y_0=17,y_1=1]")
+        assert element.place == {"y_0": 17, "y_1": 1}
+        sentence = "y: shown at evenly spread places, as it has 270 elements"
+        assert [note[: len(sentence)] for note in elements.notes_on_places(ds)] == [sentence] * (
+            not more
+        )
 
 
 def test_a_seed_is_that_of_the_row(uq, write_function):
@@ -109,8 +111,8 @@ def test_an_interrupt_raised_by_a_row_is_its_status(write_function, capfd):
     assert (ds["status"].values == np.where(heavy, Status.RAISED, Status.OK)).all() and heavy.any()
     assert ds["status"].attrs["example_raised"].endswith("KeyboardInterrupt()")
     assert (ds["y"].values[~heavy] == 1e30).all()
-    said = capfd.readouterr()
-    assert "noise" not in said.err and "Traceback" not in said.err
+    captured = capfd.readouterr()
+    assert "noise" not in captured.err and "Traceback" not in captured.err
 
 
 def test_a_function_that_remembers_its_rows_is_noticed(uq, write_function):

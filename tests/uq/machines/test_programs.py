@@ -16,24 +16,24 @@ def test_rows_are_those_of_the_program(uq, write_program, folder):
     write_program()
     _, ds = run_program(uq)
     load = ds["load"].values
-    known = load <= 1.5
-    assert (ds["status"].values == np.where(known, Status.OK, Status.RAISED)).all()
+    is_ok = load <= 1.5
+    assert (ds["status"].values == np.where(is_ok, Status.OK, Status.RAISED)).all()
     expected = np.where(load < 0.2, np.inf, 3.0 / load)
-    assert (ds["life"].values[known] == expected[known]).all()
-    assert (ds["pair"].values[known] == np.stack([load, 2 * load], axis=1)[known]).all()
-    assert (ds["last"].values[known] == (load**2)[known]).all()
-    assert not known.all() and not (folder / "pad.rows" / "running").exists()
+    assert (ds["life"].values[is_ok] == expected[is_ok]).all()
+    assert (ds["pair"].values[is_ok] == np.stack([load, 2 * load], axis=1)[is_ok]).all()
+    assert (ds["last"].values[is_ok] == (load**2)[is_ok]).all()
+    assert not is_ok.all() and not (folder / "pad.rows" / "running").exists()
 
 
 def test_a_failed_row_keeps_its_folder_and_says_where(uq, write_program, folder):
     write_program()
     _, ds = run_program(uq)
-    said = ds["status"].attrs["example_raised"]
-    assert "ended with exit code 3: the pad is too heavy (heavier than 1.5); see " in said
-    kept = sorted(one.name for one in (folder / "pad.rows").iterdir())
+    sentence = ds["status"].attrs["example_raised"]
+    assert "ended with exit code 3: the pad is too heavy (heavier than 1.5); see " in sentence
+    kept = sorted(path.name for path in (folder / "pad.rows").iterdir())
     assert len(kept) == (ds["status"].values == Status.RAISED).sum()
-    failed = Path(said.rpartition("; see ")[2])
-    assert {one.name for one in failed.iterdir()} == {"input.txt", "stdout.txt", "stderr.txt"}
+    failed = Path(sentence.rpartition("; see ")[2])
+    assert {path.name for path in failed.iterdir()} == {"input.txt", "stdout.txt", "stderr.txt"}
     lines = (failed / "input.txt").read_text().splitlines()
     assert float(lines[0].removeprefix("load=")) in ds["load"].values
     assert lines[1].removeprefix("seed=").isdigit() and lines[2] == "other={braces}"
@@ -41,9 +41,9 @@ def test_a_failed_row_keeps_its_folder_and_says_where(uq, write_program, folder)
 
 def test_without_failures_nothing_is_left(uq, write_program, folder):
     write_program(PAD_PROGRAM.replace("1.5", "2.9"))
-    before = sorted(one.name for one in folder.iterdir())
+    before = sorted(path.name for path in folder.iterdir())
     run_program(uq)
-    assert sorted(one.name for one in folder.iterdir()) == sorted([*before, "own.nc"])
+    assert sorted(path.name for path in folder.iterdir()) == sorted([*before, "own.nc"])
 
 
 def test_other_code_of_the_program_is_noticed(uq, write_program):
@@ -119,13 +119,15 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, write_program, change):
     ended = uq("check", "own.toml", "--model", "machine.toml")
     assert (ended.code, ended.out) == (2, "")
     assert MISTAKES[change] in ended.err
-    assert all("machine" in one for one in ended.err.splitlines())
+    assert all("machine" in line for line in ended.err.splitlines())
 
 
 def test_a_parameter_that_is_a_word_of_python_is_one_line(uq, write_program):
     write_program(text=PAD.replace("depth", "lambda"))
-    said = uq("check", "own.toml", "--model", "machine.toml").err
-    assert "parameter 'lambda' cannot have this name in Python" in said and said.count("\n") == 1
+    message = uq("check", "own.toml", "--model", "machine.toml").err
+    assert (
+        "parameter 'lambda' cannot have this name in Python" in message and message.count("\n") == 1
+    )
 
 
 def test_numbers_of_fortran_are_read(uq, write_program):
@@ -177,6 +179,6 @@ def test_a_study_in_its_place_is_one_line(uq, write_program):
 
 def test_a_machine_file_in_the_place_of_a_study_is_one_line(uq, write_program):
     write_program()
-    said = uq("run", "machine.toml").err
-    assert said.count("\n") == 1
-    assert "is a machine file; run a study of it: uq run STUDY --model machine.toml" in said
+    message = uq("run", "machine.toml").err
+    assert message.count("\n") == 1
+    assert "is a machine file; run a study of it: uq run STUDY --model machine.toml" in message

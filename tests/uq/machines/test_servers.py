@@ -31,8 +31,8 @@ return [[a + b + c], [a, 2 * a]]
 @pytest.fixture
 def theirs(folder):
     """Start a server of the other side; return the address of its model."""
-    with TheirServer(folder, THEIRS, inputs=(2, 1), outputs=(1, 2)) as one:
-        yield one.address
+    with TheirServer(folder, THEIRS, inputs=(2, 1), outputs=(1, 2)) as running:
+        yield running.address
 
 
 @pytest.fixture
@@ -41,15 +41,15 @@ def ours():
     servers = []
 
     def serve(model, host="127.0.0.1"):
-        one = server_of(model, host, port=0)
-        threading.Thread(target=one.serve_forever, daemon=True).start()
-        servers.append(one)
-        return address_of(host, one.server_address[1], model.name)
+        http_server = server_of(model, host, port=0)
+        threading.Thread(target=http_server.serve_forever, daemon=True).start()
+        servers.append(http_server)
+        return address_of(host, http_server.server_address[1], model.name)
 
     yield serve
-    for one in servers:
-        one.shutdown()
-        one.server_close()
+    for http_server in servers:
+        http_server.shutdown()
+        http_server.server_close()
 
 
 def test_a_model_of_theirs_is_run(uq, theirs):
@@ -58,11 +58,11 @@ def test_a_model_of_theirs_is_run(uq, theirs):
     assert "ValueError" not in ended.err
     ds = package.open_result("own.nc")
     x = ds["x1_1"].values
-    known = x <= 0.9
-    assert (ds["status"].values == np.where(known, Status.OK, Status.RAISED)).all()
-    assert not known.all() and "with status 500" in ds["status"].attrs["example_raised"]
-    assert (ds["y1"].values[known] == x[known]).all()
-    assert (ds["y2"].values[known] == np.stack([x, 2 * x], axis=1)[known]).all()
+    is_ok = x <= 0.9
+    assert (ds["status"].values == np.where(is_ok, Status.OK, Status.RAISED)).all()
+    assert not is_ok.all() and "with status 500" in ds["status"].attrs["example_raised"]
+    assert (ds["y1"].values[is_ok] == x[is_ok]).all()
+    assert (ds["y2"].values[is_ok] == np.stack([x, 2 * x], axis=1)[is_ok]).all()
     assert ds.attrs["model_version"] == "UM-Bridge 1"
 
 
@@ -95,19 +95,19 @@ def test_of_several_servers_one_may_die(uq, folder):
     kept.mkdir()
     body = "open(f'asked/{sys.argv[1]}', 'a').write('.')\ntime.sleep(0.01)\n"
     with (
-        TheirServer(folder / "asked", body + "return [[2 * parameters[0][0]]]") as one,
+        TheirServer(folder / "asked", body + "return [[2 * parameters[0][0]]]") as dying,
         TheirServer(folder, body + "return [[2 * parameters[0][0]]]") as other,
     ):
         command = [sys.executable, "-m", "uq", "run", "own.toml", "--quiet", "-o", "own.nc"]
         (folder / "own.toml").write_text(own_study("m", samples=400))
-        command += ["--model", f"{one.address},{other.address}", "--workers", "2"]
+        command += ["--model", f"{dying.address},{other.address}", "--workers", "2"]
         running = subprocess.Popen(command)
-        asked = [kept / server.base.rpartition(":")[2] for server in (one, other)]
+        asked = [kept / server.base.rpartition(":")[2] for server in (dying, other)]
         until = time.monotonic() + 60
         while not all(file.exists() and file.stat().st_size > 20 for file in asked):
             assert time.monotonic() < until
             time.sleep(0.01)
-        one.kill()
+        dying.kill()
         assert running.wait(60) == 0
     ds = package.open_result("own.nc")
     assert (ds["status"] == 0).all() and (ds["y"] == 2 * ds["x1"]).all()
@@ -139,6 +139,6 @@ def test_a_wrong_address_is_one_line(uq, monkeypatch, address, words):
 
 
 def test_a_model_without_a_value_at_zero_is_run(uq, folder):
-    with TheirServer(folder, "return [[1.0 / parameters[0][0]]]") as one:
-        ds = run_server_here(one.address, samples=4, workers=0)
+    with TheirServer(folder, "return [[1.0 / parameters[0][0]]]") as running:
+        ds = run_server_here(running.address, samples=4, workers=0)
     assert (ds["y"] == 1 / ds["x1"]).all()

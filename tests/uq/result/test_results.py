@@ -174,7 +174,7 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
 def test_elements_are_named_by_their_coordinates(kinds):
     _, path = kinds
     ds = result_file.open_result(path)
-    named = {one.name: one.values for one in elements_of(ds, ["life", "angle"])}
+    named = {element.name: element.values for element in elements_of(ds, ["life", "angle"])}
     assert list(named)[:-1] == [
         f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
     ]

@@ -24,22 +24,22 @@ def paths(count, d=3, seed=1):
 
 
 def test_every_row_of_a_path_follows_the_copula():
-    found = conditional_paths(paths(10_000), RANKS, NONE)
+    drawn_paths = conditional_paths(paths(10_000), RANKS, NONE)
     for row in range(4):
-        np.testing.assert_allclose(stats.spearmanr(found[:, row]).statistic, RANKS, atol=0.03)
+        np.testing.assert_allclose(stats.spearmanr(drawn_paths[:, row]).statistic, RANKS, atol=0.03)
 
 
 def test_what_has_changed_depends_on_its_first_value_through_the_others_alone():
     u = paths(30_000)
     matrix = 2 * np.sin(np.pi / 6 * np.array(RANKS))
     scores = stats.norm.ppf(conditional_paths(u, RANKS, NONE))
-    for row, known in ((1, (0, 2)), (2, (1,)), (3, ())):
-        kept = (u[:, row] == u[:, 0])[:, list(known)].all(axis=1)
-        known, drawn = list(known), [i for i in range(3) if i not in known]
+    for row, fixed in ((1, (0, 2)), (2, (1,)), (3, ())):
+        kept = (u[:, row] == u[:, 0])[:, list(fixed)].all(axis=1)
+        fixed, drawn = list(fixed), [i for i in range(3) if i not in fixed]
         first, later = scores[kept, 0], scores[kept, row]
-        np.testing.assert_array_equal(first[:, known], later[:, known])
-        slopes = matrix[np.ix_(drawn, known)]
-        shared = slopes @ np.linalg.solve(matrix[np.ix_(known, known)], slopes.T)
+        np.testing.assert_array_equal(first[:, fixed], later[:, fixed])
+        slopes = matrix[np.ix_(drawn, fixed)]
+        shared = slopes @ np.linalg.solve(matrix[np.ix_(fixed, fixed)], slopes.T)
         between = first[:, drawn].T @ later[:, drawn] / kept.sum()
         np.testing.assert_allclose(between, shared, atol=0.05)
 
@@ -57,13 +57,13 @@ def test_discrete_inputs_are_known_by_their_values_not_by_what_is_behind_them():
     # A number drawn given the signs of two others: its mean is that of rows with these signs.
     matrix = np.array([[1.0, 0.9, 0.8], [0.9, 1.0, 0.5], [0.8, 0.5, 1.0]])
     u = paths(40_000)
-    found = conditional_paths(u, dependent.ranks(matrix), (signs, signs, None))
+    drawn_paths = conditional_paths(u, dependent.ranks(matrix), (signs, signs, None))
     alone = (u[:, 1, :2] == u[:, 0, :2]).all(axis=1)
     z = np.random.default_rng(1).standard_normal((400_000, 3)) @ np.linalg.cholesky(matrix).T
     for first in (False, True):
         for second in (False, True):
-            drawn = alone & ((found[:, 0, :2] > 0.5) == [first, second]).all(axis=1)
-            scores = stats.norm.ppf(found[drawn, 1, 2])
+            drawn = alone & ((drawn_paths[:, 0, :2] > 0.5) == [first, second]).all(axis=1)
+            scores = stats.norm.ppf(drawn_paths[drawn, 1, 2])
             truth = z[((z[:, :2] > 0) == [first, second]).all(axis=1), 2].mean()
             assert abs(scores.mean() - truth) < 4 * scores.std() / np.sqrt(drawn.sum())
 
@@ -87,10 +87,10 @@ def test_paths_of_dependent_inputs_are_the_same_however_they_are_cut(cuts):
 
 def test_rows_of_paths_follow_the_laws_and_their_correlation():
     study = study_of(tables(MIXED, "shapley", 2048, dependence=PAIR))
-    found = inputs_of(study)
-    assert rows(study) == len(found["x1"]) == 4 * 2048
-    assert set(found["x1"]) == {0.0, 1.0} and abs(found["x1"].mean() - 0.5) < 0.03
-    assert 0.4 <= found["x3"].min() and found["x3"].max() <= 0.55
-    np.testing.assert_array_equal(found["x3"], found["x4"])
-    low, high = (found["x3"][found["x1"] == value].mean() for value in (1.0, 0.0))
+    inputs = inputs_of(study)
+    assert rows(study) == len(inputs["x1"]) == 4 * 2048
+    assert set(inputs["x1"]) == {0.0, 1.0} and abs(inputs["x1"].mean() - 0.5) < 0.03
+    assert 0.4 <= inputs["x3"].min() and inputs["x3"].max() <= 0.55
+    np.testing.assert_array_equal(inputs["x3"], inputs["x4"])
+    low, high = (inputs["x3"][inputs["x1"] == value].mean() for value in (1.0, 0.0))
     assert low < high - 0.02  # their correlation is negative

@@ -83,8 +83,8 @@ def test_both_tails_of_a_normal_keep_their_accuracy(bounds):
 def test_probabilities_invert_quantiles_in_both_tails(bounds):
     u = np.linspace(0.001, 0.999, 7)
     normal = law("normal", mean=0.0, sd=0.3)
-    found = cdf_within(normal, ppf_within(normal, u, bounds), bounds)
-    np.testing.assert_allclose(found, u, rtol=1e-10)
+    probabilities = cdf_within(normal, ppf_within(normal, u, bounds), bounds)
+    np.testing.assert_allclose(probabilities, u, rtol=1e-10)
 
 
 def test_a_truncated_normal_is_a_normal_within_bounds():
@@ -113,22 +113,22 @@ def test_a_law_within_wide_bounds_suits(name):
 
 
 def test_a_mean_outside_the_bounds_names_the_mean():
-    found = problem((100.0, 1e7), "normal", mean=-5.0, sd=1.0)
-    assert found.path == ("mean",)
-    assert found.value == -5.0
-    assert "100.0 to 10000000.0 [N m-1]" in found.problem
+    fault = problem((100.0, 1e7), "normal", mean=-5.0, sd=1.0)
+    assert fault.path == ("mean",)
+    assert fault.value == -5.0
+    assert "100.0 to 10000000.0 [N m-1]" in fault.problem
 
 
 def test_for_a_wide_normal_the_truncated_one_is_proposed():
-    found = problem((100.0, 1e7), "normal", mean=500.0, sd=100.0)
-    assert found.problem.startswith("has 3.2e-05 of its probability outside the parameter's bounds")
-    assert "truncated-normal" in found.problem
+    fault = problem((100.0, 1e7), "normal", mean=500.0, sd=100.0)
+    assert fault.problem.startswith("has 3.2e-05 of its probability outside the parameter's bounds")
+    assert "truncated-normal" in fault.problem
 
 
 def test_for_a_law_with_ends_moving_them_is_proposed():
-    found = problem((100.0, 1e7), "uniform", lower=50.0, upper=200.0)
-    assert "has 0.33 of its probability outside" in found.problem
-    assert "lower = 50.0 and upper = 200.0 must lie within them" in found.problem
+    fault = problem((100.0, 1e7), "uniform", lower=50.0, upper=200.0)
+    assert "has 0.33 of its probability outside" in fault.problem
+    assert "lower = 50.0 and upper = 200.0 must lie within them" in fault.problem
 
 
 def test_the_line_is_drawn_at_one_in_a_million():

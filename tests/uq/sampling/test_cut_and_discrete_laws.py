@@ -39,14 +39,14 @@ def test_discrete_laws_take_their_values_with_their_weights():
         "x3": {"distribution": "empirical", "values": [0.2, 0.4, 0.4, 0.9, 7.0]}
         | {"truncate": [0.0, 1.0]},
     }
-    found = inputs_of(study_of(tables(entries, "sobol")))
+    inputs = inputs_of(study_of(tables(entries, "sobol")))
     expected = {
         "x1": {0.1: 0.25, 0.5: 0.75},
         "x2": {0.0: 0.5, 1.0: 0.5},
         "x3": {0.2: 0.25, 0.4: 0.5, 0.9: 0.25},
     }
     for name, shares in expected.items():
-        values, counts = np.unique(found[name], return_counts=True)
+        values, counts = np.unique(inputs[name], return_counts=True)
         assert dict(zip(values, counts / 4096, strict=True)) == pytest.approx(shares, abs=1e-3)
 
 
@@ -74,9 +74,9 @@ def test_a_histogram_fills_its_bins_as_counted():
 
 def test_values_outside_the_bounds_are_refused_with_a_remedy():
     entry = {"distribution": "discrete-choice", "values": [0.5, 2.0]}
-    said = "has 0.5 of its probability outside the parameter's bounds, 0.0 to 1.0 [1]"
+    sentence = "has 0.5 of its probability outside the parameter's bounds, 0.0 to 1.0 [1]"
     remedy = "add truncate = [lower, upper] within them, or use other numbers"
-    assert said in refusal(tables({"x1": entry})) and remedy in refusal(tables({"x1": entry}))
+    assert sentence in refusal(tables({"x1": entry})) and remedy in refusal(tables({"x1": entry}))
     wrong = entry | {"values": [2.0, 3.0]}
     assert "has no value within the parameter's bounds" in refusal(tables({"x1": wrong}))
     cut = BELL | {"truncate": [-1.0, 0.45]}

@@ -27,9 +27,9 @@ def springs(tmp_path):
 def test_an_empirical_law_draws_the_values_of_the_column(springs):
     study = load_study(springs / "study.toml")
     assert law(study.uncertain["x1"]) == 'empirical(file = "springs.csv", column = "k")'
-    found = inputs_of(study)["x1"]
-    assert set(found) == {0.25, 0.5, 0.75}
-    assert (found == 0.5).mean() == pytest.approx(0.5, abs=0.04)
+    values = inputs_of(study)["x1"]
+    assert set(values) == {0.25, 0.5, 0.75}
+    assert (values == 0.5).mean() == pytest.approx(0.5, abs=0.04)
 
 
 def test_a_result_needs_no_file(springs):
@@ -62,7 +62,7 @@ def test_the_identity_is_of_what_the_file_holds_not_of_its_name(springs):
 
 
 @pytest.mark.parametrize(
-    ("held", "said"),
+    ("held", "message"),
     [
         (None, "no such file in"),
         ("", "has no column 'k' (its columns: none)"),
@@ -88,14 +88,14 @@ def test_the_identity_is_of_what_the_file_holds_not_of_its_name(springs):
         ('k\n"0.5\n', "not CSV"),
     ],
 )
-def test_a_file_that_is_no_use_is_one_line(springs, held, said):
+def test_a_file_that_is_no_use_is_one_line(springs, held, message):
     (springs / "springs.csv").unlink()
     if held is not None:
         (springs / "springs.csv").write_text(held)
     with pytest.raises(InputError) as caught:
         load_study(springs / "study.toml")
     (line,) = caught.value.lines
-    assert said in line and line.startswith(f"{springs}/study.toml: [uncertain.x1] ")
+    assert message in line and line.startswith(f"{springs}/study.toml: [uncertain.x1] ")
 
 
 def test_only_a_file_is_read(springs):

@@ -27,19 +27,19 @@ def test_rows_have_the_rank_correlations_and_laws_that_were_stated():
         "x3": {"distribution": "beta"} | dict(alpha=2.0, beta=5.0, lower=0.0, upper=1.0),
     }
     study = study_of(tables(entries, "sobol", 8192, dependence=CORRELATED))
-    found = inputs_of(study)
-    assert stats.spearmanr(found["x1"], found["x3"]).statistic == pytest.approx(-0.7, abs=2e-3)
-    assert abs(stats.spearmanr(found["x1"], found["x2"]).statistic) < 2e-3
-    for one in sampled_inputs(study).values():
-        assert one.distance < 2e-3
+    inputs = inputs_of(study)
+    assert stats.spearmanr(inputs["x1"], inputs["x3"]).statistic == pytest.approx(-0.7, abs=2e-3)
+    assert abs(stats.spearmanr(inputs["x1"], inputs["x2"]).statistic) < 2e-3
+    for comparison in sampled_inputs(study).values():
+        assert comparison.distance < 2e-3
     assert sampled_ranks(study)[0, 1] == pytest.approx(-0.7, abs=2e-3)
 
 
 def test_three_inputs_have_all_three_correlations():
     ranks = ((1.0, 0.8, -0.3), (0.8, 1.0, 0.1), (-0.3, 0.1, 1.0))
     u = np.random.default_rng(1).random((100_000, 3))
-    found = stats.spearmanr(correlated(u, ranks)).statistic
-    np.testing.assert_allclose(found, ranks, atol=0.01)
+    correlations = stats.spearmanr(correlated(u, ranks)).statistic
+    np.testing.assert_allclose(correlations, ranks, atol=0.01)
 
 
 @settings(max_examples=20)
@@ -54,7 +54,7 @@ def test_dependent_rows_are_the_same_however_they_are_cut(cuts):
 
 
 @pytest.mark.parametrize(
-    ("ranks", "said"),
+    ("ranks", "message"),
     [
         (((1.0, 0.5),), "must have 2 rows of 2 numbers"),
         (((1.0, 0.5), (0.5, 0.9)), "must be 1: that of 'b' with itself"),
@@ -63,8 +63,8 @@ def test_dependent_rows_are_the_same_however_they_are_cut(cuts):
         (((1.0, -1 + 1e-10), (-1 + 1e-10, 1.0)), "between -1 and 1, 2e-09 or more from both"),
     ],
 )
-def test_a_matrix_that_is_none_says_what_is_wrong(ranks, said):
-    assert said in matrix_problem(("a", "b"), ranks).problem
+def test_a_matrix_that_is_none_says_what_is_wrong(ranks, message):
+    assert message in matrix_problem(("a", "b"), ranks).problem
 
 
 def test_two_inputs_may_have_any_correlation_that_is_not_almost_one():
@@ -95,16 +95,16 @@ def test_a_near_miss_is_answered_with_what_would_do():
 @pytest.mark.parametrize("method", ["saltelli", "morris", "fast"])
 def test_designs_for_independent_inputs_are_refused_and_others_named(method):
     entries = {"x1": UNIFORM, "x3": UNIFORM}
-    said = refusal(tables(entries, method, 128, dependence=CORRELATED))
-    assert said.startswith(f'[design] method = "{method}": assumes independent inputs')
-    assert "use monte-carlo or latin-hypercube" in said and "delta and pawn" in said
+    message = refusal(tables(entries, method, 128, dependence=CORRELATED))
+    assert message.startswith(f'[design] method = "{method}": assumes independent inputs')
+    assert "use monte-carlo or latin-hypercube" in message and "delta and pawn" in message
 
 
 def test_methods_for_independent_inputs_are_refused_and_others_named():
     given = tables({"x1": UNIFORM, "x3": UNIFORM}, samples=256, dependence=CORRELATED)
-    said = refusal(given | {"analysis": {"sensitivity": ["rbd-fast"]}})
-    assert said.startswith('[analysis] sensitivity = "rbd-fast": assumes independent inputs')
-    assert "those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'" in said
+    message = refusal(given | {"analysis": {"sensitivity": ["rbd-fast"]}})
+    assert message.startswith('[analysis] sensitivity = "rbd-fast": assumes independent inputs')
+    assert "those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'" in message
     ds = computed(study_of(given))
     assert sensitivities(ds)["method"] == "delta"
     with pytest.raises(InputError, match="'rbd-fast' assumes independent inputs.*delta, pawn, "):
@@ -112,7 +112,7 @@ def test_methods_for_independent_inputs_are_refused_and_others_named():
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "message"),
     [
         ({"parameters": ["x3", "x9"]}, '[dependence] parameters = "x9": is not uncertain'),
         ({"parameters": ["x3", "x2"]}, "follows another parameter already"),
@@ -120,6 +120,6 @@ def test_methods_for_independent_inputs_are_refused_and_others_named():
         ({"rank_corelation": 1}, "did you mean 'rank_correlation'?"),
     ],
 )
-def test_a_wrong_dependence_is_refused(changes, said):
+def test_a_wrong_dependence_is_refused(changes, message):
     entries = {"x1": UNIFORM, "x2": {"equals": "x1"}, "x3": UNIFORM}
-    assert said in refusal(tables(entries, dependence=CORRELATED | changes))
+    assert message in refusal(tables(entries, dependence=CORRELATED | changes))

@@ -80,12 +80,12 @@ def test_a_lognormal_has_exactly_the_mean_and_cv_asked_for(cv):
 
 
 def test_the_two_ways_to_write_a_lognormal_agree():
-    one = law("lognormal", median=3.0, sigma=0.4).frozen()
+    frozen = law("lognormal", median=3.0, sigma=0.4).frozen()
     mean, cv = 3.0 * exp(0.08), sqrt(exp(0.16) - 1)
     other = law("lognormal", mean=mean, cv=cv).frozen()
     u = np.linspace(0.01, 0.99, 25)
-    np.testing.assert_allclose(one.ppf(u), other.ppf(u), rtol=1e-12)
-    assert one.median() == pytest.approx(3.0)
+    np.testing.assert_allclose(frozen.ppf(u), other.ppf(u), rtol=1e-12)
+    assert frozen.median() == pytest.approx(3.0)
 
 
 def test_the_survival_of_a_weibull_is_the_one_documented():
@@ -149,8 +149,8 @@ ELEMENTARY = {
 
 @pytest.mark.parametrize(("name", "arguments"), [(n, a) for n in ELEMENTARY for a in ELEMENTARY[n]])
 def test_the_common_laws_have_the_bits_of_scipy(name, arguments):
-    one = law(name, **arguments)
-    found, expected = one.functions(), one.frozen()
+    entry = law(name, **arguments)
+    functions, expected = entry.functions(), entry.frozen()
     rng = np.random.default_rng(5)
     u = np.concatenate([[2.0**-54, 1 - 2.0**-53], rng.uniform(size=3000)])
     u = np.concatenate([u, np.exp2(-rng.uniform(1, 1000, 500))])
@@ -159,6 +159,6 @@ def test_the_common_laws_have_the_bits_of_scipy(name, arguments):
     x = np.concatenate([values, outside, np.nextafter(values[:2], np.inf)])
     with np.errstate(all="ignore"):
         for method, at in (("ppf", u), ("isf", u), ("cdf", x), ("sf", x), ("logpdf", x)):
-            own, known = getattr(found, method), getattr(expected, method)
-            assert np.array_equal(own(at), known(at), equal_nan=True), method
-            assert own(at[7]) == known(at[7]), method
+            function, reference = getattr(functions, method), getattr(expected, method)
+            assert np.array_equal(function(at), reference(at), equal_nan=True), method
+            assert function(at[7]) == reference(at[7]), method

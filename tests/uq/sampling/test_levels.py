@@ -30,9 +30,9 @@ def test_an_input_varies_on_its_level_alone(method, replicates):
     place = nesting_of(ds)
     assert (place.samples, place.units, place.repeats) == (16 * replicates, 3, 2)
     assert ds.sizes["row"] == 16 * replicates * 3 * 2
-    shared, own, chance = (place.table(ds[name].values) for name in LEVELS)
+    shared, unit_values, chance = (place.table(ds[name].values) for name in LEVELS)
     assert varies(shared[:, 0, 0], 0) and not np.ptp(shared, axis=(1, 2)).any()
-    assert varies(own[:, :, 0], 1) and not np.ptp(own, axis=2).any()
+    assert varies(unit_values[:, :, 0], 1) and not np.ptp(unit_values, axis=2).any()
     assert varies(chance, 2) and varies(chance, 1)
     assert [ds[name].attrs["level"] for name in LEVELS] == list(LEVELS.values())
 
@@ -51,8 +51,8 @@ def test_a_sample_of_one_row_is_that_of_the_plain_design():
     plain = nested(levels=dict.fromkeys(LEVELS, "own"), units=1, repeats=1)
     level = nested(units=1, repeats=1)
     assert level.identity == plain.identity
-    for one, other in zip(row_block(level, 0, 16), row_block(plain, 0, 16), strict=True):
-        assert np.array_equal(one, other)
+    for column, other in zip(row_block(level, 0, 16), row_block(plain, 0, 16), strict=True):
+        assert np.array_equal(column, other)
     assert "world" not in computed(level)
 
 
@@ -61,11 +61,11 @@ def test_any_range_has_the_same_bits_and_samples_append(method):
     study = nested(method=method)
     whole = row_block(study, 0, rows(study))
     for start, stop in ((0, 1), (5, 6), (4, 17), (95, 96), (30, 30)):
-        for one, part in zip(whole, row_block(study, start, stop), strict=True):
-            assert np.array_equal(one[start:stop], part)
+        for column, part in zip(whole, row_block(study, start, stop), strict=True):
+            assert np.array_equal(column[start:stop], part)
     longer = row_block(study.with_samples(32), 0, rows(study))
-    for one, other in zip(whole, longer, strict=True):
-        assert np.array_equal(one, other)
+    for column, other in zip(whole, longer, strict=True):
+        assert np.array_equal(column, other)
 
 
 def test_each_row_has_a_seed_of_its_own():
@@ -83,12 +83,12 @@ def test_a_point_of_the_cube_gives_what_varies_and_no_more():
 
 
 def test_the_identity_knows_levels_units_and_repeats():
-    known = {
+    identities = {
         nested(**change).identity
         for change in ({}, {"units": 2, "repeats": 3}, {"units": 6, "repeats": 1})
     }
     other = nested(levels=LEVELS | {"x3": "own"})
-    assert len(known | {other.identity}) == 4
+    assert len(identities | {other.identity}) == 4
     changed = what_changed(nested().text, other.model.version, other)
     assert changed == '[uncertain.x3] level = "chance", now "own"'
 
@@ -99,9 +99,9 @@ def test_rows_of_a_sample_are_found_in_any_order():
     place, some = nesting_of(ds), nesting_of(ds.isel(row=order))
     table, part = place.table(ds["y"].values), some.table(ds["y"].values[order])
     worlds = np.unique(place.sample[order])
-    known = np.isfinite(part)
-    assert known.sum() == 50
-    assert np.array_equal(part[known], table[worlds][known])
+    is_finite = np.isfinite(part)
+    assert is_finite.sum() == 50
+    assert np.array_equal(part[is_finite], table[worlds][is_finite])
     means = some.means(ds["y"].values[order])
     assert means == pytest.approx(np.nanmean(part.reshape(len(worlds), -1), axis=1))
     assert place.means(ds["y"].values, place.unit == 0) == pytest.approx(table[:, 0].mean(axis=1))
@@ -132,9 +132,9 @@ def test_dependent_inputs_of_one_level_keep_it():
         }
     )
     ds = computed(study)
-    one, other = (nesting_of(ds).table(ds[name].values)[:, :, 0] for name in ("x1", "x4"))
-    assert not np.ptp(one, axis=1).any() and not np.ptp(other, axis=1).any()
-    assert np.corrcoef(one[:, 0], other[:, 0])[0, 1] > 0.8
+    values, other = (nesting_of(ds).table(ds[name].values)[:, :, 0] for name in ("x1", "x4"))
+    assert not np.ptp(values, axis=1).any() and not np.ptp(other, axis=1).any()
+    assert np.corrcoef(values[:, 0], other[:, 0])[0, 1] > 0.8
 
 
 SHARED, OWN = UNIFORM | {"level": "shared"}, UNIFORM
@@ -206,15 +206,19 @@ def test_what_several_rows_of_a_sample_rule_out_is_refused(tables, line):
     whole = {name: base.get(name, {}) | tables.get(name, {}) for name in (base | tables)}
     with pytest.raises(InputError) as refused:
         study_of(whole)
-    assert [one.removeprefix("study: ")[: len(line)] for one in refused.value.lines] == [line]
+    assert [message.removeprefix("study: ")[: len(line)] for message in refused.value.lines] == [
+        line
+    ]
 
 
 def test_a_level_may_change_where_no_row_depends_on_it():
-    one, other = (nested(levels=LEVELS | {"x1": x}, units=1, repeats=1) for x in ("own", "shared"))
-    ds = computed(one)
+    first, other = (
+        nested(levels=LEVELS | {"x1": x}, units=1, repeats=1) for x in ("own", "shared")
+    )
+    ds = computed(first)
     assert relabel(ds, other)["y"].equals(ds["y"])
     seeded = replace(other, design=other.design.model_copy(update={"seed": 6}))
-    assert "level" not in what_changed(one.text, one.model.version, seeded)
+    assert "level" not in what_changed(first.text, first.model.version, seeded)
 
 
 def test_an_extended_run_equals_one_from_the_start(uq, tmp_path):
@@ -236,9 +240,9 @@ def test_an_extended_run_equals_one_from_the_start(uq, tmp_path):
 def test_the_schema_allows_units_where_a_design_has_them():
     rules = {}
     for rule in json_schema()["allOf"]:
-        known = rule["if"]["properties"].get("design")
-        if known:
+        names = rule["if"]["properties"].get("design")
+        if names:
             table = rule["then"]["properties"]["design"]["properties"]
-            rules[known["properties"]["method"]["const"]] = table
+            rules[names["properties"]["method"]["const"]] = table
     assert {name for name, table in rules.items() if "units" not in table} == set(NESTING)
     assert rules["saltelli"]["repeats"] == {"const": 1}

@@ -37,8 +37,8 @@ def wear(method="monte-carlo", **design):
     return study_from_text(study_text(MIXED | {"design": {"method": method, **design}}))
 
 
-def same(one, other):
-    return all(a.tobytes() == b.tobytes() for a, b in zip(one, other, strict=True))
+def same(block, other):
+    return all(a.tobytes() == b.tobytes() for a, b in zip(block, other, strict=True))
 
 
 def test_rows_are_counted_with_replicates_and_blocks():
@@ -168,8 +168,8 @@ def test_the_seed_hash_issplitmix64():
 
 def test_row_seeds_are_distinct_and_depend_on_the_study():
     study = a_study("saltelli", samples=256, replicates=4)
-    one, other = (row_block(s, 0, 5120).seed for s in (study, a_study("saltelli", seed=8)))
-    assert len(np.unique(one)) == 5120
-    assert not np.intersect1d(one, other).size
-    bits = np.unpackbits(one.view(np.uint8)).mean()
+    seeds, other = (row_block(s, 0, 5120).seed for s in (study, a_study("saltelli", seed=8)))
+    assert len(np.unique(seeds)) == 5120
+    assert not np.intersect1d(seeds, other).size
+    bits = np.unpackbits(seeds.view(np.uint8)).mean()
     assert bits == pytest.approx(0.5, abs=5 * 0.5 / np.sqrt(5120 * 64))

@@ -16,12 +16,12 @@ def seeds_of(study):
     """Return the seeds of a study's rows, by replicate, group and the name of the block."""
     block = row_block(study, 0, rows(study))
     labels = computed(study)["block"].attrs["flag_meanings"].split()
-    found = {}
+    seeds = {}
     for replicate, group, place, seed in zip(
         block.replicate, block.group, block.block, block.seed, strict=True
     ):
-        found[int(replicate), int(group), labels[place]] = int(seed)
-    return found
+        seeds[int(replicate), int(group), labels[place]] = int(seed)
+    return seeds
 
 
 @pytest.mark.parametrize("second_order", [False, True])
@@ -36,10 +36,10 @@ def test_a_shares_its_seed_with_the_rows_mixed_into_it_and_b_with_the_rest(secon
     distinct = set()
     for replicate in range(2):
         for group in range(4):
-            own = {label: seeds[replicate, group, label] for label in blocks}
-            for label, seed in own.items():
-                assert seed == own["A" if label.startswith("A") else "B"]
-            distinct |= set(own.values())
+            seed_by_label = {label: seeds[replicate, group, label] for label in blocks}
+            for label, seed in seed_by_label.items():
+                assert seed == seed_by_label["A" if label.startswith("A") else "B"]
+            distinct |= set(seed_by_label.values())
     assert len(distinct) == 2 * 2 * 4
 
 
@@ -57,7 +57,7 @@ def test_the_rows_of_a_path_share_a_seed(method):
     by_path = {}
     for (replicate, group, _), seed in seeds.items():
         by_path.setdefault((replicate, group), set()).add(seed)
-    assert all(len(one) == 1 for one in by_path.values())
+    assert all(len(seeds_of_path) == 1 for seeds_of_path in by_path.values())
     assert len(set.union(*by_path.values())) == len(by_path) == 16
 
 
@@ -65,7 +65,7 @@ def test_the_points_of_a_curve_share_a_seed():
     by_curve = {}
     for (replicate, _, curve), seed in seeds_of(noisy("fast", 65, 2)).items():
         by_curve.setdefault((replicate, curve), set()).add(seed)
-    assert all(len(one) == 1 for one in by_curve.values())
+    assert all(len(seeds_of_curve) == 1 for seeds_of_curve in by_curve.values())
     assert len(set.union(*by_curve.values())) == len(by_curve) == 4
 
 
@@ -73,10 +73,10 @@ def test_the_points_of_a_curve_share_a_seed():
 def test_deterministic_models_keep_their_rows_their_seeds_and_their_identity(method):
     samples = max(16, DESIGNS[method].least)
     random, plain = (noisy(method, samples, 2, model) for model in ("NOISY", "PLAIN"))
-    one, other = (row_block(study, 0, rows(study)) for study in (random, plain))
+    block, other = (row_block(study, 0, rows(study)) for study in (random, plain))
     assert len(np.unique(other.seed)) == len(other.seed)
     grouped = method in GROUPED
-    assert (len(one.seed) != len(other.seed) or (one.seed != other.seed).any()) == grouped
+    assert (len(block.seed) != len(other.seed) or (block.seed != other.seed).any()) == grouped
     # Nothing else than the rule tells these two apart.
     named = with_name(random, plain)
     assert (named.identity != plain.identity) == grouped
@@ -91,9 +91,12 @@ def with_name(study, other):
 def test_plain_rows_of_a_random_model_are_what_they_were():
     # A and B, of which plain statistics are made, keep their seeds.
     random, plain = (noisy(samples=16, model=model) for model in ("NOISY", "PLAIN"))
-    one, other = (row_block(study, 0, rows(study)) for study in (random, plain))
+    rows_of_random, other = (row_block(study, 0, rows(study)) for study in (random, plain))
     for label, block in (("A", 0), ("B", 3)):
-        mine, old = (own.seed[own.block == block] for own in (one, other))
+        mine, old = (
+            rows_of_model.seed[rows_of_model.block == block]
+            for rows_of_model in (rows_of_random, other)
+        )
         np.testing.assert_array_equal(mine, old, err_msg=label)
 
 
@@ -110,13 +113,13 @@ def test_any_chunking_gives_the_same_bits(method):
     whole, n = row_block(study, 0, rows(study)), rows(study)
     edges = [0, 1, n // 3, n // 3 + 4, n - 3, n]
     parts = [row_block(study, i, j) for i, j in zip(edges, edges[1:], strict=False)]
-    for one, pieces in zip(whole, zip(*parts, strict=True), strict=True):
-        assert one.tobytes() == np.concatenate(pieces).tobytes()
+    for column, pieces in zip(whole, zip(*parts, strict=True), strict=True):
+        assert column.tobytes() == np.concatenate(pieces).tobytes()
 
 
 @pytest.mark.parametrize("method", [name for name in GROUPED if DESIGNS[name].append_only])
 def test_more_samples_leave_the_first_rows_of_a_random_model_as_they_are(method):
     study = noisy(method, 16, 3)
     longer = row_block(study.with_samples(64), 0, rows(study))
-    for one, other in zip(longer, row_block(study, 0, rows(study)), strict=True):
-        np.testing.assert_array_equal(one, other)
+    for column, other in zip(longer, row_block(study, 0, rows(study)), strict=True):
+        np.testing.assert_array_equal(column, other)

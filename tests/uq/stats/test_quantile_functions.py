@@ -29,8 +29,8 @@ def test_counts(p, share):
         assert quantile_functions.binomial(p, n, share) == stats.binom.ppf(p, n, share)
         assert quantile_functions.binomial_exceeded(p, n, share) == stats.binom.isf(p, n, share)
     for hits in COUNTS[:-2]:
-        found = quantile_functions.negative_binomial(p, hits, share)
-        assert found == stats.nbinom.ppf(p, hits, share)
+        counts = quantile_functions.negative_binomial(p, hits, share)
+        assert counts == stats.nbinom.ppf(p, hits, share)
 
 
 def test_intervals_of_few_hits():

@@ -20,16 +20,16 @@ class Counted:
 
 
 def test_probabilities_are_inverted_as_fast_as_by_brent():
-    rng, own, brent = np.random.default_rng(1), 0, 0
+    rng, our_calls, brent = np.random.default_rng(1), 0, 0
     for p in rng.uniform(0.001, 0.999, 200):
         scatter, middle = rng.uniform(0.05, 2), 3 * rng.normal()
         function = Counted(lambda x, p=p, s=scatter, m=middle: ndtr((x - m) / s) - p)
         ends = middle - 4 * scatter, middle + 4.3 * scatter
-        found = root(function, ends[::-1], 1e-12)
-        own, function.calls = own + function.calls, 0
-        assert abs(found - brentq(function, *ends, xtol=1e-12)) < 2e-12
+        zero = root(function, ends[::-1], 1e-12)
+        our_calls, function.calls = our_calls + function.calls, 0
+        assert abs(zero - brentq(function, *ends, xtol=1e-12)) < 2e-12
         brent += function.calls
-    assert own < brent
+    assert our_calls < brent
 
 
 @pytest.mark.parametrize(

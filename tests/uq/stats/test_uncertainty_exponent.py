@@ -26,10 +26,10 @@ from uq.stats.uncertainty_exponent import FARTHEST, uncertainty_exponent
 
 @pytest.mark.parametrize("basins", KNOWN)
 def test_known_exponents_are_found(basins):
-    found = list(estimates(basins, (2000, 2), 8))
-    known = CANTOR if basins is cantor else KNOWN[basins](2)
-    assert np.mean([one.value for one in found]) == pytest.approx(known, abs=0.12)
-    assert sum(one.low < known < one.high for one in found) >= 6
+    exponents = list(estimates(basins, (2000, 2), 8))
+    expected = CANTOR if basins is cantor else KNOWN[basins](2)
+    assert np.mean([exponent.value for exponent in exponents]) == pytest.approx(expected, abs=0.12)
+    assert sum(exponent.low < expected < exponent.high for exponent in exponents) >= 6
 
 
 def test_the_exponent_is_that_of_all_close_pairs():
@@ -80,8 +80,8 @@ def test_too_few_rows_near_a_boundary_are_refused():
 @pytest.mark.parametrize("basins", KNOWN)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_intervals_cover_the_known_exponent(basins, shape):
-    known, found = KNOWN[basins](shape[1]), list(estimates(basins, shape, 1000))
-    held = sum(one.low <= known <= one.high for one in found)
+    expected, exponents = KNOWN[basins](shape[1]), list(estimates(basins, shape, 1000))
+    held = sum(exponent.low <= expected <= exponent.high for exponent in exponents)
     print(basins.__name__, shape, held)
     assert binomtest(held, 1000, 0.95).pvalue > 1e-3
 
@@ -96,27 +96,27 @@ def test_the_exponent_of_cantors_set_is_near_that_of_the_limit():
 
 def test_every_reader_tells_how_intermingled_the_regimes_are(uq, tmp_path):
     ds = kinds(samples=2048, analysis={"outputs": ["regime"]})  # slow where x1 < 0.5
-    one = boundary(Result(ds))
-    assert one.estimate.low < 1.0 < one.estimate.high
+    exponent = boundary(Result(ds))
+    assert exponent.estimate.low < 1.0 < exponent.estimate.high
     path = tmp_path / "kinds.nc"
     ds.to_netcdf(path)
-    said = loads(uq("summary", str(path), "--json").out)["boundary"]["uncertainty_exponent"]
-    assert (said["value"], said["low"], said["high"]) == one.estimate.numbers
-    assert "reason" not in said
+    document = loads(uq("summary", str(path), "--json").out)["boundary"]["uncertainty_exponent"]
+    assert (document["value"], document["low"], document["high"]) == exponent.estimate.numbers
+    assert "reason" not in document
     shown = " ".join(uq("summary", str(path)).out.split())
-    assert f"uncertainty exponent {one.words()} (" in shown
+    assert f"uncertainty exponent {exponent.words()} (" in shown
     assert "fewer outcomes are uncertain (50 % where" in shown
-    found = api.regimes(ds)
-    ends = [float(found[f"uncertainty_exponent{end}"]) for end in ("", "_low", "_high")]
-    assert tuple(ends) == one.estimate.numbers
+    table = api.regimes(ds)
+    ends = [float(table[f"uncertainty_exponent{end}"]) for end in ("", "_low", "_high")]
+    assert tuple(ends) == exponent.estimate.numbers
     traced = api.trace(ds, "boundary/uncertainty_exponent")
     assert traced["equal"] and "Grebogi" in str(traced.to_dict())
 
 
 def test_twice_as_well_known_inputs_leave_half_the_outcomes_of_a_smooth_boundary():
-    one = boundary(Result(kinds(samples=2048)))
-    value = 1 - 0.5 ** min(one.estimate.value, 1.0)
-    assert f"{100 * value:.1f} % (" in in_words(one)
+    exponent = boundary(Result(kinds(samples=2048)))
+    value = 1 - 0.5 ** min(exponent.estimate.value, 1.0)
+    assert f"{100 * value:.1f} % (" in in_words(exponent)
 
 
 def test_what_the_rows_cannot_tell_has_a_reason():
@@ -127,8 +127,8 @@ def test_what_the_rows_cannot_tell_has_a_reason():
     assert boundary(Result(linear())) is None
     only = kinds(samples=64)
     assert boundary(Result(only.isel(row=only["x1"].values < 0.4))) is None
-    found = api.regimes(kinds("halton", 64))["uncertainty_exponent"]
-    assert np.isnan(found) and "not independent" in found.attrs["reason"]
+    table = api.regimes(kinds("halton", 64))["uncertainty_exponent"]
+    assert np.isnan(table) and "not independent" in table.attrs["reason"]
 
 
 def test_inputs_with_listed_values_part_the_rows():

@@ -24,10 +24,10 @@ def test_samples_of_several_rows_are_smoothed_as_one():
     ds = wear(samples=1000, units=3)
     rng, part = np.random.default_rng(1), replicates_of(ds)
     logs = 1.2 * rng.standard_normal((1000, 1)) + 2 * rng.standard_normal((1000, 3))
-    found = smoothed(logs.ravel(), part)
-    changed = (np.log(found.weights) - logs.ravel()).reshape(1000, 3)
+    smoothing = smoothed(logs.ravel(), part)
+    changed = (np.log(smoothing.weights) - logs.ravel()).reshape(1000, 3)
     assert np.abs(np.ptp(changed, axis=1)).max() < 1e-9 and np.ptp(changed[:, 0]) > 0
-    assert tail_shape(per_sample(found.weights, part)) == pytest.approx(found.k, abs=0.1)
+    assert tail_shape(per_sample(smoothing.weights, part)) == pytest.approx(smoothing.k, abs=0.1)
 
 
 def test_a_tail_that_begins_amid_equal_weights_is_bounded_where_they_are():
@@ -83,18 +83,18 @@ def test_a_standard_deviation_depends_on_the_weights_alone():
 
 def test_smoothed_weights_follow_the_published_algorithm():
     """Numbers by arviz-stats 0.8."""
-    found = smoothed(np.log(np.arange(1, 101) / 100.0) * -1.5)
-    assert found.k == pytest.approx(0.92003811)
+    smoothing = smoothed(np.log(np.arange(1, 101) / 100.0) * -1.5)
+    assert smoothing.k == pytest.approx(0.92003811)
     expected = [34.5552566, 12.21125704, 7.41715988]
-    assert found.weights[:3] == pytest.approx(expected)
-    assert found.weights.mean() == pytest.approx(1.0)
-    assert "(Pareto k 0.92)" in found.refusal
+    assert smoothing.weights[:3] == pytest.approx(expected)
+    assert smoothing.weights.mean() == pytest.approx(1.0)
+    assert "(Pareto k 0.92)" in smoothing.refusal
 
 
 @pytest.mark.parametrize("steepness", [1000, 5000])
 def test_weights_lost_in_rounding_are_no_tail(steepness):
     """As of rows far from a precise measurement: a law fitted to them overflows."""
     logs = np.append(np.linspace(-1.0, 0.0, 10), -2 - steepness * np.linspace(0.0, 1.0, 490))
-    found = smoothed(logs)
-    assert found.k < 0.7
-    np.testing.assert_allclose(found.weights, np.exp(logs) / np.exp(logs).mean())
+    smoothing = smoothed(logs)
+    assert smoothing.k < 0.7
+    np.testing.assert_allclose(smoothing.weights, np.exp(logs) / np.exp(logs).mean())

@@ -115,8 +115,8 @@ def test_our_own_kernels_stay_where_they_are(kern):
 def test_of_our_machines_those_count_that_a_package_imports():
     def machines(*imported):
         files = (Path(name) for name, _, _ in signature("models", set(imported)))
-        found = (file.relative_to(Path(models.__file__).parent).parts[0] for file in files)
-        return set(found) - {"__init__.py"}
+        folders = (file.relative_to(Path(models.__file__).parent).parts[0] for file in files)
+        return set(folders) - {"__init__.py"}
 
     assert machines("models.numerics.jit.kernel") == {"numerics"}
     assert machines("models.beam.batch") == {"numerics", "beam"}
@@ -145,9 +145,9 @@ def test_edited_code_gives_new_numbers_and_says_so(plant, write_study, decorator
 
     assert factor() == 6.0
     assert call("run", study, "--quiet").returncode == 0
-    said = call("verify", "results/small.nc").stdout
-    assert "versions  the same as here" in said, said
-    assert "3 of 3 recomputed are equal to the bit" in said
+    output = call("verify", "results/small.nc").stdout
+    assert "versions  the same as here" in output, output
+    assert "3 of 3 recomputed are equal to the bit" in output
     helper = plant / "helper.py"
     helper.write_text(helper.read_text().replace("3.0", "5.0"))
     assert factor() == 10.0

@@ -43,10 +43,10 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
     np.testing.assert_array_equal(row_block(study, 30, 31).x, drawn[30:31])
     ds = computed(study)
     assert sensitivities(ds)["method"] == "delta"
-    found = summarised(ds)
-    assert found["outputs"]["y"]["mean_interval"]["low"] is None
-    assert "how the imported rows were drawn is unknown" in found["notes"][0]
-    assert not any("replicates" in note for note in found["notes"])
+    statistics = summarised(ds)
+    assert statistics["outputs"]["y"]["mean_interval"]["low"] is None
+    assert "how the imported rows were drawn is unknown" in statistics["notes"][0]
+    assert not any("replicates" in note for note in statistics["notes"])
     again = study_from_text(ds.attrs["study"])
     assert again.identity == study.identity
     np.testing.assert_array_equal(row_block(again, 0, 100).x, drawn)
@@ -68,7 +68,7 @@ def test_without_a_number_of_samples_all_rows_are_imported(table):
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "message"),
     [
         (imported(None), "[design] file: is missing: a CSV or netCDF file with the rows"),
         (imported("row.csv"), "did you mean 'rows.csv'?"),
@@ -99,14 +99,14 @@ def test_without_a_number_of_samples_all_rows_are_imported(table):
         ),
     ],
 )
-def test_what_cannot_be_imported_is_one_line(table, given, said):
-    assert said in refusal(given, table[0])
+def test_what_cannot_be_imported_is_one_line(table, given, message):
+    assert message in refusal(given, table[0])
 
 
 def test_imported_values_must_lie_within_the_bounds(table):
     (table[0] / "rows.csv").write_text("x1,x2\n" + "0.5,0.5\n" * 50 + "1.5,0.5\n" * 50)
-    said = refusal(imported(), table[0])
-    assert "'x1' = 1.5 in row 51 is outside the parameter's bounds, 0.0 to 1.0 [1]" in said
+    message = refusal(imported(), table[0])
+    assert "'x1' = 1.5 in row 51 is outside the parameter's bounds, 0.0 to 1.0 [1]" in message
 
 
 EVERYTHING = {
@@ -124,10 +124,10 @@ def result_of(folder, **design):
 def test_rows_stated_to_be_independent_feed_what_a_plain_sample_feeds(table):
     folder, _ = table
     ds = result_of(folder, independent=True)
-    found = summarised(ds)
+    statistics = summarised(ds)
     plain = summarised(ds.assign_attrs(design="monte-carlo"))
-    assert found == plain and found["notes"] == []
-    y = found["outputs"]["y"]
+    assert statistics == plain and statistics["notes"] == []
+    y = statistics["outputs"]["y"]
     for entry in (y["mean_interval"], y["quantiles"]["0.5"]):
         assert entry["low"] < entry["high"]
     assert y["tolerance"]["lower"] < y["tolerance"]["upper"]
@@ -138,17 +138,19 @@ def test_rows_stated_to_be_independent_feed_what_a_plain_sample_feeds(table):
 def test_independent_draws_of_the_laws_are_not_called_dependent(table):
     for design, notes in (({"independent": True}, 0), ({}, 1)):
         ds = computed(study_from_text(as_text(imported(**design)), folder=table[0]))
-        found = sensitivities(ds, "pawn")["outputs"]["y"]["notes"]
-        assert sum("may depend on each other" in note for note in found) == notes
-        assert not any("inputs are dependent" in note for note in found)
+        remarks = sensitivities(ds, "pawn")["outputs"]["y"]["notes"]
+        assert sum("may depend on each other" in note for note in remarks) == notes
+        assert not any("inputs are dependent" in note for note in remarks)
 
 
 def test_methods_for_independent_inputs_take_rows_stated_to_be_such(table):
     folder, _ = table
     ds = result_of(folder, independent=True)
     plain = ds.assign_attrs(design="monte-carlo")
-    found = sensitivities(ds)
-    assert found == sensitivities(plain) and found["method"] == "first-order"
+    sensitivity_result = sensitivities(ds)
+    assert (
+        sensitivity_result == sensitivities(plain) and sensitivity_result["method"] == "first-order"
+    )
     unsaid = computed(study_from_text(as_text(imported()), folder=folder))
     with pytest.raises(InputError, match="but imported inputs may depend on each other"):
         sensitivities(unsaid, "hdmr")
@@ -181,16 +183,18 @@ def test_the_statement_does_not_change_the_rows(table):
 
 def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     folder, x = table
-    one = result_of(folder, independent=True)
+    first = result_of(folder, independent=True)
     assert (
-        kinship(Result(one), Result(result_of(folder, independent=True, seed=5)))
+        kinship(Result(first), Result(result_of(folder, independent=True, seed=5)))
         is Kinship.ROWS_IMPORTED
     )
-    found = compared(one, one)
+    comparison = compared(first, first)
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
-    assert found["pairing"] == "rows" and found["outputs"]["y"]["sd"]["difference"] == same
+    assert (
+        comparison["pairing"] == "rows" and comparison["outputs"]["y"]["sd"]["difference"] == same
+    )
     lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
     (folder / "rows.csv").write_text("\n".join(lines))
     other = result_of(folder, independent=True, seed=5)
-    assert kinship(Result(one), Result(other)) is Kinship.UNKNOWN_IMPORTED
-    assert compared(one, other)["pairing"] == "unknown"
+    assert kinship(Result(first), Result(other)) is Kinship.UNKNOWN_IMPORTED
+    assert compared(first, other)["pairing"] == "unknown"

@@ -17,12 +17,12 @@ def lines(changes=None, text=None):
     return caught.value.lines
 
 
-@pytest.mark.parametrize(("changes", "said"), STUDY_FAULTS, ids=lambda case: str(case)[:60])
-def test_one_fault_is_one_line(changes, said):
+@pytest.mark.parametrize(("changes", "message"), STUDY_FAULTS, ids=lambda case: str(case)[:60])
+def test_one_fault_is_one_line(changes, message):
     (line,) = lines(changes)
     assert line.startswith("x.toml: ")
-    assert said in line
-    assert said.startswith(("must", "method", '"y"')) or line.startswith(f"x.toml: {said}")
+    assert message in line
+    assert message.startswith(("must", "method", '"y"')) or line.startswith(f"x.toml: {message}")
 
 
 def test_all_faults_are_reported_at_once_in_the_order_of_the_file():
@@ -87,11 +87,11 @@ def test_all_faults_are_reported_at_once_in_the_order_of_the_file():
     )
 
 
-@pytest.mark.parametrize(("text", "said"), SYNTAX_FAULTS)
-def test_a_fault_of_syntax_names_its_line(text, said):
+@pytest.mark.parametrize(("text", "message"), SYNTAX_FAULTS)
+def test_a_fault_of_syntax_names_its_line(text, message):
     (line,) = lines(text=text)
     assert line.startswith("x.toml: not valid TOML: ")
-    assert said in line
+    assert message in line
 
 
 def test_an_empty_file_lists_what_it_lacks():

@@ -43,7 +43,7 @@ def test_a_model_in_the_working_folder_is_found(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("reference", "said"),
+    ("reference", "words"),
     [
         ("models.analytic:", "package.module:ATTRIBUTE"),
         (":LINEAR", "package.module:ATTRIBUTE"),
@@ -53,8 +53,8 @@ def test_a_model_in_the_working_folder_is_found(tmp_path, monkeypatch):
         ("..:x", "cannot be imported"),
     ],
 )
-def test_a_reference_that_leads_nowhere_says_why(reference, said):
-    assert said in message(reference)
+def test_a_reference_that_leads_nowhere_says_why(reference, words):
+    assert words in message(reference)
 
 
 def test_a_broken_model_is_one_line_and_leaves_the_others_alone(tmp_path, monkeypatch):
@@ -81,7 +81,7 @@ class NotADataclass:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "words"),
     [
         ({"parameters": Undeclared}, "Undeclared.x1 is declared without a Parameter"),
         ({"parameters": WithoutNominal}, "parameter 'x1' has no nominal value"),
@@ -92,7 +92,7 @@ class NotADataclass:
         ({"settings": NotADataclass}, "must be called with a dataclass"),
     ],
 )
-def test_a_model_that_is_not_declared_is_refused(monkeypatch, change, said):
+def test_a_model_that_is_not_declared_is_refused(monkeypatch, change, words):
     monkeypatch.setattr(analytic, "ODD", replace(LINEAR, **change), raising=False)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=words):
         model_at("models.analytic:ODD")

@@ -44,11 +44,11 @@ def test_a_parameter_that_is_infinite_unless_given_stays_fixed():
     fixed = text.partition("[fixed]")[2].partition("[uncertain.mass]")[0]
     assert "# k: stiffness of the mount; 10000.0 to inf [N m-1]\n#mount_stiffness = inf\n" in fixed
     assert "mount_stiffness" not in text.replace(fixed, "")
-    said = study_from_text(
+    given = study_from_text(
         text.replace("#mount_stiffness", "mount_stiffness"), model=study.model_reference
     )
-    assert said.fixed == {"mount_stiffness": inf}
-    assert said.identity == study.identity
+    assert given.fixed == {"mount_stiffness": inf}
+    assert given.identity == study.identity
 
 
 @pytest.mark.parametrize("name", model_names())

@@ -12,8 +12,8 @@ from uq.study.row_sampling import rows
 
 def test_a_tied_parameter_has_the_value_of_the_other_and_no_column():
     study = study_of(tables({"x2": {"equals": "x1"}, "x1": UNIFORM}, "saltelli", 64))
-    found = inputs_of(study)
-    np.testing.assert_array_equal(found["x1"], found["x2"])
+    inputs = inputs_of(study)
+    np.testing.assert_array_equal(inputs["x1"], inputs["x2"])
     assert rows(study) == 64 * 3
     ds = computed(study)
     assert ds["x2"].attrs["role"] == "input"
@@ -27,17 +27,17 @@ def test_several_tied_parameters_share_a_note():
     ties = {"x2": {"equals": "x1"}, "x3": {"equals": "x1"}}
     ds = computed(study_of(tables(ties | {"x1": UNIFORM}, "saltelli", 64)))
     (entry,) = sensitivities(ds)["outputs"].values()
-    said = [note for note in entry["notes"] if "equal" in note]
-    assert said == ["x2 and x3 equal x1: the index of x1 is that of all of them"]
+    notes = [note for note in entry["notes"] if "equal" in note]
+    assert notes == ["x2 and x3 equal x1: the index of x1 is that of all of them"]
 
 
 def test_a_scaled_parameter_is_the_other_times_a_factor_of_its_own():
     factor = {"distribution": "uniform", "lower": 0.4, "upper": 0.6, "times": "x1"}
     study = study_of(tables({"x2": factor, "x1": UNIFORM}, "saltelli", 1024))
-    found = inputs_of(study)
-    share = found["x2"] / found["x1"]
+    inputs = inputs_of(study)
+    share = inputs["x2"] / inputs["x1"]
     assert 0.4 <= share.min() and share.max() <= 0.6
-    assert abs(stats.spearmanr(share, found["x1"]).statistic) < 0.05
+    assert abs(stats.spearmanr(share, inputs["x1"]).statistic) < 0.05
     # y = x1 (1 + 2 f): E(y|x1) = 2 x1, E(y|f) = (1 + 2 f)/2.
     (entry,) = sensitivities(computed(study))["outputs"].values()
     vx, vf = 0.8**2 / 12, 0.2**2 / 12
@@ -58,7 +58,7 @@ def test_no_product_leaves_the_bounds():
 
 
 @pytest.mark.parametrize(
-    ("uncertain", "said"),
+    ("uncertain", "message"),
     [
         (
             {"x1": UNIFORM, "x2": {"equals": "x11"}},
@@ -80,12 +80,12 @@ def test_no_product_leaves_the_bounds():
         ),
     ],
 )
-def test_what_cannot_be_followed_is_refused(uncertain, said):
-    assert said in refusal(tables(uncertain))
+def test_what_cannot_be_followed_is_refused(uncertain, message):
+    assert message in refusal(tables(uncertain))
 
 
 def test_what_is_tied_must_have_the_same_unit():
     depth = {"distribution": "uniform", "lower": 1e-5, "upper": 1e-4}
     entries = {"depth": depth, "rate": {"equals": "depth"}}
-    said = refusal(tables(entries, model="exponential-wear"))
-    assert "is in another unit, m, than 'rate', m s-1" in said
+    message = refusal(tables(entries, model="exponential-wear"))
+    assert "is in another unit, m, than 'rate', m s-1" in message

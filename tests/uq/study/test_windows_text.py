@@ -52,7 +52,7 @@ def test_inspections_are_the_same_and_named_by_the_same_lines(tmp_path, name, te
     as_windows_writes_it(file)
     marked = read(file)
     assert marked == plain
-    assert [one.where for one in marked] == [one.where for one in plain]
+    assert [inspection.where for inspection in marked] == [inspection.where for inspection in plain]
 
 
 @pytest.mark.parametrize(

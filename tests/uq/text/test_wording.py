@@ -41,7 +41,7 @@ from uq.text.units import ReadableUnit
             "histogram: edges 100, 200, 400 µm, counts 3, 1",
         ),
     ],
-    ids=lambda one: one["distribution"] if isinstance(one, dict) else "",
+    ids=lambda value: value["distribution"] if isinstance(value, dict) else "",
 )
 def test_a_law_is_in_the_unit_of_its_input(stated, words):
     assert law_in_unit(law_of(stated), ReadableUnit("µm", 1e-6)) == words

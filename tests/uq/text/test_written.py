@@ -35,13 +35,13 @@ from uq.text.quantities import misfit, read_quantity, read_threshold
     ],
 )
 def test_a_quantity_is_the_number_that_one_would_write_in_the_plain_unit(text, value, shown):
-    found = read_quantity(text)
-    assert found == value and repr(found) == repr(value)
-    assert found.unit.name == shown and found / found.unit.size == pytest.approx(
-        float(found.number)
+    quantity = read_quantity(text)
+    assert quantity == value and repr(quantity) == repr(value)
+    assert quantity.unit.name == shown and quantity / quantity.unit.size == pytest.approx(
+        float(quantity.number)
     )
-    again = pickle.loads(pickle.dumps(found))
-    assert (again, again.unit, again.number) == (found, found.unit, found.number)
+    again = pickle.loads(pickle.dumps(quantity))
+    assert (again, again.unit, again.number) == (quantity, quantity.unit, quantity.number)
 
 
 @pytest.mark.parametrize(
@@ -104,9 +104,11 @@ def test_a_threshold_gives_the_same_numbers_however_it_is_written():
     assert plain.analysis.thresholds == written.analysis.thresholds
     assert wear([1.0, "1 h"]).analysis.thresholds["life"] == (1.0, 3600.0)
     ds = linear(samples=64)
-    found = [summarised(asking(ds, thresholds={"y": one})) for one in (0.05, "5 %")]
-    assert found[0]["outputs"] == found[1]["outputs"]
-    assert "0.05" in found[0]["outputs"]["y"]["thresholds"]
+    summaries = [
+        summarised(asking(ds, thresholds={"y": threshold_text})) for threshold_text in (0.05, "5 %")
+    ]
+    assert summaries[0]["outputs"] == summaries[1]["outputs"]
+    assert "0.05" in summaries[0]["outputs"]["y"]["thresholds"]
 
 
 @pytest.mark.parametrize(

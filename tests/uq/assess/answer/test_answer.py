@@ -30,40 +30,41 @@ def lifetime():
 
 
 def test_the_promise_of_a_life_is_its_lower_tolerance_bound_rounded_down(lifetime):
-    ds, found = lifetime
-    assert found.lead.promise.basis == (
+    ds, conclusions = lifetime
+    assert conclusions.lead.promise.basis == (
         "Tolerance bound from order statistics: value 39 of 1 000 in order, valid for any"
         " distribution."
     )
     (days,) = numbers(
-        "With 95 % confidence, at least 95 % last longer than # days.", found.lead.promise.sentence
+        "With 95 % confidence, at least 95 % last longer than # days.",
+        conclusions.lead.promise.sentence,
     )
     asked = {"coverage": 0.95, "confidence": 0.95}
     bound = summarised(asking(ds, tolerance=asked))["outputs"]["life"]["tolerance"]["lower"]
-    assert found.lead.promise.lower == bound
+    assert conclusions.lead.promise.lower == bound
     assert bound * 0.99 < days * DAY <= bound
 
 
 def test_the_likely_range_is_that_of_the_quantiles(lifetime):
-    ds, found = lifetime
+    ds, conclusions = lifetime
     low, high, median, never = numbers(
         r"90 % lie between # and # days; median # days; every row ends \(at most # % never end\)\.",
-        found.lead.range.sentence,
+        conclusions.lead.range.sentence,
     )
     assert never == pytest.approx(100 * (1 - 0.025**1e-3), abs=0.005)  # no row of 1000
-    known = summarised(ds)["outputs"]["life"]["quantiles"]
+    quantiles = summarised(ds)["outputs"]["life"]["quantiles"]
     shown = {"0.05": low, "0.95": high, "0.5": median}
     for p, value in shown.items():
-        assert value * DAY == pytest.approx(known[p]["value"], rel=5e-3)
+        assert value * DAY == pytest.approx(quantiles[p]["value"], rel=5e-3)
 
 
 def test_a_threshold_has_its_probability_and_what_decides_it(lifetime):
-    ds, found = lifetime
-    (event,) = found.lead.events
+    ds, conclusions = lifetime
+    (event,) = conclusions.lead.events
     *shown, at = numbers(r"# % \(# to # %\) end within # days\.", event.sentence)
-    known = summarised(ds)["outputs"]["life"]["thresholds"][repr(10 * DAY)]["below"]
+    probability = summarised(ds)["outputs"]["life"]["thresholds"][repr(10 * DAY)]["below"]
     assert at == 10
-    ends = [100 * known[key] for key in ("value", "low", "high")]
+    ends = [100 * probability[key] for key in ("value", "low", "high")]
     assert shown == pytest.approx(ends, abs=0.05)
     least, below, most, above = numbers(
         r"Decided most by rate: from # % where it is below # pm s⁻¹"
@@ -82,13 +83,11 @@ def test_an_angle_is_promised_by_its_magnitude_in_degrees():
     turn = np.random.default_rng(1).uniform(-0.5, 0.5, 200)
     ds = with_output(linear(samples=200), "turn", turn, "angle")
     ds["turn"].attrs["units"] = "rad"
-    found = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
-    (bound,) = numbers(
-        "With 95 % confidence, at least 95 % stay within #°.", found.promise.sentence
-    )
-    assert np.degrees(found.promise.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
+    lead = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
+    (bound,) = numbers("With 95 % confidence, at least 95 % stay within #°.", lead.promise.sentence)
+    assert np.degrees(lead.promise.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
     share, _, _, at = numbers(
-        r"# % \(# to # %\) exceed # rad in magnitude\.", found.events[0].sentence
+        r"# % \(# to # %\) exceed # rad in magnitude\.", lead.events[0].sentence
     )
     assert share == pytest.approx(100 * (abs(turn) > 0.4).mean(), abs=0.05)
     assert at == 0.4  # as the study has it
@@ -96,19 +95,19 @@ def test_an_angle_is_promised_by_its_magnitude_in_degrees():
 
 def test_rows_that_are_not_independent_give_a_cautious_quantile_and_the_reason():
     ds = linear("saltelli", samples=64, replicates=4)
-    found = answer(ds).lead
+    lead = answer(ds).lead
     low, cautious, high, bold = numbers(
-        "95 % stay above #, cautiously #; 95 % stay below #, cautiously #.", found.promise.sentence
+        "95 % stay above #, cautiously #; 95 % stay below #, cautiously #.", lead.promise.sentence
     )
-    known = summarised(ds)["outputs"]["y"]["quantiles"]
-    shown = [known["0.05"]["value"], known["0.05"]["low"]]
-    shown += [known["0.95"]["value"], known["0.95"]["high"]]
+    quantiles = summarised(ds)["outputs"]["y"]["quantiles"]
+    shown = [quantiles["0.05"]["value"], quantiles["0.05"]["low"]]
+    shown += [quantiles["0.95"]["value"], quantiles["0.95"]["high"]]
     assert [low, cautious, high, bold] == pytest.approx(shown, rel=1e-2)
     assert cautious <= shown[1] and bold >= shown[3]
-    assert found.promise.basis.startswith(
+    assert lead.promise.basis.startswith(
         "No tolerance bound: the rows of a 'saltelli' design are not independent."
     )
-    first = found.ranking.contributions[0]
+    first = lead.ranking.contributions[0]
     assert first.inputs == ("x4",) and first.indices[0].low < 16 / 30 < first.indices[0].high
     (by,) = numbers(
         r"one standard deviation \(0.289\) more raises it by #", first.effect
@@ -118,32 +117,32 @@ def test_rows_that_are_not_independent_give_a_cautious_quantile_and_the_reason()
 
 def test_regimes_are_named_with_their_shares():
     ds = kinds(samples=200)
-    found = answer(ds)
+    conclusions = answer(ds)
     shares = summarised(ds)["regime"]
-    assert len(found.regimes) == 2
-    for one in found.regimes:
-        share, low, high = numbers(rf"# % \(# to # %\) {one.said}\.", one.sentence)
-        known = [100 * shares[one.said][key] for key in ("share", "low", "high")]
-        assert [share, low, high] == pytest.approx(known, abs=0.05)
-    assert all(one.said in found.regimes_sentence for one in found.regimes)
+    assert len(conclusions.regimes) == 2
+    for regime in conclusions.regimes:
+        share, low, high = numbers(rf"# % \(# to # %\) {regime.said}\.", regime.sentence)
+        expected = [100 * shares[regime.said][key] for key in ("share", "low", "high")]
+        assert [share, low, high] == pytest.approx(expected, abs=0.05)
+    assert all(regime.said in conclusions.regimes_sentence for regime in conclusions.regimes)
 
 
 @pytest.mark.parametrize("rows", [1, 5])
 def test_few_rows_promise_nothing(rows):
-    found = answer(linear(samples=rows))
-    assert "confidence" not in repr(found)
-    assert found.lead.promise.sentence == ""
-    assert re.fullmatch(r"No tolerance bound: it needs \d+ rows\.", found.lead.promise.basis)
-    assert found.lead.ranking.leader is None
+    conclusions = answer(linear(samples=rows))
+    assert "confidence" not in repr(conclusions)
+    assert conclusions.lead.promise.sentence == ""
+    assert re.fullmatch(r"No tolerance bound: it needs \d+ rows\.", conclusions.lead.promise.basis)
+    assert conclusions.lead.ranking.leader is None
 
 
 def test_where_every_row_failed_only_that_is_said():
     ds = linear(samples=20)
     ds["y"][:] = np.nan
-    found = answer(with_status(ds, range(20), Status.RAISED))
-    assert found.quantities == () and found.rows_sentence == "20 of 20 rows failed."
-    assert [one.rule for one in found.advice] == ["failed"]
-    assert "20 of 20 rows failed." in repr(found) and "20 of 20" in found._repr_html_()
+    conclusions = answer(with_status(ds, range(20), Status.RAISED))
+    assert conclusions.quantities == () and conclusions.rows_sentence == "20 of 20 rows failed."
+    assert [advice.rule for advice in conclusions.advice] == ["failed"]
+    assert "20 of 20 rows failed." in repr(conclusions) and "20 of 20" in conclusions._repr_html_()
 
 
 def test_nothing_is_said_of_an_event_without_rows():
@@ -161,9 +160,9 @@ def test_undefined_rows_are_named_beside_a_probability():
     share, _, _, undefined = numbers(
         r"# % \(# to # %\) exceed 20° in magnitude; # % are undefined\.", event.sentence
     )
-    known = summarised(ds)["outputs"]["turn"]["thresholds"][repr(event_at(event))]
-    assert share == pytest.approx(100 * known["above"]["value"], abs=0.05)
-    assert undefined == 100 * known["undefined"] == 25
+    probability = summarised(ds)["outputs"]["turn"]["thresholds"][repr(event_at(event))]
+    assert share == pytest.approx(100 * probability["above"]["value"], abs=0.05)
+    assert undefined == 100 * probability["undefined"] == 25
 
 
 def event_at(event):
@@ -171,7 +170,7 @@ def event_at(event):
 
 
 def test_a_notebook_shows_the_same_sentences():
-    found = uq.answer(linear("saltelli", samples=64, replicates=4))
-    html = found._repr_html_()
-    assert html.startswith("<style>") and printed(found.lead.range.sentence) in html
-    assert found.lead.range.sentence in repr(found)
+    conclusions = uq.answer(linear("saltelli", samples=64, replicates=4))
+    html = conclusions._repr_html_()
+    assert html.startswith("<style>") and printed(conclusions.lead.range.sentence) in html
+    assert conclusions.lead.range.sentence in repr(conclusions)

@@ -30,24 +30,27 @@ def lifetime():
 
 def test_rows_too_few_for_a_ranking_are_added():
     """The answer must not say that nothing is to be done."""
-    found = answer(linear(samples=20))
-    assert [one.rule for one in found.advice] == ["rows"]
-    assert found.advice[0].rows == 64
-    assert "Compute about 64 rows instead of 20: no ranking of the inputs" in found.advice[0].text
+    conclusions = answer(linear(samples=20))
+    assert [advice.rule for advice in conclusions.advice] == ["rows"]
+    assert conclusions.advice[0].rows == 64
+    assert (
+        "Compute about 64 rows instead of 20: no ranking of the inputs"
+        in conclusions.advice[0].text
+    )
 
 
 def test_an_assumed_law_that_matters_is_measured_first(lifetime):
-    ds, found = lifetime
-    assert [one.rule for one in found.advice] == ["measure", "tighten"]
-    assert found.advice[0].text == (
+    ds, conclusions = lifetime
+    assert [advice.rule for advice in conclusions.advice] == ["measure", "tighten"]
+    assert conclusions.advice[0].text == (
         "Measure rate first: it matters most to how many end within 10 days, and its law is"
         " assumed."
     )
-    known = ds.copy()
-    known["rate"].attrs["source"] = "given by the supplier"
-    found = answer(known)
-    assert [one.rule for one in found.advice] == ["tighten", "nothing"]
-    assert found.advice[1].text.endswith(", and no law that matters is an assumption.")
+    measured_rate = ds.copy()
+    measured_rate["rate"].attrs["source"] = "given by the supplier"
+    conclusions = answer(measured_rate)
+    assert [advice.rule for advice in conclusions.advice] == ["tighten", "nothing"]
+    assert conclusions.advice[1].text.endswith(", and no law that matters is an assumption.")
 
 
 def test_a_law_of_which_no_source_says_how_well_it_is_known_is_asked_for(lifetime):
@@ -63,33 +66,33 @@ def test_a_range_of_designs_is_neither_measured_nor_tightened(lifetime):
     ds, _ = lifetime
     chosen = ds.copy()
     chosen["rate"].attrs["source"] = "chosen: the rates of three alloys"
-    found = answer(chosen).advice
-    assert not {"measure", "source", "known"} & {one.rule for one in found}
-    assert not any(one.inputs == ("rate",) for one in found if one.rule == "tighten")
+    entries = answer(chosen).advice
+    assert not {"measure", "source", "known"} & {advice.rule for advice in entries}
+    assert not any(advice.inputs == ("rate",) for advice in entries if advice.rule == "tighten")
 
 
 def test_what_starts_a_motion_is_not_measured(lifetime):
     ds, _ = lifetime
     start = ds.copy()
     start["rate"].attrs["initial"] = 1
-    assert not {"measure", "source"} & {one.rule for one in answer(start).advice}
+    assert not {"measure", "source"} & {advice.rule for advice in answer(start).advice}
 
 
 def test_half_the_scatter_is_what_the_weighted_rows_say(lifetime):
-    ds, found = lifetime
-    one = next(one.tightened for one in found.advice if one.rule == "tighten")
+    ds, conclusions = lifetime
+    tolerance = next(advice.tightened for advice in conclusions.advice if advice.rule == "tighten")
     _, now, then, low, high = numbers(
         r"Half the scatter of rate \(sigma 0.25 instead of 0.5\) would move the share of rows that"
         r" end within # days"
         r" from # % to # % \(# to # %\)\.",
-        one.sentence,
+        tolerance.sentence,
     )
     column = f"P(<{10 * DAY!r})"
     weighted = uq.what_if(ds, {"uncertain.rate.sigma": 0.25}).loc["life"]
-    known = [100 * weighted[f"{column}{end}"] for end in ("", "_low", "_high")]
-    assert [then, low, high] == pytest.approx(known, abs=0.05)
+    expected = [100 * weighted[f"{column}{end}"] for end in ("", "_low", "_high")]
+    assert [then, low, high] == pytest.approx(expected, abs=0.05)
     assert now == pytest.approx(100 * uq.summary(ds).loc["life", column], abs=0.05)
-    assert one.effective_rows < 1000
+    assert tolerance.effective_rows < 1000
 
 
 def test_half_the_scatter_of_a_law():
@@ -117,11 +120,13 @@ def test_half_the_scatter_of_a_law():
 def test_a_rare_event_asks_for_more_rows():
     ds = linear(samples=200)
     ds = with_output(ds, "rare", np.r_[np.ones(8), np.zeros(192)] + 1e-6 * ds["x1"].values)
-    found = answer(asking(ds, outputs=["rare"], thresholds={"rare": 0.5}))
-    share = found.lead.events[0].share
+    conclusions = answer(asking(ds, outputs=["rare"], thresholds={"rare": 0.5}))
+    share = conclusions.lead.events[0].share
     half = (share.high - share.low) / 2
-    (rows,) = [one for one in found.advice if one.rule == "rows"]
-    most = max((half / 0.01) ** 2, found.lead.ranking.rows_factor)  # eight rows make the variance
+    (rows,) = [advice for advice in conclusions.advice if advice.rule == "rows"]
+    most = max(
+        (half / 0.01) ** 2, conclusions.lead.ranking.rows_factor
+    )  # eight rows make the variance
     assert rows.rows == pytest.approx(200 * most, rel=0.01)
 
 
@@ -135,38 +140,40 @@ def with_valley(samples=400):
 
 def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_input():
     ds = with_valley()
-    found = answer(ds)
-    assert [one.rule for one in found.advice][:2] == ["source", "keep"]
-    event = found.lead.events[0]
+    conclusions = answer(ds)
+    assert [advice.rule for advice in conclusions.advice][:2] == ["source", "keep"]
+    event = conclusions.lead.events[0]
     assert event.share.value > 0.5
     share, low, high = numbers(
         r"So that more exceed 10 mm, keep x4 [^:]*: # % \(# to # %\) do there\.",
-        found.advice[1].text,
+        conclusions.advice[1].text,
     )
     most = event.curve.shares[event.curve.most]
-    assert [share, low, high] == pytest.approx([100 * one for one in most.numbers], abs=0.05)
+    assert [share, low, high] == pytest.approx([100 * number for number in most.numbers], abs=0.05)
     assert most.low > event.share.high
 
 
 @pytest.mark.parametrize(("wanted", "side"), [("above", "stay above"), ("below", "stay below")])
 def test_the_side_that_is_wanted_is_promised_and_advised(wanted, side):
     asked = {"outputs": ["y"], "thresholds": {"y": 5.0}, "wanted": {"y": wanted}}
-    found = answer(asking(linear(samples=400), **asked))
+    conclusions = answer(asking(linear(samples=400), **asked))
     bound = rf"With 95 % confidence, at least 95 % {side} [\d.]+\."
-    assert re.fullmatch(bound, found.lead.promise.sentence)
-    (one,) = (each for each in found.advice if each.rule in ("tighten", "keep"))
-    if one.rule == "tighten":
-        before, after = one.tightened.before.value, one.tightened.after.value
+    assert re.fullmatch(bound, conclusions.lead.promise.sentence)
+    (remedy,) = (each for each in conclusions.advice if each.rule in ("tighten", "keep"))
+    if remedy.rule == "tighten":
+        before, after = remedy.tightened.before.value, remedy.tightened.after.value
         assert after > before if wanted == "above" else after < before
     else:
-        assert one.text.startswith(f"So that {'more' if wanted == 'above' else 'fewer'} exceed 5")
+        assert remedy.text.startswith(
+            f"So that {'more' if wanted == 'above' else 'fewer'} exceed 5"
+        )
 
 
 def test_what_nobody_wants_is_not_called_better():
     ds = with_valley()
-    found = answer(asking(ds, outputs=["far"], thresholds={"far": 0.01}, wanted={}))
-    assert found.lead.wants_more is None
-    assert not any(one.rule == "keep" for one in found.advice)
+    conclusions = answer(asking(ds, outputs=["far"], thresholds={"far": 0.01}, wanted={}))
+    assert conclusions.lead.wants_more is None
+    assert not any(advice.rule == "keep" for advice in conclusions.advice)
 
 
 def test_a_large_angle_may_be_wanted():

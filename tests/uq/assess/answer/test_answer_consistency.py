@@ -113,16 +113,16 @@ def checked(study):
 
 @pytest.mark.parametrize("study", STUDIES)
 def test_no_sentence_is_denied_by_the_rows_or_by_another(study):
-    checker, found = checked(study)
-    assert list(checker.wrong(found)) == []
+    checker, conclusions = checked(study)
+    assert list(checker.wrong(conclusions)) == []
 
 
-def mutants(one, path=()):
+def mutants(record, path=()):
     """Yield copies of an answer, each with one number changed, and where."""
-    for field in fields(one):
-        value, here = getattr(one, field.name), (*path, field.name)
+    for field in fields(record):
+        value, here = getattr(record, field.name), (*path, field.name)
         for changed, where in changes(value, here):
-            yield replace(one, **{field.name: changed}), where
+            yield replace(record, **{field.name: changed}), where
 
 
 def changes(value, path):
@@ -136,47 +136,55 @@ def changes(value, path):
                 yield (*value[:i], changed, *value[i + 1 :]), where
 
 
-def sentences(found: Answer):
+def sentences(conclusions: Answer):
     """Return all that an answer says."""
-    said = [*found.lines, *(event.with_cause for event in found.events)]
-    for one in found.quantities:
-        said += [*one.head, *(event.with_cause for event in one.events), one.ranking_sentence]
-        said += [each.effect for each in one.ranking.contributions] if one.ranking else []
-        said += one.earliest.lines if one.earliest else []
-    return said
+    texts = [*conclusions.lines, *(event.with_cause for event in conclusions.events)]
+    for quantity in conclusions.quantities:
+        texts += [
+            *quantity.head,
+            *(event.with_cause for event in quantity.events),
+            quantity.ranking_sentence,
+        ]
+        texts += (
+            [each.effect for each in quantity.ranking.contributions] if quantity.ranking else []
+        )
+        texts += quantity.earliest.lines if quantity.earliest else []
+    return texts
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("study", STUDIES[:-1])
 def test_a_changed_number_under_a_sentence_is_noticed(study):
-    checker, found = checked(study)
-    said, missed, count = sentences(found), [], 0
-    for mutant, path in mutants(found):
+    checker, conclusions = checked(study)
+    texts, missed, count = sentences(conclusions), [], 0
+    for mutant, path in mutants(conclusions):
         try:
             shown = sentences(mutant)
         except (ValueError, OverflowError):
             continue
-        if shown != said:
+        if shown != texts:
             count += 1
             if not list(checker.wrong(mutant)):
-                missed.append((path, [new for new, old in zip(shown, said) if new != old]))  # noqa: B905
+                missed.append((path, [new for new, old in zip(shown, texts) if new != old]))  # noqa: B905
     assert count >= 5 and missed == []
 
 
 def test_contradictions_are_noticed():
-    checker, found = checked(life_of_known_law)
-    lead = found.lead
+    checker, conclusions = checked(life_of_known_law)
+    lead = conclusions.lead
     event = replace(lead.events[0], ranking=Ranking("", "", reason="no", is_flat=True))
-    flat = replace(found, quantities=(replace(lead, events=(event,)),))
+    flat = replace(conclusions, quantities=(replace(lead, events=(event,)),))
     assert any("Half the scatter" in text for text in denied_by_each_other(flat))
-    assert list(denied_by_each_other(found)) == []
+    assert list(denied_by_each_other(conclusions)) == []
 
 
 def test_no_input_moves_an_event_that_no_single_input_decides():
     for study in STUDIES:
-        found = checked(study)[1]
-        for event in found.lead.events if found.lead else ():
+        conclusions = checked(study)[1]
+        for event in conclusions.lead.events if conclusions.lead else ():
             if event.ranking is not None and event.ranking.denies_a_leader:
                 assert not any(
-                    event.said in one.text for one in found.advice if one.rule == "tighten"
+                    event.said in advice.text
+                    for advice in conclusions.advice
+                    if advice.rule == "tighten"
                 )

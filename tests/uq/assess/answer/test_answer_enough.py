@@ -14,30 +14,30 @@ from uq.render.html.answer import fragment
 from uq.result.result import Result
 
 
-def rules(found):
-    return [one.rule for one in found.advice]
+def rules(conclusions):
+    return [advice.rule for advice in conclusions.advice]
 
 
 def test_enough_rows_say_so_with_what_another_seed_would_find():
-    ds, found = lifetime()
-    assert found.enough.question == () and not found.enough.errors
+    ds, conclusions = lifetime()
+    assert conclusions.enough.question == () and not conclusions.enough.errors
     low, high = numbers(
         r"The rows are enough: with another seed, the 5 % quantile would lie between # and #"
         r" days \(95 %\); rate would again contribute most\.",
-        found.enough.sentence,
+        conclusions.enough.sentence,
     )
-    assert low < found.lead.promise.quantiles[0].value / 86400 < high
+    assert low < conclusions.lead.promise.quantiles[0].value / 86400 < high
     assert verdict(Findings(Result(ds))) == ["Enough rows: what the study asks is settled."]
-    assert found.enough.sentence.split(":")[0] in fragment(found)
+    assert conclusions.enough.sentence.split(":")[0] in fragment(conclusions)
 
 
 def test_too_few_rows_say_so():
     ds = linear(samples=200)
     ds = with_output(ds, "rare", np.r_[np.ones(8), np.zeros(192)] + 1e-6 * ds["x1"].values)
-    found = answer(asking(ds, outputs=["rare"], thresholds={"rare": 0.5}))
-    said = "The rows are not enough to settle all of this. With another seed, "
-    assert found.enough.sentence.startswith(said)
-    assert "rows" in rules(found)
+    conclusions = answer(asking(ds, outputs=["rare"], thresholds={"rare": 0.5}))
+    sentence = "The rows are not enough to settle all of this. With another seed, "
+    assert conclusions.enough.sentence.startswith(sentence)
+    assert "rows" in rules(conclusions)
 
 
 def test_rows_are_advised_for_what_the_study_is_about_alone():
@@ -45,51 +45,57 @@ def test_rows_are_advised_for_what_the_study_is_about_alone():
     ds = linear(samples=1000)
     ds = with_output(ds, "even", sum(ds[name].values for name in ("x1", "x2", "x3", "x4")))
     asked = asking(ds, outputs=["y", "even"])
-    found = answer(asked)
-    assert "rows" not in rules(found) and found.enough.sentence.startswith("The rows are enough: ")
-    (said,) = found.enough.others
-    assert said.startswith("The order of x") and "(meaning of even)" in said
-    assert "What is not settled besides</summary><ul><li>The order of x" in fragment(found)
+    conclusions = answer(asked)
+    assert "rows" not in rules(conclusions) and conclusions.enough.sentence.startswith(
+        "The rows are enough: "
+    )
+    (sentence,) = conclusions.enough.others
+    assert sentence.startswith("The order of x") and "(meaning of even)" in sentence
+    assert "What is not settled besides</summary><ul><li>The order of x" in fragment(conclusions)
     first, second = verdict(Findings(Result(asked)))
     assert first == "Enough rows for what the study is about."
     assert second.startswith("Not enough rows: the order of x")
-    assert "what the study asks is settled" not in repr(found)
+    assert "what the study asks is settled" not in repr(conclusions)
     assert "rows" in rules(answer(asking(ds, outputs=["even"])))
 
 
 def test_inputs_that_many_rows_do_not_tell_apart_contribute_alike():
     ds = linear(samples=6000, seed=4)
     ds = with_output(ds, "even", sum(ds[name].values for name in ("x1", "x2", "x3", "x4")))
-    found = answer(asking(ds, outputs=["even"]))
-    said = found.lead.ranking.sentence
-    assert re.fullmatch(r"(x\d, ){3}x\d contribute alike: S1 is 0\.2\d at most\.", said), said
-    assert "rows" not in rules(found) and found.enough.sentence.startswith("The rows are enough: ")
+    conclusions = answer(asking(ds, outputs=["even"]))
+    sentence = conclusions.lead.ranking.sentence
+    assert re.fullmatch(r"(x\d, ){3}x\d contribute alike: S1 is 0\.2\d at most\.", sentence), (
+        sentence
+    )
+    assert "rows" not in rules(conclusions) and conclusions.enough.sentence.startswith(
+        "The rows are enough: "
+    )
 
 
 def test_where_many_inputs_contribute_little_none_explains_much():
     ds = linear(samples=6000)
     noise = np.random.default_rng(1).normal(0.0, 1.5, 6000)
     faint = noise + sum(ds[name].values for name in ("x1", "x2", "x3", "x4"))
-    found = answer(asking(with_output(ds, "faint", faint), outputs=["faint"]))
-    said = found.lead.ranking.sentence
+    conclusions = answer(asking(with_output(ds, "faint", faint), outputs=["faint"]))
+    sentence = conclusions.lead.ranking.sentence
     assert re.fullmatch(
-        r"No single input explains much: S1 of (x\d, ){3}x\d is 0\.0\d at most\.", said
-    ), said
-    assert found.lead.ranking.denies_a_leader and "rows" not in rules(found)
+        r"No single input explains much: S1 of (x\d, ){3}x\d is 0\.0\d at most\.", sentence
+    ), sentence
+    assert conclusions.lead.ranking.denies_a_leader and "rows" not in rules(conclusions)
 
 
 def test_where_the_rows_themselves_err_more_than_sampling_more_of_them_do_not_help():
     ds = asking(linear(samples=1000), outputs=["y"])
-    found = answer(with_output(ds, "y_error", np.full(1000, 0.2)))
+    conclusions = answer(with_output(ds, "y_error", np.full(1000, 0.2)))
     half = 1.96 * ds["y"].values.std() / 1000**0.5
-    own, sampling = numbers(
+    solver_error, sampling = numbers(
         r"Compute more accurate rows before more of them \(finer settings or longer averages\):"
         r" their numerical error may move the mean by #, sampling by #\.",
-        found.advice[0].text,
+        conclusions.advice[0].text,
     )
-    assert own == 0.2 and sampling == pytest.approx(half, rel=0.03)
-    assert rules(found)[0] == "finer" and not {"rows", "nothing"} & {*rules(found)}
-    assert found.enough.sentence.startswith(
+    assert solver_error == 0.2 and sampling == pytest.approx(half, rel=0.03)
+    assert rules(conclusions)[0] == "finer" and not {"rows", "nothing"} & {*rules(conclusions)}
+    assert conclusions.enough.sentence.startswith(
         "More rows alone would not help, more accurate ones would. With another seed, "
     )
     exact = answer(with_output(ds, "y_error", np.full(1000, 0.01)))
@@ -98,12 +104,12 @@ def test_where_the_rows_themselves_err_more_than_sampling_more_of_them_do_not_he
 
 
 def test_where_the_study_is_about_the_regimes_their_shares_decide():
-    found = answer(kinds(samples=400, analysis={"outputs": ["regime", "work"]}))
+    conclusions = answer(kinds(samples=400, analysis={"outputs": ["regime", "work"]}))
     low, high = numbers(
         r"The rows are enough: with another seed, # to # % would be slow \(95 %\).*",
-        found.enough.sentence,
+        conclusions.enough.sentence,
     )
-    assert low < 100 * found.regimes[0].share.value < high
+    assert low < 100 * conclusions.regimes[0].share.value < high
 
 
 def test_numbers_of_the_errors_and_the_shares_can_be_traced():
@@ -111,19 +117,21 @@ def test_numbers_of_the_errors_and_the_shares_can_be_traced():
     ds = with_output(ds, "y_error", np.full(1000, 0.2))
     assert trace(ds, "answer/enough/own_error")["value"] == pytest.approx(0.2)
     regimes = kinds(samples=400, analysis={"outputs": ["regime", "work"]})
-    found = trace(regimes, "answer/enough/expected/low")
-    assert found["equal"] and found["value"] == pytest.approx(answer(regimes).enough.again.low)
+    document = trace(regimes, "answer/enough/expected/low")
+    assert document["equal"] and document["value"] == pytest.approx(
+        answer(regimes).enough.again.low
+    )
 
 
 def test_without_rows_or_intervals_nothing_is_called_enough():
     few = answer(asking(linear("latin-hypercube", samples=64), outputs=["y"]))
     assert "enough" not in few.enough.sentence and "rows" in rules(few)
-    one = answer(linear(samples=1))
-    assert "are enough" not in one.enough.sentence and "rows" in rules(one)
+    conclusions = answer(linear(samples=1))
+    assert "are enough" not in conclusions.enough.sentence and "rows" in rules(conclusions)
 
 
 def test_regimes_that_are_not_settled_are_said_in_a_sentence():
-    found = answer(kinds(samples=64, analysis={"outputs": ["regime", "work"]}))
-    (rows,) = (one.text for one in found.advice if one.rule == "rows")
+    conclusions = answer(kinds(samples=64, analysis={"outputs": ["regime", "work"]}))
+    (rows,) = (advice.text for advice in conclusions.advice if advice.rule == "rows")
     assert ": how many are slow is known to " in rows or ": how many are fast is known to " in rows
-    assert "how many slow" not in repr(found) and "how many fast" not in repr(found)
+    assert "how many slow" not in repr(conclusions) and "how many fast" not in repr(conclusions)

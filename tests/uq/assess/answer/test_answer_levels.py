@@ -16,16 +16,16 @@ def test_the_level_that_decides_is_named_with_its_share():
     """y = x1 + 2 x2 + 3 x3 + 4 x4: x4 alone has 16 of 30 parts of the variance."""
     levels = {"x1": "own", "x2": "own", "x3": "chance", "x4": "chance"}
     ds = nested_result(levels=levels, samples=300, units=1)
-    found = answer(ds)
+    conclusions = answer(ds)
     share, low, high, rest, *_ = numbers(
         r"Chance \(x4 and x3\) decides its scatter: # % \(# to # %\) of the variance,"
         r" the machine # % \(# to # %\)\.",
-        found.levels.sentence,
+        conclusions.levels.sentence,
     )
     assert low < 100 * 25 / 30 < high and share + rest == pytest.approx(100, abs=0.11)
-    assert found.levels.sentence in found.lines
-    assert found.levels.leader.name == "chance"
-    assert any(one.rule == "chance" for one in found.advice)
+    assert conclusions.levels.sentence in conclusions.lines
+    assert conclusions.levels.leader.name == "chance"
+    assert any(advice.rule == "chance" for advice in conclusions.advice)
 
 
 def of_regimes(share_of_start, samples=400, is_initial=True, of_pairs=False):
@@ -49,55 +49,57 @@ def of_regimes(share_of_start, samples=400, is_initial=True, of_pairs=False):
 
 def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
     ds = of_regimes(0.95)
-    found = answer(ds)
-    word = found.regimes[0].said
+    conclusions = answer(ds)
+    word = conclusions.regimes[0].said
     share, low, high, *_ = numbers(
         rf"The start \(x2\) decides whether it is {word}: # % \(# to # %\) of the variance,"
         r" the machine # % \(# to # %\)\.",
-        found.levels.sentence,
+        conclusions.levels.sentence,
     )
     codes = ds["regime"].values.reshape(-1, 2)
     apart = (codes[:, 0] != codes[:, 1]).mean()
     expected = 100 * apart / 2 / codes.var()  # between repeats, of the whole variance
     assert share == pytest.approx(expected, abs=1) and low < expected < high
     (another, *_) = numbers(
-        r"# % \(# to # %\) of repeats end in another regime\.", found.levels.switching
+        r"# % \(# to # %\) of repeats end in another regime\.", conclusions.levels.switching
     )
     assert another == pytest.approx(100 * apart, abs=0.06)
-    assert found.levels.sentence in found.lines
-    assert "Expect little of tolerances: the start decides" in repr(found)
-    page = fragment(found)
+    assert conclusions.levels.sentence in conclusions.lines
+    assert "Expect little of tolerances: the start decides" in repr(conclusions)
+    page = fragment(conclusions)
     assert page.index("answer-promise") < page.index("The start (x2)") < page.index("Value of the")
     key = "answer/levels/shares/chance/value"
-    assert trace(ds, key)["value"] == found.levels.levels[0].share.value
+    assert trace(ds, key)["value"] == conclusions.levels.levels[0].share.value
     assert key in page
 
 
 def test_single_inputs_are_called_so_where_another_level_decides():
     """Neither x2 nor x3 alone matters, together they decide."""
     ds = of_regimes(0.55, samples=1000, of_pairs=True)
-    found = answer(ds)
-    assert found.levels.leader.inputs == ("x2", "x3")
+    conclusions = answer(ds)
+    assert conclusions.levels.leader.inputs == ("x2", "x3")
     by = "x1, though it alone explains only 21 % (15 to 26 %)"
-    assert found.regimes[0].decided_by.startswith(f"Of single inputs, decided most by {by}: from ")
-    traced = trace(ds, f"answer/regimes/{found.regimes[0].said}/decided_by")
-    assert traced["sentence"] == found.regimes[0].decided_by and traced["equal"]
-    assert "x1 would again contribute most" not in found.enough.sentence
+    assert conclusions.regimes[0].decided_by.startswith(
+        f"Of single inputs, decided most by {by}: from "
+    )
+    traced = trace(ds, f"answer/regimes/{conclusions.regimes[0].said}/decided_by")
+    assert traced["sentence"] == conclusions.regimes[0].decided_by and traced["equal"]
+    assert "x1 would again contribute most" not in conclusions.enough.sentence
     other = answer(of_regimes(0.05))
     assert other.levels.leader.words == "the machine"
-    assert not any(one.rule == "chance" for one in other.advice)
-    assert not any(one.is_of_single for one in other.regimes)
+    assert not any(advice.rule == "chance" for advice in other.advice)
+    assert not any(regime.is_of_single for regime in other.regimes)
 
 
 def test_where_no_level_decides_alone_the_shares_are_said():
-    found = answer(of_regimes(0.3))
-    assert found.levels.sentence.startswith("No level alone decides whether it is ")
-    assert not any(one.rule == "chance" for one in found.advice)
+    conclusions = answer(of_regimes(0.3))
+    assert conclusions.levels.sentence.startswith("No level alone decides whether it is ")
+    assert not any(advice.rule == "chance" for advice in conclusions.advice)
 
 
 def test_without_a_start_it_is_called_chance():
-    found = answer(of_regimes(0.95, is_initial=False))
-    assert found.levels.sentence.startswith("Chance (x2) decides")
+    conclusions = answer(of_regimes(0.95, is_initial=False))
+    assert conclusions.levels.sentence.startswith("Chance (x2) decides")
 
 
 def test_a_study_of_single_rows_has_no_levels():
@@ -109,8 +111,8 @@ def test_a_start_that_is_the_same_in_all_rows_is_said():
     assert answer(ds).starts_alike == ""
     attrs = {"role": "fixed", "long_name": "speed", "initial": 1}
     fixed = ds.assign(initial_speed=((), 0.0, attrs))
-    said = "Whether the start decides the regime is not known: initial speed is fixed."
-    assert answer(fixed).starts_alike == said and said in repr(answer(fixed))
+    sentence = "Whether the start decides the regime is not known: initial speed is fixed."
+    assert answer(fixed).starts_alike == sentence and sentence in repr(answer(fixed))
     ds["x2"].attrs["initial"] = 1
     assert answer(ds).starts_alike == ""
 
@@ -126,4 +128,4 @@ def test_a_start_that_is_the_same_in_all_rows_is_said():
 def test_results_say_which_inputs_are_the_start(machine, starts):
     model = find_model(machine)
     attrs = {name: parameter_variable(model, name, 0.0)[2] for name in model.parameter_names}
-    assert {name for name, own in attrs.items() if "initial" in own} == starts
+    assert {name for name, attributes in attrs.items() if "initial" in attributes} == starts

@@ -25,16 +25,18 @@ def falling(x):
 
 
 def test_the_range_of_a_known_curve_is_rare_on_average():
-    found = limit(falling)
+    result = limit(falling)
     low, high = numbers(
         r"With 95 % confidence, fewer than 5 % fail on average where power is between # and #\.",
-        found.sentence,
+        result.sentence,
     )
-    assert low == pytest.approx(found.at, abs=0.01) and high == pytest.approx(found.end, abs=0.01)
-    assert 0.55 < found.at < 0.75 and found.end > 0.99
+    assert low == pytest.approx(result.at, abs=0.01) and high == pytest.approx(result.end, abs=0.01)
+    assert 0.55 < result.at < 0.75 and result.end > 0.99
     other = limit(lambda x: falling(1 - x))
     assert "is between 0.00" in other.sentence and other.end < 0.01 < 0.25 < other.at < 0.45
-    assert limit(lambda x: 1 - falling(x), is_unwanted=False).at == pytest.approx(found.at, abs=0.1)
+    assert limit(lambda x: 1 - falling(x), is_unwanted=False).at == pytest.approx(
+        result.at, abs=0.1
+    )
 
 
 @pytest.mark.parametrize(
@@ -43,18 +45,18 @@ def test_the_range_of_a_known_curve_is_rare_on_average():
 )
 def test_the_average_over_the_range_is_rare(chance):
     """It is larger in at most 2.5 % of repetitions."""
-    found = [limit(chance, rows=2400, seed=seed) for seed in range(300)]
-    known = [one for one in found if not one.why]
-    means = [chance(np.linspace(one.at, 1, 1000)).mean() for one in known]
-    assert len(known) > 150 and np.mean(np.array(means) < 0.05) >= 0.975
+    results = [limit(chance, rows=2400, seed=seed) for seed in range(300)]
+    limits = [result for result in results if not result.why]
+    means = [chance(np.linspace(result.at, 1, 1000)).mean() for result in limits]
+    assert len(limits) > 150 and np.mean(np.array(means) < 0.05) >= 0.975
 
 
 def best(chance, **options):
     """Return the ends of the best of twelve parts, and the interval of the share that fails."""
-    said = limit(chance, **options).sentence
-    said = said.replace("; whether fewer than 5 % do is not settled", "")
+    sentence = limit(chance, **options).sentence
+    settled_sentence = sentence.replace("; whether fewer than 5 % do is not settled", "")
     many, *ends = numbers(
-        r"Averaged over the best of # parts of power \(# to #\), # to # % fail\.", said
+        r"Averaged over the best of # parts of power \(# to #\), # to # % fail\.", settled_sentence
     )
     assert many == 12
     return ends
@@ -79,12 +81,12 @@ def test_the_interval_covers_the_average_of_the_best_part(least):
 
 def test_a_spike_within_the_range_denies_no_average():
     """At a few values all fail, where the range is rare on average."""
-    found = limit(lambda x: np.where(x > 0.9999, 1.0, np.where(x < 0.5, 1 - x, 0.01)), rows=12000)
-    assert found.at < 0.6 and " fail on average where " in found.sentence
+    result = limit(lambda x: np.where(x > 0.9999, 1.0, np.where(x < 0.5, 1 - x, 0.01)), rows=12000)
+    assert result.at < 0.6 and " fail on average where " in result.sentence
 
 
 @pytest.mark.parametrize(
-    ("chance", "said"),
+    ("chance", "sentence"),
     [
         (
             lambda x: 0.02 + 0.5 * np.sin(np.pi * x) + 0.3 * (x > 0.95),
@@ -97,8 +99,8 @@ def test_a_spike_within_the_range_denies_no_average():
         ),
     ],
 )
-def test_where_there_is_no_limit_a_sentence_says_so(chance, said):
-    assert limit(chance).sentence == said
+def test_where_there_is_no_limit_a_sentence_says_so(chance, sentence):
+    assert limit(chance).sentence == sentence
 
 
 def test_what_is_rare_everywhere_needs_no_limit():
@@ -111,15 +113,15 @@ def test_a_few_rows_settle_no_limit():
 
 def test_how_weak_the_motors_may_be():
     ds = locking(samples=1000)
-    found = answer(ds)
-    event = found.lead.events[0]
+    conclusions = answer(ds)
+    event = conclusions.lead.events[0]
     low, high = numbers(
         r"With 95 % confidence, more than 95 % succeed within 20 s on average where x4 is between"
         r" # and #\.",
         event.limited,
     )
     assert 0.25 < low < 0.45 and high > 0.99
-    assert event.limited in repr(found)
+    assert event.limited in repr(conclusions)
     key = f"answer/quantities/locking/events/{event.name}/limit/at"
     assert trace(ds, key)["value"] == event.limit.at
     assert summary(ds).loc["locking", "never"] == (ds["x4"].values <= 0.3).sum()
@@ -143,21 +145,23 @@ def test_no_side_is_unwanted_where_the_study_states_none():
 def test_one_part_that_alone_is_rare_is_a_range():
     common, rare = Estimate(0.5, 0.4, 0.6), Estimate(0.01, 0.0, 0.04)
     curve = EventCurve(np.array([0.0, 1.0, 2.0]), [common, rare])
-    said = limit_of(curve, "power", DisplayUnit(), "fail", True).sentence
-    assert said.endswith("fewer than 5 % fail on average where power is between 1 and 2.")
+    sentence = limit_of(curve, "power", DisplayUnit(), "fail", True).sentence
+    assert sentence.endswith("fewer than 5 % fail on average where power is between 1 and 2.")
 
 
 def test_a_value_is_a_limit_where_the_event_is_rare_at_it():
     grade = np.repeat([1.0, 2.0, 3.0], [600, 300, 100])
-    for worst, said in ((3.0, "at most 2.5"), (2.0, "at most 1.5")):
+    for worst, bound in ((3.0, "at most 2.5"), (2.0, "at most 1.5")):
         hits = (grade >= worst).astype(float)
-        found = limit_of(event_curve(hits, grade), "grade", DisplayUnit(), "fail", True)
-        assert found.sentence == f"With 95 % confidence, fewer than 5 % fail where grade is {said}."
+        result = limit_of(event_curve(hits, grade), "grade", DisplayUnit(), "fail", True)
+        assert (
+            result.sentence == f"With 95 % confidence, fewer than 5 % fail where grade is {bound}."
+        )
 
 
 def test_without_intervals_no_limit_is_denied():
-    shares = [Estimate(one) for one in (0.3, 0.1, 0.0, 0.0)]
-    found = limit_of(EventCurve(np.arange(5.0), shares), "power", DisplayUnit(), "fail", True)
-    assert found.sentence == (
+    shares = [Estimate(share) for share in (0.3, 0.1, 0.0, 0.0)]
+    result = limit_of(EventCurve(np.arange(5.0), shares), "power", DisplayUnit(), "fail", True)
+    assert result.sentence == (
         "Whether fewer than 5 % fail where power is between 3 and 4 is not settled."
     )

@@ -60,53 +60,55 @@ CASES = [all_failed, all_censored, none_ends, one_ends, one_row, all_alike, all_
 
 @pytest.mark.parametrize("case", CASES)
 def test_every_reader_gets_an_answer(case):
-    found = answer(case())
-    text = repr(found)
+    conclusions = answer(case())
+    text = repr(conclusions)
     assert not {"nan", "inf", "None"} & {*text.replace("(", " ").replace("%", " ").split()}
-    assert fragment(found).startswith('<div class="answer">')
-    json.dumps(answer_json(found), allow_nan=False)
+    assert fragment(conclusions).startswith('<div class="answer">')
+    json.dumps(answer_json(conclusions), allow_nan=False)
 
 
 def test_where_all_rows_fail_nothing_else_is_advised():
-    found = answer(all_failed())
-    assert found.lines[0] == "200 of 200 rows failed."
-    assert [one.rule for one in found.advice] == ["failed"] and not found.enough.sentence
+    conclusions = answer(all_failed())
+    assert conclusions.lines[0] == "200 of 200 rows failed."
+    assert [advice.rule for advice in conclusions.advice] == [
+        "failed"
+    ] and not conclusions.enough.sentence
 
 
 def test_an_event_beyond_the_horizon_is_not_settled_by_rows():
-    found = answer(all_censored())
-    assert found.lead.promise.sentence.endswith("last longer than 5 days.")
-    (one,) = found.advice
-    assert one.text == (
+    conclusions = answer(all_censored())
+    assert conclusions.lead.promise.sentence.endswith("last longer than 5 days.")
+    (advice,) = conclusions.advice
+    assert advice.text == (
         "More rows would not help: how many end within 10 days is not known: it is after the last"
         " observation."
     )
-    assert "is settled" not in repr(found)
+    assert "is settled" not in repr(conclusions)
 
 
 def test_where_none_ends_the_rows_are_enough():
-    found = answer(none_ends())
-    assert found.lead.first.sentence == "0 % (0 to 1.8 %) end within 10 days."
-    assert found.enough.sentence.startswith("The rows are enough: with another seed, 0 to ")
-    assert found.lead.earliest is None
+    conclusions = answer(none_ends())
+    assert conclusions.lead.first.sentence == "0 % (0 to 1.8 %) end within 10 days."
+    assert conclusions.enough.sentence.startswith("The rows are enough: with another seed, 0 to ")
+    assert conclusions.lead.earliest is None
 
 
 def test_a_single_life_has_the_unit_of_a_person():
-    found = answer(one_ends())
-    assert found.lead.earliest.first == "Row 0 (3 days) ends first."
+    conclusions = answer(one_ends())
+    assert conclusions.lead.earliest.first == "Row 0 (3 days) ends first."
 
 
 def test_one_row_settles_nothing():
-    found = answer(one_row())
-    assert found.enough.sentence.startswith("The rows are not enough to settle all of this.")
-    assert [one.rule for one in found.advice] == ["rows"]
+    conclusions = answer(one_row())
+    assert conclusions.enough.sentence.startswith("The rows are not enough to settle all of this.")
+    assert [advice.rule for advice in conclusions.advice] == ["rows"]
 
 
 def test_of_lives_that_are_all_alike_none_ends_first():
-    found = answer(all_alike())
-    assert found.lead.earliest is None and "again be 3 days" in found.enough.sentence
+    conclusions = answer(all_alike())
+    assert conclusions.lead.earliest is None and "again be 3 days" in conclusions.enough.sentence
 
 
 def test_an_output_that_no_row_has_is_left_out():
-    found = answer(all_undefined())
-    assert found.quantities == () and found.lines == ["All 200 rows were computed."]
+    conclusions = answer(all_undefined())
+    assert conclusions.quantities == () and conclusions.lines == ["All 200 rows were computed."]

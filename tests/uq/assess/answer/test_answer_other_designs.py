@@ -38,10 +38,10 @@ def tied():
 
 
 def test_an_input_that_leads_names_those_that_equal_it():
-    found = answer(tied())
-    assert found.lead.ranking.leader.inputs == ("x3",)
-    assert found.ties == "x4 equals x3 in every row."
-    assert found.ties in repr(found) and found.ties in fragment(found)
+    conclusions = answer(tied())
+    assert conclusions.lead.ranking.leader.inputs == ("x3",)
+    assert conclusions.ties == "x4 equals x3 in every row."
+    assert conclusions.ties in repr(conclusions) and conclusions.ties in fragment(conclusions)
     assert answer(linear(samples=200)).ties == ""
 
 
@@ -49,12 +49,12 @@ def test_screening_ranks_in_the_unit_of_the_output_and_says_what_it_cannot_promi
     ds = linear("morris", samples=10, replicates=4)
     ds = with_output(ds, "depth", 0.003 * ds["x4"].values ** 2 * (1 + ds["x1"].values))
     ds = asking(ds, outputs=["depth"])
-    found = answer(ds)
-    assert found.lead.promise is None and found.lead.range is None
+    conclusions = answer(ds)
+    assert conclusions.lead.promise is None and conclusions.lead.range is None
     assert re.fullmatch(
-        r"x4 contributes most: [\d.]+ µm \([\d.]+ to [\d.]+\)\.", found.lead.ranking.sentence
+        r"x4 contributes most: [\d.]+ µm \([\d.]+ to [\d.]+\)\.", conclusions.lead.ranking.sentence
     )
-    (rows,) = [one.text for one in found.advice if one.rule == "rows"]
+    (rows,) = [advice.text for advice in conclusions.advice if advice.rule == "rows"]
     assert rows == (
         "To know what can be promised: the rows of a 'morris' design do not follow the laws of the"
         " inputs; use 'monte-carlo'."
@@ -69,23 +69,23 @@ def piled(at):
 
 
 def test_no_bound_is_promised_that_no_row_can_exceed():
-    found = answer(piled(0.7)).lead.promise
+    promise = answer(piled(0.7)).lead.promise
     share = 100 * (linear(samples=400)["x4"].values >= 0.7).mean()
     text = f"{share:.1f} % of the rows share the largest value, 0.7 m"
-    assert found.sentence == f"{text}, at which values may be cut off."
-    assert found.basis == ""
+    assert promise.sentence == f"{text}, at which values may be cut off."
+    assert promise.basis == ""
     traced = uq.trace(piled(0.7), "answer/quantities/depth/promise/share_at_largest")
     assert traced["value"] == pytest.approx(share / 100)
-    assert [one["code"].rpartition(".")[2] for one in traced["estimators"]] == ["piles"]
+    assert [estimator["code"].rpartition(".")[2] for estimator in traced["estimators"]] == ["piles"]
     assert "do not exceed" not in repr(answer(piled(0.7)))
     assert "at least 95 % stay below" in answer(piled(1.0)).lead.promise.sentence
 
 
 def test_inputs_that_may_have_no_effect_are_alternatives():
     both = (Estimate(0.4), Estimate(0.3))
-    one = Contribution(("x_1", "x_2"), both, True, doubtful=("x_2",))
-    assert one.words == "x 1 or x 2" and one.sure == ("x_1",)
-    ranking = Ranking("y", "rbd-fast", contributions=(one,))
+    contribution = Contribution(("x_1", "x_2"), both, True, doubtful=("x_2",))
+    assert contribution.words == "x 1 or x 2" and contribution.sure == ("x_1",)
+    ranking = Ranking("y", "rbd-fast", contributions=(contribution,))
     assert ranking.sentence == "x 1 or x 2 may contribute most: 40 % and 30 %."
     assert Contribution(("x_1", "x_2"), both, True).words == "both xes"
 
@@ -101,7 +101,7 @@ def test_assumed_laws_and_values_are_listed():
             | {"source": "of a drawing"},
         },
     }
-    found = answer(computed(study_of(tables)))
-    assert found.assumptions[0] == "1 of 2 laws is assumed: rate."
-    assert found.assumptions[-1] == "No source says how well these laws are known: depth."
-    assert "What it assumes</summary><ul><li>1 of 2 laws" in fragment(found)
+    conclusions = answer(computed(study_of(tables)))
+    assert conclusions.assumptions[0] == "1 of 2 laws is assumed: rate."
+    assert conclusions.assumptions[-1] == "No source says how well these laws are known: depth."
+    assert "What it assumes</summary><ul><li>1 of 2 laws" in fragment(conclusions)

@@ -25,12 +25,12 @@ def lifetime():
 
 
 def test_a_contribution_has_size_and_direction(lifetime):
-    _, found = lifetime
-    first = found.lead.ranking.contributions[0]
+    _, conclusions = lifetime
+    first = conclusions.lead.ranking.contributions[0]
     assert first.inputs == ("rate",) and first.indices[0].low < 25 / 26 < first.indices[0].high
     (by,) = numbers("10 % more shortens it by # %", first.effect)  # exactly: depth over rate
     assert by == pytest.approx(100 - 100 / 1.1, abs=0.01)
-    assert found.lead.ranking.sentence.startswith("Rate contributes most: 9")
+    assert conclusions.lead.ranking.sentence.startswith("Rate contributes most: 9")
 
 
 def test_inputs_that_indices_do_not_tell_apart_are_named_together():
@@ -59,12 +59,12 @@ def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_i
     rng = np.random.default_rng(0)
     ds = linear("saltelli", samples=8, replicates=4)
     ds = with_output(ds, "wild", rng.standard_cauchy(ds.sizes["row"]).clip(-50, 50))
-    found = answer(asking(ds, outputs=["wild"]))
-    assert found.lead.ranking.leader is None and found.lead.ranking.rows_factor > 1
-    assert "not settled" in found.lead.ranking.sentence
-    (rows,) = [one for one in found.advice if one.rule == "rows"]
-    said = re.match(r"Compute (?:about|more than) ([\d ]+) rows instead of (\d+): ", rows.text)
-    assert int(said[1].replace(" ", "")) >= rows.rows - 1 > int(said[2])
+    conclusions = answer(asking(ds, outputs=["wild"]))
+    assert conclusions.lead.ranking.leader is None and conclusions.lead.ranking.rows_factor > 1
+    assert "not settled" in conclusions.lead.ranking.sentence
+    (rows,) = [advice for advice in conclusions.advice if advice.rule == "rows"]
+    match = re.match(r"Compute (?:about|more than) ([\d ]+) rows instead of (\d+): ", rows.text)
+    assert int(match[1].replace(" ", "")) >= rows.rows - 1 > int(match[2])
 
 
 def test_what_decides_that_an_angle_is_too_large_is_that_of_its_magnitude():

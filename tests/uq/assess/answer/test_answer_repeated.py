@@ -19,23 +19,23 @@ SEEDS = 2000
 def held(estimates, is_positive):
     """Return how often the estimate from one seed lies where that from another says."""
     both = zip(estimates[::2], estimates[1::2], strict=True)
-    ends = [(*found_again(one, is_positive), other.value) for one, other in both]
+    ends = [(*found_again(estimate, is_positive), other.value) for estimate, other in both]
     return np.mean([low <= value <= high for low, high, value in ends])
 
 
 def test_other_seeds_find_a_quantile_where_the_answer_says():
     lives = np.random.default_rng(1).lognormal(size=(SEEDS, 400))
-    found = [
+    estimates = [
         Estimate(order_statistics.quantile(x, 0.1), *order_statistics.quantile_interval(x, 0.1))
         for x in lives
     ]
-    assert 0.93 < held(found, True) < 0.98
+    assert 0.93 < held(estimates, True) < 0.98
 
 
 def test_other_seeds_find_a_share_where_the_answer_says():
     rows = np.random.default_rng(2).uniform(size=(SEEDS, 300)) < 0.2
-    found = [Estimate(float(hits.mean()), *share_interval(hits)) for hits in rows]
-    assert 0.93 < held(found, False) < 0.98
+    estimates = [Estimate(float(hits.mean()), *share_interval(hits)) for hits in rows]
+    assert 0.93 < held(estimates, False) < 0.98
 
 
 def test_an_estimate_without_an_interval_says_nothing_of_other_seeds():
@@ -45,17 +45,20 @@ def test_an_estimate_without_an_interval_says_nothing_of_other_seeds():
 
 
 def test_the_quantile_and_the_input_that_contributes_most_are_said():
-    _, found = lifetime()
+    _, conclusions = lifetime()
     low, high = numbers(
         r"With another seed, the 5 % quantile would lie between # and # days \(95 %\);"
         r" rate would again contribute most\.",
-        found.lead.repeated.sentence,
+        conclusions.lead.repeated.sentence,
     )
-    one, day = found.lead.promise.quantiles[0], 86400.0
-    ends = [one.value * (end / one.value) ** 2**0.5 / day for end in (one.low, one.high)]
+    quantile, day = conclusions.lead.promise.quantiles[0], 86400.0
+    ends = [
+        quantile.value * (end / quantile.value) ** 2**0.5 / day
+        for end in (quantile.low, quantile.high)
+    ]
     assert [low, high] == pytest.approx(ends, rel=5e-3)
-    said = found.lead.repeated.sentence
-    assert f"The rows are enough: w{said[1:]}" in found.lines
+    sentence = conclusions.lead.repeated.sentence
+    assert f"The rows are enough: w{sentence[1:]}" in conclusions.lines
 
 
 def test_where_nothing_is_promised_the_share_is_said():
@@ -76,22 +79,25 @@ def test_where_nothing_is_promised_the_share_is_said():
 def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
     """x4 explains 16/30 of the variance, x3 9/30."""
     studies = [linear(samples=100, seed=seed) for seed in range(40)]
-    found = [answer(asking(ds, outputs=["y"])).lead.ranking for ds in studies]
-    leaders = [one.contributions[0].inputs[0] for one in found if one.contributions]
-    named = [one.rivals for one in found if one.rivals]
+    rankings = [answer(asking(ds, outputs=["y"])).lead.ranking for ds in studies]
+    leaders = [ranking.contributions[0].inputs[0] for ranking in rankings if ranking.contributions]
+    named = [ranking.rivals for ranking in rankings if ranking.rivals]
     assert named and set(leaders) <= {"x4", "x3"}
-    assert np.mean([leader in one for leader in leaders for one in named]) > 0.95
+    assert np.mean([leader in names for leader in leaders for names in named]) > 0.95
 
 
 def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
     unit = DisplayUnit("rad s⁻¹")
-    one = PredictionInterval("the 5 % quantile", 153.8, 154.2, unit=unit)
-    assert one.sentence == "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
+    prediction = PredictionInterval("the 5 % quantile", 153.8, 154.2, unit=unit)
+    assert (
+        prediction.sentence
+        == "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
+    )
     index = Estimate(0.5, 0.4, 0.6)
     leader = Contribution(("a",), (index,), True)
     ranking = Ranking("y", "sobol", contributions=(leader,), rivals=("a_1", "b", "c"))
-    said = repeated_quantile(None, None, ranking).sentence
-    assert said == "With another seed, a 1, b or c would contribute most."
+    sentence = repeated_quantile(None, None, ranking).sentence
+    assert sentence == "With another seed, a 1, b or c would contribute most."
 
 
 def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
@@ -104,8 +110,14 @@ def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
         r"With another seed, the 5 % quantile would lie between # and # mm? \(95 %\).*",
         lead.repeated.sentence.replace("\N{NO-BREAK SPACE}", " "),
     )
-    one = lead.promise.quantiles[0]
-    assert one.value + 2**0.5 * (one.high - one.value) > 170 > 157 >= high >= one.high - 0.5
+    quantile = lead.promise.quantiles[0]
+    assert (
+        quantile.value + 2**0.5 * (quantile.high - quantile.value)
+        > 170
+        > 157
+        >= high
+        >= quantile.high - 0.5
+    )
 
 
 def test_quantiles_of_an_angle_are_said_to_be_of_magnitudes():

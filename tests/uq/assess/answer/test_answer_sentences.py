@@ -43,14 +43,14 @@ def days(lives, flags=None, **analysis):
 def test_lives_of_which_some_never_end():
     ended = np.linspace(1, 10, 150)
     ds = days(np.r_[ended, np.full(50, np.inf)], quantiles=[0.05, 0.5])
-    found = answer(ds).lead.range.sentence
+    sentence = answer(ds).lead.range.sentence
     pattern = r"5 % end within # days; median # days; # % \(# to # %\) never end\."
-    low, median, *never = numbers(pattern, found)
+    low, median, *never = numbers(pattern, sentence)
     exact = 100 * np.array(binomtest(50, 200).proportion_ci(method="wilson"))
     assert never == pytest.approx([25, *exact], abs=0.05)
-    known = summarised(ds)["outputs"]["life"]["quantiles"]
-    assert low == pytest.approx(known["0.05"]["value"] / DAY, rel=5e-3)
-    assert median == pytest.approx(known["0.5"]["value"] / DAY, rel=5e-3)
+    quantiles = summarised(ds)["outputs"]["life"]["quantiles"]
+    assert low == pytest.approx(quantiles["0.05"]["value"] / DAY, rel=5e-3)
+    assert median == pytest.approx(quantiles["0.5"]["value"] / DAY, rel=5e-3)
     assert 1 + 9 * 9 / 149 <= low <= 1 + 9 * 10 / 149  # between the tenth life and the next
     mostly = answer(days(np.r_[ended[:50], np.full(150, np.inf)])).lead
     assert re.search(r"; 75\.0 % \(\S+ to \S+ %\) never end\.$", mostly.range.sentence)
@@ -60,9 +60,9 @@ def test_lives_of_which_some_never_end():
 def test_lives_of_which_some_exceed_the_horizon():
     flags = np.arange(200) >= 150
     ds = days(np.where(flags, 10.0, np.linspace(1, 9, 200)), flags, thresholds={"life": 20 * DAY})
-    found = answer(ds).lead
-    assert "more than 5 % exceed the horizon" in found.range.sentence
-    (event,) = found.events
+    lead = answer(ds).lead
+    assert "more than 5 % exceed the horizon" in lead.range.sentence
+    (event,) = lead.events
     assert np.isnan(event.share.value)
     assert (
         event.sentence
@@ -74,17 +74,17 @@ def test_a_success_succeeds():
     times = np.linspace(1, 9, 200)
     ds = with_output(linear(samples=200), "locking", times, "lifetime")
     ds["locking"].attrs["success"] = "the motors have locked"
-    found = answer(asking(ds, outputs=["locking"], thresholds={"locking": 5.0})).lead
+    lead = answer(asking(ds, outputs=["locking"], thresholds={"locking": 5.0})).lead
     (latest,) = numbers(
-        r"With 95 % confidence, at least 95 % succeed within # s\.", found.promise.sentence
+        r"With 95 % confidence, at least 95 % succeed within # s\.", lead.promise.sentence
     )
     assert latest >= np.quantile(times, 0.95)
-    share, *_, at = numbers(r"# % \(# to # %\) succeed within # s\.", found.events[0].sentence)
+    share, *_, at = numbers(r"# % \(# to # %\) succeed within # s\.", lead.events[0].sentence)
     assert (share, at) == (pytest.approx(100 * (times < 5).mean(), abs=0.05), 5)
     never = np.r_[times[:150], np.full(50, np.inf)]
     ds = ds.assign(locking=ds["locking"].copy(data=never))
-    said = answer(asking(ds, outputs=["locking"])).lead.range.sentence
-    assert "5 % succeed within" in said and said.endswith("(19.5 to 31.4 %) never succeed.")
+    sentence = answer(asking(ds, outputs=["locking"])).lead.range.sentence
+    assert "5 % succeed within" in sentence and sentence.endswith("(19.5 to 31.4 %) never succeed.")
 
 
 def test_where_nothing_can_be_promised_a_probability_comes_first():
@@ -92,14 +92,14 @@ def test_where_nothing_can_be_promised_a_probability_comes_first():
     ds = linear(samples=200)
     ds = with_output(ds, "locking", times[np.argsort(np.argsort(ds["x4"].values))], "lifetime")
     ds["locking"].attrs["success"] = "the motors have locked"
-    found = answer(asking(ds, outputs=["locking"], thresholds={"locking": 20.0}))
-    (event,) = found.lead.events
-    assert found.lead.promise.sentence == "" and found.lead.first is event
-    assert found.lead.head[:2] == [event.sentence, event.decided_by] == found.lines[:2]
+    conclusions = answer(asking(ds, outputs=["locking"], thresholds={"locking": 20.0}))
+    (event,) = conclusions.lead.events
+    assert conclusions.lead.promise.sentence == "" and conclusions.lead.first is event
+    assert conclusions.lead.head[:2] == [event.sentence, event.decided_by] == conclusions.lines[:2]
     share, least, edge, most, same = numbers(
         r"# % \(.*\) succeed within 20 s. Decided most by x4: from # % where it is above #"
         r" to # % where it is below #\.",
-        " ".join(found.lines[:2]),
+        " ".join(conclusions.lines[:2]),
     )
     there = np.isfinite(times[np.argsort(np.argsort(ds["x4"].values))])
     assert share == pytest.approx(100 * there.mean(), abs=0.05)
@@ -114,7 +114,9 @@ def test_more_rows_are_not_advised_for_numerical_errors():
 
     def rows_advised(*outputs):
         return [
-            one.text for one in answer(asking(ds, outputs=outputs)).advice if one.rule == "rows"
+            advice.text
+            for advice in answer(asking(ds, outputs=outputs)).advice
+            if advice.rule == "rows"
         ]
 
     assert rows_advised("z", "z_error") == rows_advised("z")
@@ -142,12 +144,12 @@ def test_a_quantile_moves_where_no_probability_is_asked_for():
             name: {"distribution": "normal", "mean": 0.5, "sd": 0.05} for name in ("x1", "x4")
         },
     }
-    found = answer(computed(study_of(tables)))
-    (one,) = (each for each in found.advice if each.rule == "tighten")
+    conclusions = answer(computed(study_of(tables)))
+    (remedy,) = (each for each in conclusions.advice if each.rule == "tighten")
     before, after, low, high = numbers(
         r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
         r" from # to # \(# to #\)\.",
-        one.said,
+        remedy.said,
     )
     shares = np.hypot(0.05, 4 * 0.05), np.hypot(0.05, 4 * 0.025)  # of sd, as y = x1 + ... + 4 x4
     middle = 0.5 + 4 * 0.5 + (before - 0.5 - 4 * 0.5 + 1.645 * shares[0])
@@ -162,11 +164,11 @@ def test_nothing_is_advised_that_changes_no_digit():
 
 
 def test_samples_of_several_rows_bound_nothing_and_say_why():
-    found = answer(nested_result(samples=60)).lead
-    assert found.promise.basis.startswith(
+    lead = answer(nested_result(samples=60)).lead
+    assert lead.promise.basis.startswith(
         "No tolerance bound: the rows of one sample are not independent."
     )
-    assert np.isnan(found.promise.lower) and "cautiously" in found.promise.sentence
+    assert np.isnan(lead.promise.lower) and "cautiously" in lead.promise.sentence
 
 
 def test_a_ranking_of_lives_says_that_it_integrates_nothing():
@@ -187,22 +189,22 @@ def test_no_single_input_explains_much():
     ds = linear(samples=2000)
     values = 0.12 * (ds["x1"].values - 0.5) * 12**0.5 + rng.normal(size=2000)
     ds = asking(with_output(ds, "noisy", values), outputs=["noisy"], sensitivity=["rbd-fast"])
-    found = answer(ds).lead.ranking
-    leads = found.leader is not None and found.leads
+    ranking = answer(ds).lead.ranking
+    leads = ranking.leader is not None and ranking.leads
     assert not leads
-    assert found.sentence.startswith(("No single input", "Which inputs matter is not settled"))
+    assert ranking.sentence.startswith(("No single input", "Which inputs matter is not settled"))
 
 
 def test_a_study_that_names_the_regime_first_is_about_the_regimes(capsys):
     by_value = kinds(samples=64, analysis={"outputs": ["work", "regime"]})
     by_regime = kinds(samples=64, analysis={"outputs": ["regime", "work"]})
     for ds, first in ((by_value, False), (by_regime, True)):
-        found = answer(ds)
-        assert (found.regimes[0].sentence in found.lines[0]) == first
-        show_answer(found)
+        conclusions = answer(ds)
+        assert (conclusions.regimes[0].sentence in conclusions.lines[0]) == first
+        show_answer(conclusions)
         printed = capsys.readouterr().out
-        assert printed.startswith(found.regimes_sentence[:20]) == first
-        page = fragment(found)
+        assert printed.startswith(conclusions.regimes_sentence[:20]) == first
+        page = fragment(conclusions)
         places = [page.index(words) for words in ("slow", str(answer(ds).lead.words[1:]))]
         assert (places == sorted(places)) == first
 
@@ -212,15 +214,15 @@ def test_the_rarer_regimes_say_what_decides_them():
         Event(f"P(regime={name})", name, Estimate(share, share - 0.005, share + 0.005))
         for name, share in (("a", 0.8), ("b", 0.195), ("c", 0.005))
     )
-    found = Answer("", 100, 0, (), (often, seldom, rare), ())
-    assert [one.sentence for one in found.main_regimes] == [
+    conclusions = Answer("", 100, 0, (), (often, seldom, rare), ())
+    assert [regime.sentence for regime in conclusions.main_regimes] == [
         "80.0 % (79.5 to 80.5 %) a.",
         "19.5 % (19.0 to 20.0 %) b.",
     ]
     ds = kinds(samples=400)
     first, second = answer(ds).main_regimes
     assert (first.said, second.said) == ("slow", "fast")
-    assert [one.said for one in answer(ds).regime_causes] == ["fast"]
+    assert [cause.said for cause in answer(ds).regime_causes] == ["fast"]
     *_, never, below, always, above = numbers(
         r"# % \(# to # %\) fast\. Decided most by x1: from # % where it is below # m"
         r" to # % where it is above # m\.",
@@ -234,15 +236,17 @@ def test_the_rarer_regimes_say_what_decides_them():
 
 @pytest.mark.parametrize("method", ["saltelli", "shapley", "sobol"])
 def test_nothing_is_settled_without_intervals(method):
-    found = Findings(Result(linear(method, samples=512)))
-    (said,) = verdict(found)
-    assert said.startswith("Whether the rows are enough is not known: the rows of a")
-    assert said.endswith("set replicates = 8.")
-    own = answer(found.result)
-    rules = {one.rule: one.text for one in own.advice}
+    findings = Findings(Result(linear(method, samples=512)))
+    (sentence,) = verdict(findings)
+    assert sentence.startswith("Whether the rows are enough is not known: the rows of a")
+    assert sentence.endswith("set replicates = 8.")
+    conclusions = answer(findings.result)
+    rules = {advice.rule: advice.text for advice in conclusions.advice}
     assert "set replicates = 8" in rules["rows"] and "nothing" not in rules
-    ranking = own.lead.ranking
-    assert all(not one.effect for one in ranking.contributions)  # no direction is called unclear
+    ranking = conclusions.lead.ranking
+    assert all(
+        not contribution.effect for contribution in ranking.contributions
+    )  # no direction is called unclear
     if method == "saltelli":
         assert ranking.sentence.startswith("Which inputs matter is not settled: ST of x4 is 0.5")
         assert ranking.sentence.endswith(", without an interval.")

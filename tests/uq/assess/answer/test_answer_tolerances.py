@@ -25,8 +25,8 @@ def sum_of(deviations):
 
 
 def advised(ds):
-    (one,) = (each for each in answer(ds).advice if each.rule == "tighten")
-    return one
+    (remedy,) = (each for each in answer(ds).advice if each.rule == "tighten")
+    return remedy
 
 
 def quantile(deviations):
@@ -39,40 +39,40 @@ ALIKE = {"x2": 0.05, "x3": 0.062, "x4": 0.05}  # deviations of the terms: 0.1, 0
 
 
 def test_tolerances_that_help_about_as_much_are_named_together():
-    one = advised(sum_of(ALIKE))
+    advice = advised(sum_of(ALIKE))
     now, then, low, high = numbers(
         r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
         r" from # to # \(# to #\)\.",
-        one.said,
+        advice.said,
     )
     assert now == pytest.approx(quantile(ALIKE), abs=0.03)
     assert low < then < high and low < quantile(ALIKE | {"x4": 0.025}) < high
-    (then,) = numbers(r"x3 \(5 % quantile #\) would help about as much\.", one.also)
+    (then,) = numbers(r"x3 \(5 % quantile #\) would help about as much\.", advice.also)
     assert then == pytest.approx(quantile(ALIKE | {"x3": 0.031}), abs=0.03)
     sure, studied = numbers(
         "The lower end of the interval of the 5 % quantile would then be #; as studied, #.",
-        one.sure.promised,
+        advice.sure.promised,
     )
     assert studied < now < sure <= low
-    assert one.text == f"{one.said} {one.sure.promised} {one.also}"
+    assert advice.text == f"{advice.said} {advice.sure.promised} {advice.also}"
 
 
 def test_each_tolerance_has_its_line_in_the_report():
     ds = sum_of(ALIKE)
-    one = advised(ds)
-    assert {each.inputs for each in one.tolerances} == {("x2",), ("x3",), ("x4",)}
-    for each in one.tolerances:
+    advice = advised(ds)
+    assert {each.inputs for each in advice.tolerances} == {("x2",), ("x3",), ("x4",)}
+    for each in advice.tolerances:
         (name,) = each.inputs
         expected = quantile(ALIKE | {name: ALIKE[name] / 2})
         assert each.after.value == pytest.approx(expected, abs=0.03)
     page = fragment(answer(ds))
     assert page.count("<details>") == 2 and page.count('<th scope="row">') == 4
-    assert all(each.text(each.after) in page for each in one.tolerances)
+    assert all(each.text(each.after) in page for each in advice.tolerances)
 
 
 def test_one_tolerance_that_helps_most_stands_alone():
-    one = advised(sum_of({"x3": 0.02, "x4": 0.05}))
-    assert one.tightened.inputs == ("x4",) and one.also == ""
+    advice = advised(sum_of({"x3": 0.02, "x4": 0.05}))
+    assert advice.tightened.inputs == ("x4",) and advice.also == ""
 
 
 def test_the_tolerance_that_helps_most_need_not_be_that_of_the_leader():
@@ -80,7 +80,7 @@ def test_the_tolerance_that_helps_most_need_not_be_that_of_the_leader():
     ds = sum_of({"x3": 0.05, "x4": 0.05})
     x3, x4 = (ds[name].values - 0.5 for name in ("x3", "x4"))
     ds["y"].values[:] = 3 + np.where(x4 > 0, 8 * x4, x4) + 3 * x3
-    found = advised(ds)
-    gains = {each.inputs: each.gain for each in found.tolerances}
+    advice = advised(ds)
+    gains = {each.inputs: each.gain for each in advice.tolerances}
     assert answer(ds).lead.ranking.leader.inputs == ("x4",)
-    assert found.tightened.inputs == ("x3",) and gains["x3",] > 2 * gains["x4",]
+    assert advice.tightened.inputs == ("x3",) and gains["x3",] > 2 * gains["x4",]

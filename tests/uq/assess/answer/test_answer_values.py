@@ -30,19 +30,23 @@ def graded(samples=1000):
 
 
 @pytest.fixture(scope="module")
-def found():
+def conclusions():
     return answer(graded())
 
 
-def test_an_input_with_few_values_is_ranked(found):
-    (contribution,) = found.lead.ranking.contributions
+def test_an_input_with_few_values_is_ranked(conclusions):
+    (contribution,) = conclusions.lead.ranking.contributions
     assert contribution.inputs == ("x2",) and contribution.indices[0].value > 0.95
-    assert found.lead.ranking.with_effect.endswith("More raises it.")  # it has no small changes
-    assert [one.rule for one in found.advice][0] == "measure" and found.advice[0].inputs == ("x2",)
+    assert conclusions.lead.ranking.with_effect.endswith(
+        "More raises it."
+    )  # it has no small changes
+    assert [advice.rule for advice in conclusions.advice][0] == "measure" and conclusions.advice[
+        0
+    ].inputs == ("x2",)
 
 
-def test_the_probability_of_an_event_is_that_at_each_value(found):
-    (event,) = found.lead.events
+def test_the_probability_of_an_event_is_that_at_each_value(conclusions):
+    (event,) = conclusions.lead.events
     assert event.decided_by == (
         "Decided most by x2: from 0 % where it is below 0.25 to 100 % where it is above 0.25."
     )
@@ -92,10 +96,10 @@ def test_bounds_and_ranges_say_which_values_they_are_about():
 def test_what_the_rows_cannot_show_is_no_advice():
     """Half the scatter of a symmetric input leaves half of the values above the middle."""
     asked = {"thresholds": {"found": 0.0}, "wanted": {"found": "above"}}
-    found = answer(valued(lambda x, y, *_: x - 0.5 + 0.1 * y - 0.05, samples=1000, **asked))
-    (advice,) = [one for one in found.advice if one.rule == "tighten"]
+    whole = answer(valued(lambda x, y, *_: x - 0.5 + 0.1 * y - 0.05, samples=1000, **asked))
+    (advice,) = [remedy for remedy in whole.advice if remedy.rule == "tighten"]
     assert advice.tightened.what == "the 5 % quantile"
-    assert not any(one.may_stay for one in [advice.tightened, *advice.alike])
+    assert not any(tolerance.may_stay for tolerance in [advice.tightened, *advice.alike])
 
 
 def test_no_less_is_promised_than_now():
@@ -109,18 +113,18 @@ def test_no_less_is_promised_than_now():
 
 
 def test_an_estimate_without_interval_is_not_promised():
-    found = answer(linear(samples=20)).lead.promise.sentence
-    assert re.fullmatch(r"About 95 % stay above .*; about 95 % stay below .*\.", found)
+    sentence = answer(linear(samples=20)).lead.promise.sentence
+    assert re.fullmatch(r"About 95 % stay above .*; about 95 % stay below .*\.", sentence)
 
 
 def test_failed_rows_lie_beyond_what_could_then_be_promised():
     promise = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
     before, after = Estimate(18.0, 14.5, 21.0), Estimate(20.0, 15.0, 22.0)
-    one = TighterTolerance(("x1",), "the 5 % quantile", before, after, promise=promise)
-    assert "would then be 15 h; as studied" in one.promised
-    assert one.promised.endswith(", 14.5 h.")
+    tolerance = TighterTolerance(("x1",), "the 5 % quantile", before, after, promise=promise)
+    assert "would then be 15 h; as studied" in tolerance.promised
+    assert tolerance.promised.endswith(", 14.5 h.")
     promise = replace(promise, failed=(Estimate(low=13.7, high=21.0), None))
-    worst = replace(one, promise=promise, failed=Estimate(low=14.2, high=22.0))
+    worst = replace(tolerance, promise=promise, failed=Estimate(low=14.2, high=22.0))
     assert "would then be 14.2 h; as studied" in worst.promised
     assert worst.promised.endswith(", 13.7 h.")
     assert replace(worst, failed=Estimate(low=0.0, high=22.0)).promised == ""

@@ -19,8 +19,8 @@ def test_bounds_are_rounded_to_the_safe_side():
     assert rounded(1.18, -np.inf) == rounded(1.18, np.inf) == "1.18"
     assert rounded(-0.0012345, -np.inf) == "-0.00124"
     assert (rounded(5e-324), rounded(1.7976e308, np.inf)) == ("4.94e-324", "1.8e+308")
-    one = ToleranceBound(0.95, 0.95, np.nan, 1.1821, DisplayUnit("m"))
-    assert one.sentence == "With 95 % confidence, at least 95 % stay below 1.19 m."
+    bound = ToleranceBound(0.95, 0.95, np.nan, 1.1821, DisplayUnit("m"))
+    assert bound.sentence == "With 95 % confidence, at least 95 % stay below 1.19 m."
 
 
 def test_numbers_of_rows_are_rounded_up():
@@ -28,6 +28,6 @@ def test_numbers_of_rows_are_rounded_up():
 
 
 def test_thousands_are_written_out():
-    shown = [rounded(one) for one in (999.4, 999.6, 1234.0, -1500.0, 9994.0, 12345.0)]
+    shown = [rounded(value) for value in (999.4, 999.6, 1234.0, -1500.0, 9994.0, 12345.0)]
     assert shown == ["999", "1000", "1230", "-1500", "9990", "1.23e+04"]
     assert rounded(1120.4, np.inf) == "1130" and rounded(1120.4, -np.inf) == "1120"

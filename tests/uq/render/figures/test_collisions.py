@@ -17,11 +17,15 @@ from uq.result.result import Result
 def dressed(ds, model):
     """Give inputs and outputs the longest names of a machine, with its symbols and units."""
     parameters = [model.parameter(name) for name in model.parameter_names]
-    longest = sorted(parameters, key=lambda one: -len(one.meaning + one.symbol))
+    longest = sorted(parameters, key=lambda declared: -len(declared.meaning + declared.symbol))
     names = [name for name in ds.data_vars if ds[name].attrs.get("role") == "input"]
-    for name, one in zip(names, longest, strict=False):
-        ds[name].attrs |= {"long_name": one.meaning, "symbol": one.symbol, "units": one.unit}
-    meanings = sorted((one.meaning for one in model.outputs.values()), key=len)
+    for name, declared in zip(names, longest, strict=False):
+        ds[name].attrs |= {
+            "long_name": declared.meaning,
+            "symbol": declared.symbol,
+            "units": declared.unit,
+        }
+    meanings = sorted((output.meaning for output in model.outputs.values()), key=len)
     for name in ds.data_vars:
         if ds[name].attrs.get("role") == "output" and name != "regime":
             ds[name].attrs["long_name"] = meanings[-1]
@@ -29,12 +33,12 @@ def dressed(ds, model):
 
 
 def figures(ds):
-    found = Findings(Result(ds))
-    kinds_of = {name: one for name, one in FIGURES.items() if "running" not in one.needs}
-    for one in drawables(kinds_of, found):
-        figure = one.draw()
+    findings = Findings(Result(ds))
+    kinds_of = {name: entry for name, entry in FIGURES.items() if "running" not in entry.needs}
+    for picture in drawables(kinds_of, findings):
+        figure = picture.draw()
         lay_out(figure)
-        yield one.file, figure
+        yield picture.file, figure
 
 
 @pytest.mark.parametrize("model", [beam.MODEL, mole.MODEL, vibrator.MODEL], ids=lambda m: m.name)
@@ -55,11 +59,17 @@ def test_no_text_of_a_figure_by_regime_touches_another():
 @pytest.mark.parametrize("most", [9e4, 4e5, 3e7])
 def test_the_second_scale_of_a_life_touches_nothing(most):
     ds = with_output(linear(samples=100), "life", np.geomspace(1e3, most, 100), "lifetime")
-    (figure,) = (one for name, one in figures(asking(ds, outputs=["life"])) if "lifetime" in name)
+    (figure,) = (
+        drawing for name, drawing in figures(asking(ds, outputs=["life"])) if "lifetime" in name
+    )
     (second,) = figure.axes[0].child_axes
-    numbers = [one.get_window_extent() for one in second.get_yticklabels() if one.get_text()]
+    numbers = [
+        tick_label.get_window_extent()
+        for tick_label in second.get_yticklabels()
+        if tick_label.get_text()
+    ]
     label = second.yaxis.label.get_window_extent()
-    assert numbers and not any(one.overlaps(label) for one in numbers)
+    assert numbers and not any(number.overlaps(label) for number in numbers)
     assert label.x1 <= figure.bbox.x1
     assert not collisions(figure)
 
@@ -71,7 +81,7 @@ def test_thresholds_are_drawn_wherever_the_output_is():
     shown = dict(figures(ds))
     for name in ("histogram-psi", "scatter-psi"):
         (labels,) = [
-            [one.get_text() for one in legend.get_texts()] for legend in shown[name].legends
+            [text.get_text() for text in legend.get_texts()] for legend in shown[name].legends
         ]
         assert "threshold ±12°" in labels
     lines = [line.get_xdata()[0] for line in shown["histogram-psi"].axes[0].lines]
@@ -85,9 +95,9 @@ def test_a_histogram_draws_the_tolerance_bounds_on_the_sides_that_matter(wanted,
     asked = {"tolerance": {"coverage": 0.9, "confidence": 0.9}, "wanted": wanted}
     ds = asking(linear(samples=100), outputs=["y"], **asked)
     figure = dict(figures(ds))["histogram-y"]
-    found = uq.summary(ds).T["y"]
+    statistics = uq.summary(ds).T["y"]
     drawn = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_linestyle() == ":"]
-    assert drawn == [found[f"tolerance_{side}"] for side in sides]
+    assert drawn == [statistics[f"tolerance_{side}"] for side in sides]
     assert "dotted: tolerance bound" in figure.axes[0].get_title(loc="left")
 
 

@@ -20,7 +20,7 @@ from uq.result.result import Result
 
 def files(ds):
     """Return the names of the files of all figures of a result."""
-    return {one.file for one in drawables(plots.FIGURES, Findings(Result(ds)))}
+    return {picture.file for picture in drawables(plots.FIGURES, Findings(Result(ds)))}
 
 
 @pytest.mark.slow
@@ -84,8 +84,8 @@ def test_the_same_result_gives_the_same_bytes(tmp_path, ds, included):
     stems = {path.stem for path in once}
     assert included <= stems == files(ds)
     assert len(once) == 3 * len(stems)
-    for one, other in zip(once, again, strict=True):
-        assert one.read_bytes() == other.read_bytes()
+    for file, other in zip(once, again, strict=True):
+        assert file.read_bytes() == other.read_bytes()
 
 
 def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):

@@ -59,7 +59,7 @@ def test_labels_of_three_lines_keep_apart():
     boxes = [label.get_window_extent() for label in figure.axes[0].get_yticklabels()]
     boxes.sort(key=lambda box: box.y0)
     assert boxes[0].height > 2.5 * 8 * figure.dpi / 72  # three lines of 8 points
-    assert all(one.y1 <= other.y0 for one, other in pairwise(boxes))
+    assert all(upper.y1 <= other.y0 for upper, other in pairwise(boxes))
 
 
 def test_nothing_sticks_out_of_a_figure():
@@ -69,16 +69,16 @@ def test_nothing_sticks_out_of_a_figure():
     ds["angle"].attrs["long_name"] = "mean of psi_1 - psi_2 over one revolution"
     figure = plots.scatter(ds, "angle")
     lay_out(figure)
-    assert min(one.get_window_extent().x0 for one in figure.axes[0].get_yticklabels()) >= 0
+    assert min(text.get_window_extent().x0 for text in figure.axes[0].get_yticklabels()) >= 0
     ds = with_output(ds, "stroke", 0.00466 + 4e-5 * (y - y.mean()) / y.std())
     ds["stroke"].attrs["long_name"] = "half peak-to-peak displacement along xi of the deck end"
     ds["x4"].attrs["long_name"] = "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)"
     figure = plots.scatter(ds, "stroke")
     lay_out(figure)
     labels = [axes.xaxis.label.get_window_extent() for axes in figure.axes]
-    ends = [*(one.x0 for one in labels[1:]), figure.bbox.x1]
+    ends = [*(box.x0 for box in labels[1:]), figure.bbox.x1]
     room = 0.01 * figure.bbox.x1  # a browser's letters may be wider
-    assert all(one.x1 + room <= end for one, end in zip(labels, ends, strict=True))
+    assert all(box.x1 + room <= end for box, end in zip(labels, ends, strict=True))
 
 
 def test_labels_of_pairs_keep_apart():
@@ -89,8 +89,8 @@ def test_labels_of_pairs_keep_apart():
     figure = plots.pairs(ds)
     lay_out(figure)
     _, left, right = (axes for axes in figure.axes if axes.axison)
-    one, other = (axes.xaxis.label.get_window_extent() for axes in (left, right))
-    assert one.x1 < other.x0 and other.x1 <= figure.bbox.x1
+    box, other = (axes.xaxis.label.get_window_extent() for axes in (left, right))
+    assert box.x1 < other.x0 and other.x1 <= figure.bbox.x1
     figure = plots.pairs(kinds(samples=64))
     lay_out(figure)
     (axes,) = figure.axes
@@ -102,7 +102,7 @@ def test_long_numbers_have_room():
     figure = plots.histogram(ds, "stroke")
     lay_out(figure)
     boxes = [label.get_window_extent() for label in figure.axes[0].get_xticklabels()]
-    assert all(one.x1 < other.x0 for one, other in pairwise(boxes))
+    assert all(box.x1 < other.x0 for box, other in pairwise(boxes))
     axes = Figure().subplots()
     axes.set_xlim(7e4, 5.2e5)
     roomy(axes, ticks=3)
@@ -130,13 +130,13 @@ def test_colours_of_points_are_seen_in_the_legend():
 
 def test_short_entries_of_a_legend_stand_side_by_side():
     ds = kinds(samples=64)
-    found = []
+    is_side_by_side = []
     for figure in (plots.pairs(ds), plots.lifetime(ds, "life")):
         lay_out(figure)
         figure.canvas.draw()
         (legend,) = figure.legends
-        found.append([text.get_window_extent().y0 for text in legend.get_texts()])
-    side_by_side, below_each_other = found
+        is_side_by_side.append([text.get_window_extent().y0 for text in legend.get_texts()])
+    side_by_side, below_each_other = is_side_by_side
     assert len(set(side_by_side)) == 1 < len(side_by_side)
     assert len(set(below_each_other)) == len(below_each_other) == 4
 

@@ -12,22 +12,29 @@ from uq.result.result import Result
 
 
 def captions(ds):
-    return [one.caption for one in drawables(FIGURES, Findings(Result(ds)))]
+    return [picture.caption for picture in drawables(FIGURES, Findings(Result(ds)))]
 
 
 def test_captions_name_outputs_and_events_in_words():
-    found = captions(linear(samples=400, analysis={"thresholds": {"y": 6.0}}))
+    shown_captions = captions(linear(samples=400, analysis={"thresholds": {"y": 6.0}}))
     event = "Probability that the value of the function is above 6, over the input that decides it"
-    assert event in found
-    assert "Value of the function, against the inputs with which it varies most" in found
-    assert "Convergence: value of the function" in found
+    assert event in shown_captions
+    assert "Value of the function, against the inputs with which it varies most" in shown_captions
+    assert "Convergence: value of the function" in shown_captions
     of_kinds = captions(kinds(samples=200, analysis={"thresholds": {"life": 1.0}}))
-    assert not any("[" in one or "P(" in one or "_" in one for one in [*found, *of_kinds])
+    assert not any(
+        "[" in caption or "P(" in caption or "_" in caption
+        for caption in [*shown_captions, *of_kinds]
+    )
 
 
 def test_the_size_of_an_angle_is_what_exceeds_a_threshold():
-    found = captions(kinds(samples=400, analysis={"thresholds": {"angle": 0.5}}))
-    (event,) = (one for one in found if one.startswith("Probability that the magnitude of the "))
+    shown_captions = captions(kinds(samples=400, analysis={"thresholds": {"angle": 0.5}}))
+    (event,) = (
+        caption
+        for caption in shown_captions
+        if caption.startswith("Probability that the magnitude of the ")
+    )
     assert event.endswith(", over the input that decides it")
 
 
@@ -35,12 +42,15 @@ def test_outputs_of_one_meaning_have_pictures_that_do_not_share_identifiers():
     ds = with_output(linear(samples=100), "z", linear(samples=100)["x1"].values)
     ds["z"].attrs["long_name"] = ds["y"].attrs["long_name"]
     first, second = (
-        one
-        for one in pictures(Findings(Result(ds)), "results")
-        if one.caption == "Value of the function"
+        picture
+        for picture in pictures(Findings(Result(ds)), "results")
+        if picture.caption == "Value of the function"
     )
-    identifiers = [set(one.html.split('id="')[1:]) for one in (first, second)]
-    names = [{one.split('"')[0] for one in own} for own in identifiers]
+    identifiers = [set(picture.html.split('id="')[1:]) for picture in (first, second)]
+    names = [
+        {markup.split('"')[0] for markup in identifiers_of_picture}
+        for identifiers_of_picture in identifiers
+    ]
     assert names[0] and not names[0] & names[1]
 
 
@@ -54,7 +64,7 @@ def test_counts_of_rows_have_their_thousands_apart():
 def test_counts_along_an_axis_have_their_thousands_apart():
     figure = plots.convergence(linear(samples=4096), "y")
     lay_out(figure)
-    assert "1 024" in [one.get_text() for one in figure.axes[0].get_xticklabels()]
+    assert "1 024" in [tick_label.get_text() for tick_label in figure.axes[0].get_xticklabels()]
 
 
 def test_what_has_not_happened_is_said_as_one_says_it():
@@ -69,6 +79,6 @@ def test_what_has_not_happened_is_said_as_one_says_it():
 def test_dashes_of_marked_lines_can_be_seen_in_the_legend():
     figure = plots.convergence(kinds(samples=400), "life")
     (legend,) = figure.legends
-    dashed = next(one for one in legend.legend_handles if one.get_linestyle() == "--")
+    dashed = next(handle for handle in legend.legend_handles if handle.get_linestyle() == "--")
     start, *_, end = dashed.get_xdata()
     assert end - start - dashed.get_markersize() >= 12  # two dashes [points]

@@ -52,7 +52,7 @@ def test_inputs_over_decades_have_a_logarithmic_axis():
     ds["x1"] = ds["x1"].copy(data=1e-3 * 1e6 ** ds["x1"].values)
     first = plots.scatter(with_output(ds, "of_it", np.log(ds["x1"].values)), "of_it").axes[0]
     assert first.get_xscale() == "log"
-    (line,) = (one for one in first.lines if one.get_linestyle() == "-")
+    (line,) = (drawn_line for drawn_line in first.lines if drawn_line.get_linestyle() == "-")
     assert np.isfinite(line.get_ydata()).all()  # no part of the axis is empty
 
 
@@ -80,10 +80,10 @@ def test_the_interval_of_one_number_of_samples_is_seen():
 
 def test_limits_that_coincide_are_one_line_of_the_legend():
     ds = linear(samples=100, analysis={"sensitivity": ["rbd-fast"]})
-    found = sensitivities(Result(ds), "rbd-fast", "y").targets["y"]
-    (kind,) = found.indices.nulls
-    same = replace(found.indices, nulls={kind: Null(0.1, 0.1)})
-    (legend,) = plots.index_bars(ds, "y", found=replace(found, indices=same)).legends
+    result = sensitivities(Result(ds), "rbd-fast", "y").targets["y"]
+    (kind,) = result.indices.nulls
+    same = replace(result.indices, nulls={kind: Null(0.1, 0.1)})
+    (legend,) = plots.index_bars(ds, "y", found=replace(result, indices=same)).legends
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == ["95 % limit for an input without effect, or several", "alone (S1)"]
 

@@ -9,18 +9,13 @@ import xarray as xr
 from answered import lifetime
 from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
+from drawn import words
 
 from uq import plots
 from uq.render.figures.style import COLOURS, thinned
 from uq.render.figures.words import as_label
 
 DAY = 86400.0
-
-
-def words(figure):
-    """Return everything that is written in a figure."""
-    texts = [text.get_text() for text in figure.findobj(lambda artist: hasattr(artist, "get_text"))]
-    return " ".join(" ".join(texts).split())
 
 
 def lives(ds):
@@ -31,8 +26,8 @@ def lives(ds):
 
 def median(ds):
     """Return the median of the lives, and the ends of its interval [days]."""
-    found = summarised(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
-    return [found[end] / DAY for end in ("value", "low", "high")]
+    quantile = summarised(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
+    return [quantile[end] / DAY for end in ("value", "low", "high")]
 
 
 def test_estimates_converge_in_the_unit_of_their_axis():
@@ -62,9 +57,9 @@ def test_an_interval_is_spoken_of_where_there_is_one():
 def test_a_band_that_ends_before_its_line_is_said_to():
     ds = linear(samples=512)
     heavy = with_output(ds, "heavy", np.random.default_rng(1).pareto(1.5, 512))
-    said = " where the rows allow one"
-    assert said in words(plots.convergence(heavy, "heavy"))
-    assert said not in words(plots.convergence(ds, "y"))
+    sentence = " where the rows allow one"
+    assert sentence in words(plots.convergence(heavy, "heavy"))
+    assert sentence not in words(plots.convergence(ds, "y"))
 
 
 def test_elements_that_are_not_drawn_are_counted():
@@ -163,15 +158,15 @@ def test_of_many_points_the_ends_are_drawn():
 
 
 def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer():
-    ds, found = lifetime()
-    (event,) = found.lead.events
+    ds, conclusions = lifetime()
+    (event,) = conclusions.lead.events
     figure = plots.event_probability(ds, event.name)
     (panel,) = figure.axes
     assert panel.get_title("left") == f"Time until the depth is reached\nRows that {event.said}"
     assert event.decided_by.startswith("Decided most by rate")
     assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
     drawn = panel.patches[-1].get_data().values
-    assert np.allclose(drawn, [one.value for one in event.curve.shares])
+    assert np.allclose(drawn, [share.value for share in event.curve.shares])
     (legend,) = figure.legends  # which says what line and band are
     assert [text.get_text() for text in legend.get_texts()] == [
         "in parts of the input",

@@ -40,8 +40,8 @@ def test_elements_of_an_output_share_a_figure_and_differ():
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 4
     assert "left, depth 0.5, never" in words(figure)
     assert "censored" in words(figure)
-    one = plots.lifetime(kinds(samples=100), "life[side=left,depth=0.5]")
-    assert [line.get_linestyle() for line in one.axes[0].lines].count("-") == 1
+    lifetime_figure = plots.lifetime(kinds(samples=100), "life[side=left,depth=0.5]")
+    assert [line.get_linestyle() for line in lifetime_figure.axes[0].lines].count("-") == 1
 
 
 def test_histogram_shows_every_row_once():
@@ -70,7 +70,7 @@ def test_rows_at_the_ends_of_a_logarithmic_histogram_are_drawn():
 
 def drawn_shares(axes):
     """Return the heights of the steps of a histogram."""
-    (steps,) = (one for one in axes.patches if hasattr(one, "get_data"))
+    (steps,) = (patch for patch in axes.patches if hasattr(patch, "get_data"))
     return steps.get_data().values
 
 
@@ -79,8 +79,10 @@ def test_marks_lie_on_the_curve_that_integrates_what_scales_a_life():
     axes = plots.lifetime(ds, "life").axes[0]
     curve = next(line for line in axes.lines if len(line.get_xdata()) > 100)
     marks = next(line for line in axes.lines if line.get_marker() == "o")
-    known = summarised(ds)["outputs"]["life"]["b_lives"]
-    assert np.allclose(marks.get_xdata() * 86400, [known[n]["value"] for n in ("B1", "B10", "B50")])
+    b_lives = summarised(ds)["outputs"]["life"]["b_lives"]
+    assert np.allclose(
+        marks.get_xdata() * 86400, [b_lives[n]["value"] for n in ("B1", "B10", "B50")]
+    )
     on_it = np.interp(marks.get_xdata(), curve.get_xdata(), curve.get_ydata())
     assert np.allclose(on_it, marks.get_ydata(), atol=0.006)
 
@@ -158,7 +160,10 @@ def test_histograms_by_regime_add_up():
     ds = kinds(samples=300)
     figure = plots.histogram_by_regime(ds, "work[side=left]")
     slow, fast = figure.axes[0].patches
-    parts = [np.sum(one.get_data().values - one.get_data().baseline) for one in (slow, fast)]
+    parts = [
+        np.sum(histogram.get_data().values - histogram.get_data().baseline)
+        for histogram in (slow, fast)
+    ]
     assert sum(parts) == pytest.approx(1)
     assert parts[0] == pytest.approx(float((ds["regime"] == 0).mean()))
     assert "slow" in words(figure) and "Work rate [W]" in words(figure)
@@ -179,8 +184,8 @@ def test_a_mean_through_empty_space_is_no_line_but_one_between_few_rows_is():
     apart = np.r_[np.linspace(0, 1, 10), np.linspace(9, 10, 10)]
     assert _is_empty(apart, float(apart.mean()), axes)
     few = np.random.default_rng(1).uniform(0, 10, (200, 20))
-    found = [_is_empty(rows, float(rows.mean()), axes) for rows in few]
-    assert np.mean(found) < 0.02
+    is_empty = [_is_empty(rows, float(rows.mean()), axes) for rows in few]
+    assert np.mean(is_empty) < 0.02
     assert not _is_empty(apart, np.inf, axes)
 
 
@@ -191,8 +196,8 @@ def test_a_median_whose_interval_reaches_over_empty_space_is_no_line():
     apart = np.r_[np.linspace(0, 1, 10), np.linspace(9, 10, 10)]
     assert _is_torn(apart, *quantile_interval(apart, 0.5), axes)
     assert not _is_torn(apart, 0.0, 0.9, axes) and not _is_torn(apart, np.nan, np.nan, axes)
-    whole = [np.sort(one) for one in rng.uniform(0, 10, (200, 20))]
-    assert not any(_is_torn(one, *quantile_interval(one, 0.5), axes) for one in whole)
+    whole = [np.sort(rows) for rows in rng.uniform(0, 10, (200, 20))]
+    assert not any(_is_torn(rows, *quantile_interval(rows, 0.5), axes) for rows in whole)
 
 
 def test_scatter_leads_with_what_matters_and_shows_conditional_means():
@@ -225,7 +230,7 @@ def test_pairs_show_the_inputs_that_decide_the_regime():
     (points,) = axes.collections
     x, colours = points.get_offsets()[:, 0], points.get_facecolors()
     assert np.array_equal(x, ds["x1"].values)  # in the order of the rows: none covers the others
-    slow, fast = (set(map(tuple, colours[one])) for one in (x <= 0.5, x > 0.5))
+    slow, fast = (set(map(tuple, colours[part])) for part in (x <= 0.5, x > 0.5))
     assert len(slow) == len(fast) == 1 and slow != fast
     with pytest.raises(InputError, match="need a model with regimes and two uncertain inputs"):
         plots.pairs(linear())

@@ -41,17 +41,17 @@ def plain(no_other_figures):
 def found_in(ds):
     """Return what a result provides: heading -> title of an item -> item."""
     return {
-        one.heading.name: {item.title: item for item in one.items}
-        for one in chapters(Result(ds), "out.nc")
+        chapter.heading.name: {item.title: item for item in chapter.items}
+        for chapter in chapters(Result(ds), "out.nc")
     }
 
 
 def test_each_heading_names_the_document_that_it_follows(plain):
     words = plain(crossed())
-    assert list(CONTENTS) == [one.name for one in OUTLINE]
-    for one in OUTLINE:
-        assert all(any(name.startswith(known) for known in DOCUMENTS) for name in one.after)
-        assert words.count(f"{one.title} After {'; '.join(one.after)}.") == 1
+    assert list(CONTENTS) == [entry.name for entry in OUTLINE]
+    for entry in OUTLINE:
+        assert all(any(name.startswith(source) for source in DOCUMENTS) for name in entry.after)
+        assert words.count(f"{entry.title} After {'; '.join(entry.after)}.") == 1
     assert all(document in words for document in DOCUMENTS.values())
 
 
@@ -64,7 +64,7 @@ def test_it_claims_no_compliance(plain):
 @pytest.mark.parametrize("make", [crossed, lambda: kinds(samples=64), lambda: computed(nested())])
 def test_what_a_result_lacks_is_said(make, plain):
     ds = make()
-    found, words = found_in(ds), plain(ds)
+    items_by_chapter, words = found_in(ds), plain(ds)
     for chapter, title in (
         ("context", "Decision that it supports, and the rules that apply to it"),
         ("quantities", "Acceptance criteria"),
@@ -73,9 +73,9 @@ def test_what_a_result_lacks_is_said(make, plain):
         ("models", "Uncertainty of the form of the model"),
         ("conclusions", "Comparison with the acceptance criteria"),
     ):
-        assert not found[chapter][title].is_provided
+        assert not items_by_chapter[chapter][title].is_provided
         assert f"{title} Not provided." in words
-    levels = found["inputs"]["Variability between units, and what all units share"]
+    levels = items_by_chapter["inputs"]["Variability between units, and what all units share"]
     assert levels.is_provided == ("world" in ds)
     for chapter, title in (
         ("inputs", "Laws and their sources"),
@@ -83,13 +83,15 @@ def test_what_a_result_lacks_is_said(make, plain):
         ("uncertainty", "Estimate, standard uncertainty and coverage interval"),
         ("conclusions", "The answer"),
     ):
-        assert found[chapter][title].is_provided
+        assert items_by_chapter[chapter][title].is_provided
 
 
 def test_its_numbers_are_those_of_the_result(no_other_figures):
     ds = crossed()
-    found = found_in(ds)
-    (table,) = found["uncertainty"]["Estimate, standard uncertainty and coverage interval"].tables
+    items_by_chapter = found_in(ds)
+    (table,) = items_by_chapter["uncertainty"][
+        "Estimate, standard uncertainty and coverage interval"
+    ].tables
     (row,) = table.rows
     values = {name: cell.key for name, cell in zip(table.header, row, strict=True)}
     sound = ds["y"].values[(ds["status"].values == 0) & np.isin(ds["block"].values, [0, 5])]
@@ -99,7 +101,7 @@ def test_its_numbers_are_those_of_the_result(no_other_figures):
     assert values["to"] == pytest.approx(np.quantile(sound, 0.95), rel=0.02)
     assert (
         "1 of 384 rows failed; the study allows 10 %."
-        in found["propagation"]["Rows that could not be computed"].text[0]
+        in items_by_chapter["propagation"]["Rows that could not be computed"].text[0]
     )
     keys = set(re.findall(r'data-trace="(.*?)"', dossier(Result(ds), "out.nc")))
     assert {"outputs/y/mean", "status/ok", "outputs/y/thresholds/5.0/above"} <= keys
@@ -107,10 +109,12 @@ def test_its_numbers_are_those_of_the_result(no_other_figures):
 
 
 def test_a_design_without_statistics_says_what_it_lacks(plain):
-    found = found_in(linear("morris", 8))
-    uncertainty = found["uncertainty"]["Estimate, standard uncertainty and coverage interval"]
+    items_by_chapter = found_in(linear("morris", 8))
+    uncertainty = items_by_chapter["uncertainty"][
+        "Estimate, standard uncertainty and coverage interval"
+    ]
     assert not uncertainty.is_provided
-    assert found["sensitivities"]["Indices of y"].is_provided
+    assert items_by_chapter["sensitivities"]["Indices of y"].is_provided
     assert "Not provided" in plain(linear("morris", 8))
 
 
@@ -136,7 +140,7 @@ def test_it_is_shown_and_printed_without_complaint(browser, tmp_path, no_other_f
         browser.open(path, width=width)
         assert browser.value("document.documentElement.scrollWidth") <= width
         assert browser.complaints() == []
-        assert all(one.startswith(("file:", "data:")) for one in browser.requests())
+        assert all(address.startswith(("file:", "data:")) for address in browser.requests())
     headings = browser.value("[...document.querySelectorAll('main h2')].map(h => h.textContent)")
     assert headings[:2] == ["1. Context", "2. Information made available"]
     pdf = browser.pdf()
@@ -151,6 +155,6 @@ def test_a_design_without_statistics_is_not_advised_to_replicate(plain):
 
 
 def test_inputs_learnt_from_inspections_are_not_called_independent(plain):
-    said = "Given the inspections, the inputs need not be independent."
-    assert said in plain(update(wear(samples=2000), measured(5e5)))
-    assert said not in plain(linear())
+    sentence = "Given the inspections, the inputs need not be independent."
+    assert sentence in plain(update(wear(samples=2000), measured(5e5)))
+    assert sentence not in plain(linear())

@@ -70,28 +70,36 @@ def test_each_law_has_a_slider_or_a_reason():
 def test_densities_and_probabilities_are_those_of_python(asked, moved):
     for name, changes in CASES:
         x = np.linspace(0.25, 5.9, 40) if name != "integer-range" else np.arange(1.0, 7.0)
-        found = asked(
+        page_values = asked(
             f"(() => {{ const law = {in_page(name, changes)}.moved({moved[0]}, {moved[1]}),"
             f" x = Float64Array.from({json.dumps(x.tolist())});"
             " const shares = [...x].map(one => law.shares(one));"
             " return {args: law.args, logs: [...law.logDensities(x)].map(String),"
             " below: shares.map(one => one[0]), above: shares.map(one => one[1])} })()"
         )
-        law = law_of({"distribution": name} | changes | found["args"])
+        law = law_of({"distribution": name} | changes | page_values["args"])
         logs = log_density_between(law, x, *BOUNDS)
         np.testing.assert_allclose(
-            np.array(found["logs"], dtype=float), logs, rtol=1e-7, atol=1e-8, err_msg=name
+            np.array(page_values["logs"], dtype=float), logs, rtol=1e-7, atol=1e-8, err_msg=name
         )
         below = cdf_within(law, x, BOUNDS)
         inside = x < 5.99 if name != "integer-range" else x < 0  # its own ends lie between numbers
         np.testing.assert_allclose(
-            np.array(found["below"])[inside], below[inside], rtol=1e-8, atol=1e-12, err_msg=name
+            np.array(page_values["below"])[inside],
+            below[inside],
+            rtol=1e-8,
+            atol=1e-12,
+            err_msg=name,
         )
         np.testing.assert_allclose(
-            np.array(found["above"])[inside], 1 - below[inside], rtol=1e-6, atol=1e-11, err_msg=name
+            np.array(page_values["above"])[inside],
+            1 - below[inside],
+            rtol=1e-6,
+            atol=1e-11,
+            err_msg=name,
         )
         has_room = moved[0] < 1 or not {"lower", "edges"} & {*ARGUMENTS[name]}
-        assert (found["args"] != plain(name, changes)) == (
+        assert (page_values["args"] != plain(name, changes)) == (
             moved != (1, 0) and (has_room or name == "truncated-normal")
         )
 
@@ -113,11 +121,11 @@ def test_the_law_of_a_product_is_that_of_python(asked, terms):
     )
     places = np.linspace(python.breaks[0], python.breaks[-1], 201)
     inside = ", ".join(f"new LogTerm({in_page(name, {})}, {e})" for name, e in terms)
-    found = asked(
+    page_values = asked(
         f"(() => {{ const sum = sumOf([{inside}]);"
         f" return {json.dumps(places.tolist())}.map(t => sum.below(t)) }})()"
     )
-    np.testing.assert_allclose(found, python.below(places), atol=1e-9)
+    np.testing.assert_allclose(page_values, python.below(places), atol=1e-9)
 
 
 COLUMN = """(() => {{
@@ -164,12 +172,12 @@ def test_units_stand_beside_numbers(asked, unit, words):
 def test_arguments_of_laws_keep_the_digits_of_their_change(asked):
     assert asked("rounded(1e8 + 3.4567891e-4, 1e8)") == 1e8 + 3.456789e-4
     assert asked("rounded(0.8000000001, 1)") == 0.8
-    found = asked(
+    page_values = asked(
         "new Law({distribution: 'uniform', bounds: [null, null], truncate: null,"
         " args: {lower: 1e6, upper: 1e6 + 1e-3}}).moved(0.5, 0).args"
     )
-    assert found["lower"] == pytest.approx(1e6 + 2.5e-4, abs=1e-8)
-    assert found["upper"] == pytest.approx(1e6 + 7.5e-4, abs=1e-8)
+    assert page_values["lower"] == pytest.approx(1e6 + 2.5e-4, abs=1e-8)
+    assert page_values["upper"] == pytest.approx(1e6 + 7.5e-4, abs=1e-8)
 
 
 def test_a_law_that_leaves_no_row_is_refused(asked):
@@ -181,8 +189,8 @@ def test_a_law_that_leaves_no_row_is_refused(asked):
 def test_a_tail_that_begins_amid_equal_weights_has_the_same_shape(asked):
     normal = np.random.default_rng(0).standard_normal(500)
     in_steps = special.ndtr(np.round(-16 * (np.log(2) + 0.5 * normal) / 0.3) / 16)
-    found = asked(f"tailShape(Float64Array.from({in_steps.tolist()}))")
-    assert found == pytest.approx(tail_shape(in_steps))
+    page_values = asked(f"tailShape(Float64Array.from({in_steps.tolist()}))")
+    assert page_values == pytest.approx(tail_shape(in_steps))
 
 
 @pytest.mark.parametrize("hits", [2, 15, 27, 45, 180])
@@ -192,6 +200,6 @@ def test_intervals_of_means_that_few_rows_carry(asked, hits, heavy):
     numbers[:hits], weights[3:9] = 0.9, heavy
     rows = json.dumps({"count": 200, "independent": True, "students": []})
     weighed = f"new Weighed({rows}, Float64Array.from({weights.tolist()}), () => true)"
-    found = asked(f"{weighed}.share(Float64Array.from({numbers.tolist()}))")
+    page_values = asked(f"{weighed}.share(Float64Array.from({numbers.tolist()}))")
     expected = weighted_share(numbers, weights)
-    assert [found[key] for key in ("share", "low", "high")] == pytest.approx(expected.numbers)
+    assert [page_values[key] for key in ("share", "low", "high")] == pytest.approx(expected.numbers)

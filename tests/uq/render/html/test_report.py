@@ -45,8 +45,8 @@ ASKED = {
 
 
 def test_a_report_says_all_there_is_to_say(asked, text):
-    ds, found = asked, Page(text)
-    words = found.plain_words
+    ds, parsed = asked, Page(text)
+    words = parsed.plain_words
     for expected in (
         "kinds, version 1",
         "monte-carlo: independent rows",
@@ -74,19 +74,21 @@ def test_a_report_says_all_there_is_to_say(asked, text):
         assert expected in words, expected
     summary = re.search(r"angle ° ([0-9.]+)", words)
     assert float(summary[1]) == pytest.approx(np.degrees(np.nanmean(ds["angle"])), rel=1e-4)
-    drawn = found.tags.count("svg")
+    drawn = parsed.tags.count("svg")
     sections = {entry.section for entry in FIGURES.values()} - {""}
-    shown = [one for name in sections for one in drawables(FIGURES, Findings(Result(ds)), name)]
+    shown = [
+        picture for name in sections for picture in drawables(FIGURES, Findings(Result(ds)), name)
+    ]
     assert drawn == len(shown) >= 15
 
 
 def test_links_lead_somewhere_and_names_are_unique(text):
-    found = Page(text)
-    ids = [value for name, value in found.attributes if name == "id"]
+    parsed = Page(text)
+    ids = [value for name, value in parsed.attributes if name == "id"]
     assert len(ids) == len(set(ids))
-    links = {value for name, value in found.attributes if name == "href" and value[0] == "#"}
+    links = {value for name, value in parsed.attributes if name == "href" and value[0] == "#"}
     assert links and {link[1:] for link in links} <= set(ids)
-    used = re.findall(r"url\(#([^)]+)\)", str(found.attributes))
+    used = re.findall(r"url\(#([^)]+)\)", str(parsed.attributes))
     assert used and set(used) <= set(ids)
 
 
@@ -147,29 +149,29 @@ def test_where_all_rows_failed_the_report_says_why(no_other_figures):
     ids=["one-row", "one-of-every-kind", "morris", "saltelli", "sobol", "categories", "never"],
 )
 def test_what_is_missing_is_left_out_or_said(ds):
-    found = read(ds)
-    assert found.tags.count("section") >= 8
-    assert ("Regime, with" in found.plain_words) == ("regime" in ds)
+    parsed = read(ds)
+    assert parsed.tags.count("section") >= 8
+    assert ("Regime, with" in parsed.plain_words) == ("regime" in ds)
     for strange in ("nan", "None", "[]", "inf "):
         assert not re.search(
-            rf"(?<![a-z]){re.escape(strange)}(?![a-z])", found.words.split("cpu")[0]
+            rf"(?<![a-z]){re.escape(strange)}(?![a-z])", parsed.words.split("cpu")[0]
         )
 
 
 def test_all_that_is_said_of_an_output_stands_together(asked, text):
     sections = re.split("<section", text)[1:]
-    first = [one for one in sections if "life[side=left,depth=0.5]</small>" in one]
+    first = [section for section in sections if "life[side=left,depth=0.5]</small>" in section]
     assert len(first) == 1 and first[0].startswith(' id="output-1"')
     of_event = "Indices of P(life[side=left,depth=0.5] &lt; 1 s) by pawn"
     for expected in ("B10 is the time", "Probabilities", of_event, "Time to a depth, by regime"):
         assert expected in first[0], expected
     assert "an angle" not in first[0]
-    order = [re.search('id="([a-z-]+)', one)[1] for one in sections]
+    order = [re.search('id="([a-z-]+)', section)[1] for section in sections]
     assert order.index("explore") == 1 and order.index("inputs") > order.index("ended")
 
 
 @pytest.mark.parametrize(
-    ("source", "known"),
+    ("source", "expected"),
     [
         ("Knudsen & Massih 2002, Table 1: given, its exponent inferred", "given"),
         ("assumed: area 7.1e-5 m2 given, density 1e4 kg m-3 assumed", "assumed"),
@@ -182,5 +184,5 @@ def test_all_that_is_said_of_an_output_stands_together(asked, text):
         ("", ""),
     ],
 )
-def test_how_well_a_number_is_known_stands_in_its_source(source, known):
-    assert mark(source) == known
+def test_how_well_a_number_is_known_stands_in_its_source(source, expected):
+    assert mark(source) == expected

@@ -35,7 +35,7 @@ def test_a_report_is_shown_without_complaint_or_request(browser, report, width, 
     browser.open(report, width=width, dark=dark)
     picture = imread(io.BytesIO(browser.picture()))
     assert browser.complaints() == []
-    assert {re.match(r"(data:image|file:).*", one)[1] for one in browser.requests()} == {
+    assert {re.match(r"(data:image|file:).*", address)[1] for address in browser.requests()} == {
         "data:image",
         "file:",
     }
@@ -190,7 +190,7 @@ def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(bro
     place = "b => [b.getBoundingClientRect().left, b.getBoundingClientRect().width].join()"
     places = browser.value(f"{tables}.map(t => {bars}.map({place}))")
     signs = browser.value(f"{tables}.map(t => t.textContent).join(' ')").count("\u2212")
-    assert signs and all(len(set(one)) == 1 for one in places if one)
+    assert signs and all(len(set(start)) == 1 for start in places if start)
 
 
 def test_captions_of_wide_tables_stay_in_sight_on_a_phone(browser, report):
@@ -199,8 +199,10 @@ def test_captions_of_wide_tables_stay_in_sight_on_a_phone(browser, report):
     browser.value(f"{wide}.forEach(one => one.scrollLeft = 1e4)")
     ends = "(b => [b.left, b.right])(one.querySelector('caption').getBoundingClientRect())"
     scrolled = f"{wide}.filter(one => one.scrollLeft > 50).map(one => {ends})"
-    found = browser.value(scrolled)
-    assert found and all(0 <= left and right <= 400 for left, right in found), found
+    caption_ends = browser.value(scrolled)
+    assert caption_ends and all(0 <= left and right <= 400 for left, right in caption_ends), (
+        caption_ends
+    )
 
 
 def test_a_printed_answer_fills_its_columns(browser, report):

@@ -65,12 +65,12 @@ def test_names_from_a_file_are_text():
     ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
     ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
-    found = Page(page(Result(ds), f"{HOSTILE}.nc"))
+    parsed = Page(page(Result(ds), f"{HOSTILE}.nc"))
     ours = Page(page(Result(linear(samples=64)), "out.nc")).tags.count("script")
-    assert found.tags.count("script") == ours and "img" not in found.tags
-    assert not [name for name, _ in found.attributes if name.startswith("on")]
-    assert found.words.count(HOSTILE) >= 6
-    assert "\\u001b[31m" in found.words and "\x1b" not in found.words
+    assert parsed.tags.count("script") == ours and "img" not in parsed.tags
+    assert not [name for name, _ in parsed.attributes if name.startswith("on")]
+    assert parsed.words.count(HOSTILE) >= 6
+    assert "\\u001b[31m" in parsed.words and "\x1b" not in parsed.words
 
 
 @pytest.mark.slow

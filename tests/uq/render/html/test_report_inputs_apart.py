@@ -33,20 +33,27 @@ def test_inputs_of_the_brushed_rows_are_those_of_python(shown, design):
     rows = independent_rows(ds)
     chosen = (rows["y"].values >= low) & (rows["y"].values <= high)
     columns = independent_inputs(Result(rows))
-    found = browser.value(LINES.replace("NaN", "'NaN'"))
-    found = {name: np.array(numbers, dtype=float) for name, *numbers in found}
+    listed = browser.value(LINES.replace("NaN", "'NaN'"))
+    numbers_by_input = {name: np.array(numbers, dtype=float) for name, *numbers in listed}
     ranked = {name: ranks(values) for name, values in columns.items()}
     apart = inputs_apart(Result(rows), np.flatnonzero(chosen), ranked, replicates_of(rows))
-    for name, (median, others, mean, *_) in found.items():
+    for name, (median, others, mean, *_) in numbers_by_input.items():
         assert median == pytest.approx(np.median(columns[name][chosen]), rel=1e-12)
         assert others == pytest.approx(np.median(columns[name][~chosen]), rel=1e-12)
         assert mean == pytest.approx(ranked[name][chosen].mean(), rel=1e-12)
     if apart is None:
-        assert design == "one replicate" and np.isnan([one[3:] for one in found.values()]).all()
+        assert (
+            design == "one replicate"
+            and np.isnan([row[3:] for row in numbers_by_input.values()]).all()
+        )
         return
-    assert [one.name for one in apart] == list(found)[: len(apart)] and apart[0].name == "x4"
-    for one in apart:
-        assert found[one.name][3:] == pytest.approx((one.rank.low, one.rank.high), rel=1e-9)
+    assert [difference.name for difference in apart] == list(numbers_by_input)[
+        : len(apart)
+    ] and apart[0].name == "x4"
+    for difference in apart:
+        assert numbers_by_input[difference.name][3:] == pytest.approx(
+            (difference.rank.low, difference.rank.high), rel=1e-9
+        )
     heads = "[...document.querySelectorAll('.inputs-apart th[scope=col]')].map(h => h.innerText)"
     assert f"{chosen.sum()} chosen" in browser.value(heads)
     assert f"{(~chosen).sum()} others" in browser.value(heads)

@@ -37,19 +37,22 @@ def test_a_staircase_takes_few_characters_and_keeps_its_place():
     places = np.round(rng.uniform(-50, 300, (200, 2)), 6)
     places[1::2, 0] = places[::2, 0]
     drawn = shortened("M " + " \nL ".join(f"{x} {y}" for x, y in places))
-    here, found = np.zeros(2), []
+    here, points = np.zeros(2), []
     for kind, numbers in re.findall("([Mhvl])([^Mhvl]+)", drawn):
-        step = [float(one) for one in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
+        step = [float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
         step = {"h": [*step, 0.0], "v": [0.0, *step]}.get(kind, step)
         here = np.array(step) if kind == "M" else here + step
-        found.append(here)
-    assert np.abs(np.array(found) - places).max() < 0.0051
+        points.append(here)
+    assert np.abs(np.array(points) - places).max() < 0.0051
     assert shortened("M 0 0 C 1 2 3 4 5 6") == "M 0 0 C 1 2 3 4 5 6"
 
 
 def test_a_life_curve_of_many_rows_is_no_image():
     ds = with_output(linear(samples=4000), "life", np.linspace(1, 9, 4000) ** 3, "lifetime")
-    drawn = next(one for one in pictures(Findings(Result(asking(ds, outputs=["life"]))), "results"))
+    drawn = next(
+        picture_of_life
+        for picture_of_life in pictures(Findings(Result(asking(ds, outputs=["life"]))), "results")
+    )
     assert drawn.of.name == "life" and not drawn.is_image and len(drawn.html) < 100_000
 
 
@@ -72,6 +75,6 @@ def test_points_that_are_drawn_as_an_image_leave_the_text_of_their_figure_sharp(
 
 def test_of_an_output_without_any_value_nothing_is_drawn():
     ds = linear(samples=32, settings={"fail_above": -1.0})
-    found = read(ds)
-    assert "Failed rows: 32" in found.plain_words
-    assert found.tags.count("figure") == 1  # of the inputs
+    parsed = read(ds)
+    assert "Failed rows: 32" in parsed.plain_words
+    assert parsed.tags.count("figure") == 1  # of the inputs

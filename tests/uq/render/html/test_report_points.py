@@ -36,11 +36,11 @@ def test_a_copied_command_is_said_to_be_for_two_seconds(shown):
     browser.value("document.activeElement.click()")
     browser.painted()
     command = browser.value("document.querySelector('.card code').innerText")
-    said = "document.querySelector('.card [role=status]').innerText"
+    status_text = "document.querySelector('.card [role=status]').innerText"
     assert browser.value("window.clip") == command
-    assert browser.value(said) == "Copied"
+    assert browser.value(status_text) == "Copied"
     browser.value("window.later()")
-    assert browser.value(said) == ""
+    assert browser.value(status_text) == ""
 
 
 def test_a_card_takes_the_focus_from_the_keyboard_and_gives_it_back(shown):

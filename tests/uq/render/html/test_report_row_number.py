@@ -33,7 +33,9 @@ def test_a_number_opens_its_row(shown, size):
         ask(browser, str(number))
         card = browser.value(CARD)
         assert f"uq row 'a result.nc' {number}" in card and browser.value(HINT) == ""
-        assert all(f"{ds[one].values[number]:.6g}" in card for one in ("x1", "x2", "x3", "x4", "y"))
+        assert all(
+            f"{ds[name].values[number]:.6g}" in card for name in ("x1", "x2", "x3", "x4", "y")
+        )
     box = "document.querySelector('.card').getBoundingClientRect()"
     assert browser.value(f"{box}.top < innerHeight")
     browser.press("Escape")

@@ -23,11 +23,11 @@ def test_a_success_is_no_life_that_ends(shown):
     ds = linear(samples=100)
     ds = with_output(ds, "locking", ds["y"].values, "lifetime")
     ds["locking"].attrs["success"] = "the motors have locked"
-    said = shown(asking(ds, outputs=["locking"])).value(
+    text = shown(asking(ds, outputs=["locking"])).value(
         "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.innerText).join()"
     )
-    assert said.count("Share that has not yet succeeded") == 2 and "10\u00a0% quantile of" in said
-    assert "outlives" not in said and "B10" not in said
+    assert text.count("Share that has not yet succeeded") == 2 and "10\u00a0% quantile of" in text
+    assert "outlives" not in text and "B10" not in text
 
 
 def test_a_threshold_is_drawn_where_it_is_or_not_at_all(shown):
@@ -47,10 +47,10 @@ def test_inputs_are_called_as_in_the_answer(shown, symbol, html, plain):
     ds["x4"].attrs |= {"long_name": "a long explanation", "symbol": symbol}
     browser = shown(ds)
     for place in (".range span", ".tolerance[data-name=x4] span"):
-        found = browser.value(
+        words = browser.value(
             f"(one => [one.innerHTML, one.title])(document.querySelector('{place}'))"
         )
-        assert found == [html, "a long explanation"]
+        assert words == [html, "a long explanation"]
     options = browser.value("[...document.querySelectorAll('option')].map(o => o.textContent)")
     assert plain in options
     open_by_keyboard(browser)
@@ -143,17 +143,19 @@ def test_a_page_that_cannot_compute_with_its_rows_says_why(ds, why, no_other_fig
 
 
 def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path, no_other_figures):
-    found = [
+    records = [
         {"unit": "A", "output": "y", "kind": "measured", "time": 2.0, "value": 0.1, "sd": 1e-3},
         {"unit": "B", "output": "y", "kind": "above", "time": 2.0, "value": 7.0},
     ]
-    ds = weighted_rows().assign_attrs(inspections=json.dumps(found), model_error=0.2, new_rows=800)
+    ds = weighted_rows().assign_attrs(
+        inspections=json.dumps(records), model_error=0.2, new_rows=800
+    )
     text = unescape(page(Result(ds), "after.nc"))
     update = "uq update results/linear.nc inspections.csv -o after.nc --rows 800 --model-error 0.2"
     assert update in text.partition("uq run linear.toml")[2]
     given = text.partition("<h3>The inspections</h3>\n<pre>")[2].partition("</pre>")[0]
     (tmp_path / "inspections.csv").write_text(given)
-    assert read_inspections(tmp_path / "inspections.csv") == read_tables(found)
+    assert read_inspections(tmp_path / "inspections.csv") == read_tables(records)
     assert "inspections.csv" not in page(Result(linear(samples=4)), "a.nc")
 
 

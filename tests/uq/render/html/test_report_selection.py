@@ -41,12 +41,14 @@ def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
     assert everywhere == pytest.approx((hits.mean(), *share_interval(hits, part)), nan_ok=True)
     assert np.isnan(among[1]) == (design == "one replicate")
     element = next(elements_of(ds, ["y"]))
-    for rows, found in zip((chosen, hits | True), cells(browser)["quantile/0.1"], strict=True):
+    for rows, numbers_of_cell in zip(
+        (chosen, hits | True), cells(browser)["quantile/0.1"], strict=True
+    ):
         some = replace(element, values=element.values[rows], censored=element.censored[rows])
         expected = CountedRows(some, None if part is None else part[rows]).quantile(0.1)
-        assert found == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
-    said = browser.value("document.querySelector('.said').textContent")
-    assert said.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
+        assert numbers_of_cell == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
+    sentence = browser.value("document.querySelector('.said').textContent")
+    assert sentence.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
 
 
 def test_few_hits_have_the_exact_interval(shown):
@@ -73,14 +75,14 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     ds = kinds(samples=400, analysis={"thresholds": {"life": 1.0}})
     browser = shown(ds)
     life, censored = ds["life"].values[:, 0, 0], ds["life_censored"].values[:, 0, 0] == 1
-    known = ~np.isnan(life)
+    is_defined = ~np.isnan(life)
     drag_handle(browser, "life[side=left,depth=0.5]", 0, 1)
     (low, high) = ranges(browser)[1]
     count = "Number(document.querySelector('.said data').value)"
-    assert (life[known] >= low).sum() == browser.value(count) and high == np.inf
+    assert (life[is_defined] >= low).sum() == browser.value(count) and high == np.inf
     drag_handle(browser, "life[side=left,depth=0.5]", 1, 499)
     (low, high) = ranges(browser)[1]
-    ended = known & ~censored & (life >= low) & (life <= high)
+    ended = is_defined & ~censored & (life >= low) & (life <= high)
     assert ended.sum() == browser.value(count)
 
 
@@ -88,17 +90,19 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
 def test_censored_lives_have_the_numbers_of_python(shown, design):
     ds = kinds(*design, analysis={"thresholds": {"life": [1.4, 9.0]}})
     part = replicates_of(ds)
-    found = cells(shown(ds))
+    shown_cells = cells(shown(ds))
     first = next(elements_of(ds, ["life"]))
     for time in (1.4, 9.0):
         assert first.unknown_sides(time).any()
-        (here,) = found[f"{first.name}/{time:g}"]
+        (here,) = shown_cells[f"{first.name}/{time:g}"]
         assert here == pytest.approx(
             CountedRows(first, part).ended_by(time)[1].numbers, nan_ok=True
         )
-    for name, one in ((repr(p), CountedRows(first, part).life_quantile(p)) for p in (0.1, 0.5)):
-        (here,) = found[f"quantile/{name}"]
-        assert here == pytest.approx(one.numbers, nan_ok=True)
+    for name, quantile in (
+        (repr(p), CountedRows(first, part).life_quantile(p)) for p in (0.1, 0.5)
+    ):
+        (here,) = shown_cells[f"quantile/{name}"]
+        assert here == pytest.approx(quantile.numbers, nan_ok=True)
 
 
 def test_chips_leave_out_a_regime(shown):
@@ -107,8 +111,8 @@ def test_chips_leave_out_a_regime(shown):
     browser.value(
         "[...document.querySelectorAll('.chip')].find(c => c.innerText.startsWith('fast')).click()"
     )
-    found = cells(browser)
-    assert found["regime/fast"][0][0] == 0 and found["regime/slow"][0][0] == 1
+    shown_cells = cells(browser)
+    assert shown_cells["regime/fast"][0][0] == 0 and shown_cells["regime/slow"][0][0] == 1
     slow = (ds["regime"].values == 0).sum()
     assert browser.value("Number(document.querySelector('.said data').value)") == slow
     browser.value("document.querySelector('.clear').click()")

@@ -55,7 +55,7 @@ def lives(censored=0, **analysis):
 def results_of(ds, caption):
     """Return the one table whose caption begins so."""
     tables = result_tables(outcomes(Result(ds), summarise(Result(ds))))
-    (table,) = (one for one in tables if one.caption.startswith(caption))
+    (table,) = (results for results in tables if results.caption.startswith(caption))
     return table
 
 
@@ -151,16 +151,16 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
         )
     )
     (table,) = input_tables(Result(ds))
-    found = lines(table)
-    assert (found["x1"]["known"], found["x1"]["source"]) == ("fitted", "a book: fitted")
-    assert float(found["x1"]["95 %"]) == pytest.approx(0.95, abs=2e-3)
-    assert found["x2"]["law"] == "equals x1" and found["x2"]["50 %"] == ""
-    assert found["x4"]["law"] == "x1 times uniform: lower 0.4, upper 0.6"
-    assert float(found["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
+    rows = lines(table)
+    assert (rows["x1"]["known"], rows["x1"]["source"]) == ("fitted", "a book: fitted")
+    assert float(rows["x1"]["95 %"]) == pytest.approx(0.95, abs=2e-3)
+    assert rows["x2"]["law"] == "equals x1" and rows["x2"]["50 %"] == ""
+    assert rows["x4"]["law"] == "x1 times uniform: lower 0.4, upper 0.6"
+    assert float(rows["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
 
 
 @pytest.mark.parametrize(
-    ("units", "found", "texts"),
+    ("units", "quantiles", "texts"),
     [
         ("rad s-1", [156.742, 157.0, 157.258], ["156.74 rad s⁻¹", "157.00 rad s⁻¹"]),
         ("m", [2.09e-4, 2.5e-4, 2.91e-4], ["209 µm", "250 µm"]),
@@ -169,8 +169,8 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
         ("m s-1", [-1.8, -0.07, 1.79], ["-1.8 m s⁻¹", "-0.1 m s⁻¹"]),
     ],
 )
-def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):
-    cells = _quantiles("x", unit_for(units, typical(found)), np.array(found))
+def test_quantiles_of_an_input_can_be_told_apart(units, quantiles, texts):
+    cells = _quantiles("x", unit_for(units, typical(quantiles)), np.array(quantiles))
     assert [cell.text.replace("\u00a0", " ") for cell in cells][:2] == texts
 
 
@@ -240,8 +240,8 @@ def test_indices_are_ranked_beside_an_input_without_effect():
     names = [row[0].text for row in table.rows]
     nulls = ["(an input without effect)", "(largest of 4 such inputs)"]
     assert names == ["x4", "x3", "x2", "x1", *nulls]
-    one, largest = (float(row[1].text) for row in table.rows[-2:])
-    assert largest >= one
+    smaller, largest = (float(row[1].text) for row in table.rows[-2:])
+    assert largest >= smaller
 
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
@@ -254,19 +254,19 @@ def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
 
 def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
     ds = with_output(lives(), "life_error", np.full(64, 0.5 * DAY), "lifetime")
-    found = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
-    line = lines(found.table)["life"]
+    section = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
+    line = lines(section.table)["life"]
     assert (line["unit"], line["error of the rows"]) == ("days", "0.5")
     assert float(line["half-width of the interval"]) == pytest.approx(1.6, abs=0.1)
-    assert found.warnings == [] and found.refused == ""
+    assert section.warnings == [] and section.refused == ""
 
 
 def test_rows_less_exact_than_their_number_are_warned_of():
     ds = with_output(linear("latin-hypercube", 16, 4), "y_error", np.ones(64))
-    found = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
-    (warning,) = found.warnings
+    section = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
+    (warning,) = section.warnings
     assert warning.startswith("y: the rows' own error (1 1)")
-    assert sentence("no fewer samples") in found.refused and found.pictures == []
+    assert sentence("no fewer samples") in section.refused and section.pictures == []
 
 
 def test_numbers_of_a_kind_have_bars_on_one_scale():
@@ -279,7 +279,9 @@ def test_numbers_of_a_kind_have_bars_on_one_scale():
     ]
     table = HtmlTable("", ("",) * 5, [tuple(cells)])
     assert table.scales == {"share": (0.0, 1.0), "m": (-1.0, 4.0)}
-    of_two, of_less, of_share, none, never = (one.bar(table.scales) for one in cells)
+    of_two, of_less, of_share, none, never = (
+        cell_of_row.bar(table.scales) for cell_of_row in cells
+    )
     assert "left:20.0%;width:40.0%" in of_two and "left:40.0%;width:60.0%" in of_two  # with ends
     assert "left:0.0%;width:20.0%" in of_less and "bar-ends" not in of_less
     assert "left:0.0%;width:50.0%" in of_share and none == never == ""
@@ -287,10 +289,18 @@ def test_numbers_of_a_kind_have_bars_on_one_scale():
 
 def test_probabilities_and_quantiles_have_bars():
     ds = lives(thresholds={"life": [7 * DAY]})
-    scales = {one.scale for one in results_of(ds, "Probabilities").rows[0] if one.scale}
+    scales = {
+        cell_of_row.scale
+        for cell_of_row in results_of(ds, "Probabilities").rows[0]
+        if cell_of_row.scale
+    }
     assert scales == {"share"}
     table = results_of(ds, "Statistics")
-    marked = {h for h, one in zip(table.header, table.rows[0], strict=True) if one.scale == "s"}
+    marked = {
+        h
+        for h, cell_of_row in zip(table.header, table.rows[0], strict=True)
+        if cell_of_row.scale == "s"
+    }
     assert marked >= {"5 % quantile", "50 % quantile"} and "never" not in marked
 
 

@@ -90,17 +90,17 @@ def test_a_slider_finds_what_python_finds(shown, case):
     ds = scaled(laws, ranks, **design)
     browser = shown(ds)
     move(browser, name, 0.8, 0.3)
-    changes, found = asked_of_python(browser, ds)
+    changes, reweighted = asked_of_python(browser, ds)
     assert changes
-    outputs = what_if_json(found)["outputs"]
+    outputs = what_if_json(reweighted)["outputs"]
     here = cells(browser, "#tolerances")
     for output, at, side in (("life", "0.8", "below"), ("y", "0.5", "above")):
-        one = outputs[output]["thresholds"][at][side]
-        expected = [one[end] for end in ("value", "low", "high")]
+        estimate = outputs[output]["thresholds"][at][side]
+        expected = [estimate[end] for end in ("value", "low", "high")]
         assert here[f"{output}/{at}"][0] == pytest.approx(expected, rel=1e-7)
     assert here["life/0.8"][0] != pytest.approx(here["life/0.8"][1])
     worth = browser.value("document.querySelector('#tolerances .said data').value")
-    assert float(worth) == pytest.approx(found.effective_rows, rel=1e-7)
+    assert float(worth) == pytest.approx(reweighted.effective_rows, rel=1e-7)
 
 
 def test_too_few_rows_are_refused_as_in_python(shown):
@@ -110,9 +110,9 @@ def test_too_few_rows_are_refused_as_in_python(shown):
     browser.painted()
     with pytest.raises(RunError) as refused:
         asked_of_python(browser, ds)
-    said = browser.value("document.querySelector('#tolerances .said').innerText")
+    sentence = browser.value("document.querySelector('#tolerances .said').innerText")
     why = str(refused.value)
-    assert said == f"{why[0].upper()}{why[1:]}." and "Pareto k" in said
+    assert sentence == f"{why[0].upper()}{why[1:]}." and "Pareto k" in sentence
     assert browser.value("document.querySelector('#tolerances').innerText").count("Pareto k") == 1
     assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
 
@@ -152,13 +152,13 @@ def test_quantiles_and_their_intervals_are_those_of_python(browser, tmp_path, la
         moved = "".join(f"all.move({json.dumps(n)}, {a}, {b});" for n, (a, b) in moves.items())
         changes, *columns = browser.value(QUANTILES.replace("MOVES", moved))
         outputs = what_if_json(answer(Result(ds), dict(changes)))["outputs"]
-        for name, found in zip(("life", "y"), columns, strict=True):
-            for p, one in zip(("0.05", "0.5", "0.95"), found, strict=True):
+        for name, numbers_of_column in zip(("life", "y"), columns, strict=True):
+            for p, ends in zip(("0.05", "0.5", "0.95"), numbers_of_column, strict=True):
                 expected = outputs[name]["quantiles"][p]
                 for end in ("value", "low", "high"):
-                    known = np.nan if expected[end] is None else expected[end]
-                    here = np.nan if one[end] is None else one[end]
-                    assert here == pytest.approx(known, rel=1e-7, nan_ok=True), (name, p, end)
+                    reference = np.nan if expected[end] is None else expected[end]
+                    here = np.nan if ends[end] is None else ends[end]
+                    assert here == pytest.approx(reference, rel=1e-7, nan_ok=True), (name, p, end)
     assert browser.complaints() == []
 
 
@@ -184,10 +184,10 @@ def test_the_page_says_what_could_then_be_promised(shown):
     assert values == [now.lower] and text == now.sentence
     move(browser, "z", 0.8, 0.0)
     (then, before), text = promised("would then")
-    _, found = asked_of_python(browser, ds)
-    known = what_if_json(found)["outputs"]["life"]["quantiles"]["0.05"]
+    _, reweighted = asked_of_python(browser, ds)
+    quantile = what_if_json(reweighted)["outputs"]["life"]["quantiles"]["0.05"]
     assert before == pytest.approx(now.quantiles[0].low, rel=1e-7)
-    assert then == pytest.approx(known["low"], rel=1e-7)
+    assert then == pytest.approx(quantile["low"], rel=1e-7)
     shown_then = float(text.split("would then be ")[1].split()[0])
     assert shown_then <= then < shown_then * 1.01
     assert text.startswith("The lower end of the interval of the 5 % quantile would then be")
@@ -199,19 +199,19 @@ def test_failed_rows_lie_beyond_what_could_then_be_promised(shown, case):
     ds = scaled(laws)
     far = ds[name] > ds[name].quantile(0.98)
     ds = with_status(ds, np.flatnonzero(far), Status.RAISED)
-    ds = ds.assign({one: ds[one].where(~far) for one in ("life", "y")})
+    ds = ds.assign({output: ds[output].where(~far) for output in ("life", "y")})
     browser = shown(ds)
     move(browser, name, 0.8, 0.0)
-    _, found = asked_of_python(browser, ds)
-    known = what_if_json(found)["outputs"]["life"]["quantiles"]["0.05"]
-    assert known["failed_low"] < known["low"]
+    _, reweighted = asked_of_python(browser, ds)
+    quantile = what_if_json(reweighted)["outputs"]["life"]["quantiles"]["0.05"]
+    assert quantile["failed_low"] < quantile["low"]
     cells = "[...document.querySelectorAll('#tolerances .promised data')]"
     for _ in range(100):
         browser.painted()
         then = browser.value(f"{cells}.map(one => Number(one.value))")
         if len(then) == 2:
             break
-    assert then[0] == pytest.approx(known["failed_low"], rel=1e-7)
+    assert then[0] == pytest.approx(quantile["failed_low"], rel=1e-7)
 
 
 CURVES = """(() => { const all = new Reweighting(rows); MOVES
@@ -249,8 +249,8 @@ def test_curves_and_their_intervals_are_those_of_python(browser, tmp_path, desig
                     expected = share_interval(element.values > at, part)
                 else:
                     expected = rows.outliving(at).numbers[1:]
-                found = np.array([low, high], dtype=float)  # null stands for NaN
-                assert found == pytest.approx(expected, rel=1e-6, abs=1e-9, nan_ok=True)
+                ends_of_band = np.array([low, high], dtype=float)  # null stands for NaN
+                assert ends_of_band == pytest.approx(expected, rel=1e-6, abs=1e-9, nan_ok=True)
             middle = len(curve["at"]) // 2
             share = rows.outliving(curve["at"][middle]).value
             assert curve["share"][middle] == pytest.approx(share, abs=2e-3)

@@ -60,14 +60,16 @@ def check(ds, verb, options=None, every=1):
     assert paths
     for path in paths:
         key = key_of(*path, verb=verb, options=options)
-        found = traced(Result(ds), key)
+        traced_number = traced(Result(ds), key)
         entry = value_at(whole, path)
         wanted = entry if isinstance(entry, dict) else {"value": entry}
-        assert found.equal and found.key == key
-        assert found.numbers.items() <= wanted.items()
-        assert all(one.does for one in found.estimators)
-        if entry is not None and not all(one.code.endswith(COMPARED) for one in found.estimators):
-            assert any(one.sources for one in found.estimators), key
+        assert traced_number.equal and traced_number.key == key
+        assert traced_number.numbers.items() <= wanted.items()
+        assert all(estimator.does for estimator in traced_number.estimators)
+        if entry is not None and not all(
+            estimator.code.endswith(COMPARED) for estimator in traced_number.estimators
+        ):
+            assert any(estimator.sources for estimator in traced_number.estimators), key
 
 
 @pytest.mark.parametrize(
@@ -124,16 +126,21 @@ def test_weighted_rows_are_traced_to_estimators_of_weighted_rows(make, path, est
     what_if, *others = traced(Result(ds), key + path).estimators
     assert what_if.code.endswith("what_if") and others[0].code.endswith(estimator)
     plain = (
-        [one.code for one in traced(Result(ds), path).estimators] if "effective" not in path else []
+        [step.code for step in traced(Result(ds), path).estimators]
+        if "effective" not in path
+        else []
     )
-    assert not {one.code for one in others} & {*plain}
+    assert not {function.code for function in others} & {*plain}
 
 
 def test_numbers_of_a_design_without_statistics_are_traced():
     check(linear("morris", 8), "summary")
-    found = traced(Result(linear("morris", 8)), "outputs/y/mean")
-    assert found.numbers == {"value": None} and found.rows_used == found.rows == 40
-    assert found.notes == (
+    traced_number = traced(Result(linear("morris", 8)), "outputs/y/mean")
+    assert (
+        traced_number.numbers == {"value": None}
+        and traced_number.rows_used == traced_number.rows == 40
+    )
+    assert traced_number.notes == (
         "no statistics: the rows of a 'morris' design do not follow the laws of"
         " the inputs; see 'uq sensitivity'",
     )
@@ -142,9 +149,9 @@ def test_numbers_of_a_design_without_statistics_are_traced():
 def test_the_error_of_the_rows_is_that_of_the_rows_used():
     ds = crossed()
     ds = with_output(ds, "y_error", np.where(ds["block"] == 1, 1e6, ds["x1"]))
-    found = traced(Result(ds), "convergence/outputs/y/own_error")
+    traced_number = traced(Result(ds), "convergence/outputs/y/own_error")
     used = ds["x1"].values[np.isin(ds["block"], [0, 5])]
-    assert found.equal and found.numbers["value"] == pytest.approx(used.mean())
+    assert traced_number.equal and traced_number.numbers["value"] == pytest.approx(used.mean())
     for key in ("answer/enough/own_error", "answer/enough/sampling_error"):
         answered = traced(Result(with_output(ds, "y_error", 10 * ds["x1"].values)), key)
         assert answered.equal and answered.rows_used == len(used)
@@ -152,16 +159,16 @@ def test_the_error_of_the_rows_is_that_of_the_rows_used():
 
 def test_a_ranking_of_samples_with_several_rows_says_which_it_rests_on():
     ds = computed(nested(samples=200))
-    known = answer_json(answer(ds))["quantities"]
+    quantities = answer_json(answer(ds))["quantities"]
     name, first = next(
-        (name, one["ranking"]["contributions"][0]["inputs"])
-        for name, one in known.items()
-        if one["ranking"]["contributions"]
+        (name, quantity["ranking"]["contributions"][0]["inputs"])
+        for name, quantity in quantities.items()
+        if quantity["ranking"]["contributions"]
     )
     key = key_of("quantities", name, *_CONTRIBUTION, next(iter(first)), verb="answer")
-    (said,) = api.trace(ds, key)["notes"]
+    (note,) = api.trace(ds, key)["notes"]
     assert (
-        said == f"the index rests on {ds.attrs['samples']} of these rows, the first of each sample"
+        note == f"the index rests on {ds.attrs['samples']} of these rows, the first of each sample"
     )
 
 
@@ -182,8 +189,11 @@ def test_values_of_options_may_have_commas():
 
 def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
     ds = linear("fast", 65, 2)
-    found = traced(Result(ds), "convergence/outputs/y/sampling_error")
-    assert found.equal and found.numbers["value"] == api.enough(ds).loc["y", "sampling"]
+    traced_number = traced(Result(ds), "convergence/outputs/y/sampling_error")
+    assert (
+        traced_number.equal
+        and traced_number.numbers["value"] == api.enough(ds).loc["y", "sampling"]
+    )
 
 
 @pytest.mark.parametrize("every", [60, pytest.param(9, marks=pytest.mark.slow)])
@@ -197,19 +207,19 @@ def test_numbers_of_an_inspected_unit_are_traced_and_equal(every):
 
 def keys_in(text):
     """Return the keys that a page shows; a sentence may have several."""
-    found = re.findall(r'data-trace="(.*?)"', text, re.DOTALL)
-    return [key for several in found for key in html.unescape(several).split("\n")]
+    keys = re.findall(r'data-trace="(.*?)"', text, re.DOTALL)
+    return [key for several in keys for key in html.unescape(several).split("\n")]
 
 
 @pytest.mark.slow
 def test_the_numbers_of_each_sentence_lead_to_themselves():
     ds = kinds(samples=400, analysis=ASKED)
-    found = api.answer(ds)
-    text = found._repr_html_()
+    conclusions = api.answer(ds)
+    text = conclusions._repr_html_()
     keys = keys_in(text)
-    assert {f"answer/quantities/{found.lead.name}/{part}" for part in ("promise", "range")} < {
-        *keys
-    }
+    assert {
+        f"answer/quantities/{conclusions.lead.name}/{part}" for part in ("promise", "range")
+    } < {*keys}
     assert any("/share" in key for key in keys) and any("/contributions/" in key for key in keys)
     for key in keys:
         assert traced(Result(ds), key).equal, key
@@ -232,14 +242,18 @@ def test_every_number_of_a_report_leads_to_itself(no_other_figures):
 
 def test_the_rows_are_those_that_the_number_rests_on():
     ds = crossed()
-    found = traced(Result(ds), "outputs/y/quantiles/0.5")
+    traced_number = traced(Result(ds), "outputs/y/quantiles/0.5")
     independent = np.isin(ds["block"].values, [0, 5])
-    assert (found.rows_used, found.rows) == (independent.sum(), len(independent)) == (128, 384)
-    assert found.which == "blocks A, B: 0 to 378 by 6, 5 to 383 by 6"
-    numbers = [n for run in found.runs for n in range(run.first, run.last + 1, run.step)]
+    assert (
+        (traced_number.rows_used, traced_number.rows)
+        == (independent.sum(), len(independent))
+        == (128, 384)
+    )
+    assert traced_number.which == "blocks A, B: 0 to 378 by 6, 5 to 383 by 6"
+    numbers = [n for run in traced_number.runs for n in range(run.first, run.last + 1, run.step)]
     assert sorted(numbers) == np.flatnonzero(independent).tolist()
     lost = int(ds["status"].values[independent].astype(bool).sum())
-    assert found.states == {"with a value": 128 - lost, "failed": lost}
+    assert traced_number.states == {"with a value": 128 - lost, "failed": lost}
     whole = (ds["status"].values.reshape(-1, 6) == 0).all(axis=1).sum()
     states = traced(Result(ds), "sensitivity/outputs/y/S1/x1").states
     assert states["in groups with a value in each row"] == 6 * whole
@@ -251,14 +265,14 @@ def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
     uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")
     summary = strict_json(uq("summary", "out.nc", "--json").out)
     entry = summary["outputs"]["life"]["quantiles"]["0.5"]
-    found = strict_json(uq("trace", "out.nc", "outputs/life/quantiles/0.5", "--json").out)
+    document = strict_json(uq("trace", "out.nc", "outputs/life/quantiles/0.5", "--json").out)
     ds = api.open_result("out.nc")
-    assert entry.items() <= found.items() and found["equal"] is True
-    assert found["again"] == entry
-    assert "Hyndman" in found["estimators"][0]["sources"][0]
-    assert found["rows"]["used"] == 64
-    assert (found["seed"], found["code"]) == (5, ds.attrs["code"])
-    assert found["versions"]["numpy"] == np.__version__ and found["versions_here"] == {}
+    assert entry.items() <= document.items() and document["equal"] is True
+    assert document["again"] == entry
+    assert "Hyndman" in document["estimators"][0]["sources"][0]
+    assert document["rows"]["used"] == 64
+    assert (document["seed"], document["code"]) == (5, ds.attrs["code"])
+    assert document["versions"]["numpy"] == np.__version__ and document["versions_here"] == {}
     shown = uq("trace", "out.nc", "outputs/life/quantiles/0.5").out
     assert repr(entry["value"]) in shown and "Computed again from these rows: equal" in shown
     assert max(map(len, shown.splitlines())) <= 80
@@ -294,8 +308,10 @@ def test_neither_the_model_nor_its_code_is_needed(uq, write_study, no_other_figu
     uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
     ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
     for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
-        found = trace_json(traced(Result(ds), key))
-        assert found["equal"] and found["code"] == "0" and "numpy" in found["versions_here"]
+        document = trace_json(traced(Result(ds), key))
+        assert (
+            document["equal"] and document["code"] == "0" and "numpy" in document["versions_here"]
+        )
     write_result(ds, Path("gone.nc"))
     assert uq("report", "gone.nc", "--dossier").code == uq("report", "gone.nc").code == 0
 
@@ -331,8 +347,8 @@ def test_a_number_of_a_large_result_is_traced_in_seconds(key):
 def test_names_with_a_slash_have_keys_of_their_own():
     ds = with_output(linear(), "a/b", linear()["y"].values)
     ds = with_output(ds, "a", linear()["x1"].values)
-    found = traced(Result(ds), "outputs/a~1b/mean")
-    assert found.equal and found.numbers["value"] == linear()["y"].values.mean()
+    traced_number = traced(Result(ds), "outputs/a~1b/mean")
+    assert traced_number.equal and traced_number.numbers["value"] == linear()["y"].values.mean()
     with pytest.raises(InputError, match="no such key 'outputs/a/b/mean'; did you mean"):
         traced(Result(ds), "outputs/a/b/mean")
 
@@ -370,11 +386,11 @@ def test_a_mistyped_key_is_one_line_with_the_nearest(key, words):
 
 def test_a_result_without_a_sound_row_is_traced_too():
     ds = linear(settings={"fail_above": 0.0, "fail_how": "raise"})
-    found = trace_json(traced(Result(ds), "outputs/y/mean"))
-    assert found["value"] is None and found["equal"]
-    assert found["rows"]["states"] == {"with a value": 0, "failed": 64}
+    document = trace_json(traced(Result(ds), "outputs/y/mean"))
+    assert document["value"] is None and document["equal"]
+    assert document["rows"]["states"] == {"with a value": 0, "failed": 64}
     assert traced(Result(ds), "status/raised").numbers == {"value": 64}
-    json.dumps(found, allow_nan=False)
+    json.dumps(document, allow_nan=False)
 
 
 def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, write_study):
@@ -382,9 +398,11 @@ def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, writ
     check(ds, "answer", every=101)
     check(crossed(), "answer", every=17)
     key = "answer/quantities/life[side=left,depth=0.5]/promise"
-    found, said = traced(Result(ds), key).numbers, api.answer(ds).quantities
-    promise = next(one for one in said if one.name == "life[side=left,depth=0.5]").promise
-    assert (found["lower"], found["sentence"]) == (promise.lower, promise.sentence)
+    numbers, quantities = traced(Result(ds), key).numbers, api.answer(ds).quantities
+    promise = next(
+        quantity for quantity in quantities if quantity.name == "life[side=left,depth=0.5]"
+    ).promise
+    assert (numbers["lower"], numbers["sentence"]) == (promise.lower, promise.sentence)
     uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")
     whole = strict_json(uq("summary", "out.nc", "--json").out)
     entry = whole["answer"]["quantities"]["life"]["range"]
