@@ -112,10 +112,10 @@ def fit(rate: Array, relative: Array) -> tuple[Array, Array]:
         level += change / max(1.0, largest)
         if largest < _CONVERGED:
             break
-    level[change < _STILL_FALLING] = -_NEVER
     windows = np.pad(relative**2, _NEIGHBOURS, mode="edge")
     noise = np.lib.stride_tricks.sliding_window_view(windows, 2 * _NEIGHBOURS + 1).mean(axis=1)
     noise *= (_residual(rate, level) ** 2).sum() / ((1 - np.diag(hat)) * noise).sum()
+    level[change < _STILL_FALLING] = -_NEVER
     return level, _product(hat * noise, hat)
 
 
