@@ -29,7 +29,7 @@ class AverageEffect:
     unit : DisplayUnit
         Of `by`: ``%`` for relative changes, ``percentage points`` for probabilities.
     verbs : tuple of str
-        What a fall and a rise of the target is called.
+        What a fall and a rise of the target are called.
     """
 
     direction: int = 0
@@ -43,12 +43,12 @@ class AverageEffect:
         """Return direction and size in words, of an input with this name."""
         if self.direction == 0:
             return f"{name} has no clear direction" if name else "no clear direction"
-        verb, of = self.verbs[self.direction > 0], f" {name}" if name else ""
+        verb, of_input = self.verbs[self.direction > 0], f" {name}" if name else ""
         if not self.step or not self.by.has_interval:
-            return f"more{of} {verb}"
+            return f"more{of_input} {verb}"
         low, high = sorted(map(abs, (self.by.low, self.by.high)))
         step = f"{self.step} ({self.amount})" if self.amount else self.step
-        text = f"{step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
+        text = f"{step} more{of_input} {verb} by {self.unit.text(abs(self.by.value))}"
         if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
             return text
         return f"{text} ({self.unit.bare_between(low, high)})"
@@ -91,29 +91,29 @@ class Contribution:
     @property
     def sure(self) -> tuple[str, ...]:
         """The inputs that have more effect than one without."""
-        return tuple(one for one in self.inputs if one not in self.doubtful)
+        return tuple(name for name in self.inputs if name not in self.doubtful)
 
     @property
     def value(self) -> float:
         """The largest index."""
-        return max(one.value for one in self.indices)
+        return max(index.value for index in self.indices)
 
     @property
     def size(self) -> str:
         """The indices with their intervals; shares in per cent, not beyond 0 and 100."""
-        texts = [self._size(one) for one in self.indices]
+        texts = [self._size(index) for index in self.indices]
         return " and ".join(texts) if len(texts) < 3 else f"at most {texts[0]} each"
 
-    def _size(self, one: Estimate) -> str:
+    def _size(self, index: Estimate) -> str:
         if self.share_of_variance:
-            value, low, high = (min(max(end, 0.0), 1.0) for end in one.numbers)
+            value, low, high = (min(max(end, 0.0), 1.0) for end in index.numbers)
             text = f"{100 * value:.0f} %"
             ends = f"{100 * low:.0f} to {100 * high:.0f} %"
         elif self.unit.name:
-            text, ends = self.unit.text(one.value), self.unit.bare_between(one.low, one.high)
+            text, ends = self.unit.text(index.value), self.unit.bare_between(index.low, index.high)
         else:
-            text, ends = f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}"
-        return text + (f" ({ends})" if one.has_interval else "")
+            text, ends = f"{index.value:.2f}", f"{index.low:.2f} to {index.high:.2f}"
+        return text + (f" ({ends})" if index.has_interval else "")
 
     @property
     def effect(self) -> str:
@@ -124,7 +124,7 @@ class Contribution:
             return self.changes[0].sentence()
         names = (called_together([name]) for name in self.inputs)
         each = zip(self.changes, names, strict=True)
-        return "; ".join(one.sentence(name) for one, name in each)
+        return "; ".join(effect.sentence(name) for effect, name in each)
 
 
 @dataclass(frozen=True)
@@ -136,8 +136,8 @@ class Ranking:
     target, method : str
     kind : str
         Key of the index that ranks.
-    what : str
-        What the index is, such as a share of the variance.
+    index_meaning : str
+        Meaning of the index, such as a share of the variance.
     contributions : tuple of Contribution
         The largest first; only those that exceed inputs without effect.
     reason : str
@@ -148,8 +148,9 @@ class Ranking:
         Whether it is settled that no input contributes measurably.
     rivals : tuple of str
         Inputs of which one would contribute most with another seed, with 95 %; none if not known.
-    of : str
-        Whose share an index is: ``its variance``; "" of another index, and of an event.
+    share_of : str
+        The variance that an index is a share of: ``its variance``; "" of other indices and of
+        events.
     unexplained : Estimate
         Share of the variance that no single input explains, where inputs are ranked by what each
         explains alone.
@@ -164,13 +165,13 @@ class Ranking:
     target: str
     method: str
     kind: str = ""
-    what: str = ""
+    index_meaning: str = ""
     contributions: tuple[Contribution, ...] = ()
     reason: str = ""
     rows_factor: float = float("nan")
     is_flat: bool = False
     rivals: tuple[str, ...] = ()
-    of: str = ""
+    share_of: str = ""
     unexplained: Estimate = NOTHING
     runner_up: float = 0.0
     totals: Mapping[str, float] = field(default_factory=dict)
@@ -184,8 +185,8 @@ class Ranking:
     @property
     def leads(self) -> bool:
         """Whether what contributes most contributes much."""
-        one = self.leader
-        if one is None or (one.share_of_variance and one.value < SMALL):
+        leader = self.leader
+        if leader is None or (leader.share_of_variance and leader.value < SMALL):
             return False
         return self.of_event or not self.may_be_overturned
 
@@ -239,13 +240,13 @@ class Ranking:
         text = f"No single input explains {share}"
         if not self.totals:
             return f"{text}: interactions could change the order; {self.remedy}."
-        first = [(name, one) for name, one in self.totals.items()][:2]
-        named = joined([f"{called(name)} {100 * min(one, 1.0):.0f} %" for name, one in first])
+        first = [(name, total) for name, total in self.totals.items()][:2]
+        named = joined([f"{called(name)} {100 * min(total, 1.0):.0f} %" for name, total in first])
         return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
 
     @property
     def _of(self) -> str:
-        return f" of {self.of}" if self.of else ""
+        return f" of {self.share_of}" if self.share_of else ""
 
     @property
     def with_effect(self) -> str:

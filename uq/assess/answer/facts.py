@@ -73,7 +73,7 @@ class Answer:
     @property
     def main_regimes(self) -> tuple[Event, ...]:
         """The regimes that are not rare."""
-        return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
+        return tuple(regime for regime in self.regimes if regime.share.value >= RARE)[:MOST_REGIMES]
 
     @property
     def asked_events(self) -> tuple[Event, ...]:
@@ -85,43 +85,49 @@ class Answer:
     @property
     def events(self) -> list[Event]:
         """All events, those of the regimes last."""
-        return [one for own in self.quantities for one in own.events] + [*self.regimes]
+        return [event for quantity in self.quantities for event in quantity.events] + [
+            *self.regimes
+        ]
 
     @property
     def regimes_sentence(self) -> str:
         """The shares of the main regimes; "" where there is one at most."""
-        shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
+        shares = [f"{share_text(regime.share)} {regime.predicate}" for regime in self.main_regimes]
         return f"{', '.join(shares)}." if shares else ""
 
     @property
     def regime_causes(self) -> list[Event]:
         """The main regimes of which is known what decides them; the first, the rest, only alone."""
-        known = [
-            one
-            for one in self.main_regimes
-            if one.ranking is not None and one.ranking.leader is not None
+        ranked = [
+            regime
+            for regime in self.main_regimes
+            if regime.ranking is not None and regime.ranking.leader is not None
         ]
-        others = [one for one in known if one is not self.main_regimes[0]]
-        return others or known
+        others = [regime for regime in ranked if regime is not self.main_regimes[0]]
+        return others or ranked
 
     @property
     def lines(self) -> list[str]:
         """The answer in a few sentences."""
         lead = self.lead
-        found = [] if not self.failed and lead else [self.rows_sentence]
-        regimes = [one.with_cause for one in self.main_regimes]
+        sentences = [] if not self.failed and lead else [self.rows_sentence]
+        regimes = [regime.with_cause for regime in self.main_regimes]
         of_lead = []
         if lead is not None:
-            of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
-        own = [*self.level_lines, self.enough.sentence]
+            of_lead = [*lead.head, *(event.with_cause for event in lead.others)]
+        general = [*self.level_lines, self.enough.sentence]
         if self.regimes_first:
-            found += [*regimes, self.mixing.sentence, *own, *of_lead]
+            sentences += [*regimes, self.mixing.sentence, *general, *of_lead]
         else:
-            found += [*of_lead, *own, *regimes]
-        found += [self.starts_alike, *([] if lead is None else [lead.ranking_sentence]), self.ties]
+            sentences += [*of_lead, *general, *regimes]
+        sentences += [
+            self.starts_alike,
+            *([] if lead is None else [lead.ranking_sentence]),
+            self.ties,
+        ]
         if lead is not None and lead.earliest is not None:
-            found += lead.earliest.lines
-        return [*filter(None, found), *(one.text for one in self.advice)]
+            sentences += lead.earliest.lines
+        return [*filter(None, sentences), *(advice.text for advice in self.advice)]
 
     @property
     def level_lines(self) -> list[str]:

@@ -44,11 +44,11 @@ def halvings(result: Result, inputs: Sequence[str]) -> dict[str, dict[str, float
     inputs : sequence of str
     """
     laws = result.study.uncertain
-    found = {}
+    arguments = {}
     for name in inputs:
         law = laws[name]
-        found[name] = {} if isinstance(law, Tied) else halved(law)
-    return found if all(found.values()) else {}
+        arguments[name] = {} if isinstance(law, Tied) else halved(law)
+    return arguments if all(arguments.values()) else {}
 
 
 def halvings_in_words(result: Result, changes: dict[str, dict[str, float]]) -> str:

@@ -55,18 +55,18 @@ class VarianceComponents:
     ----------
     target : str
         What they are shares of, as `uq.levels` names it.
-    of : str
-        What is decided: ``its scatter``, ``whether it is periodic``.
+    subject : str
+        The quantity or question decided: ``its scatter``, ``whether it is periodic``.
     variance : str
         Whose shares they are: ``the variance of its logarithm``.
-    levels : tuple of Level
-        Those on which something varies, the largest share first.
+    levels : tuple of VarianceComponent
+        Levels on which something varies, the largest share first.
     another : Estimate or None
         Probability that a repeat ends in another regime, of a target that is one.
     """
 
     target: str
-    of: str
+    subject: str
     variance: str
     levels: tuple[VarianceComponent, ...]
     another: Estimate | None = None
@@ -82,12 +82,16 @@ class VarianceComponents:
         """Which level decides, with its share."""
         first, rest = self.levels[0], self.levels[1:]
         if self.leader is None:
-            shares = [f"{one.words} {share_text(one.share)}" for one in self.levels]
-            return f"No level alone decides {self.of}: of {self.variance}, {', '.join(shares)}."
+            shares = [
+                f"{component.words} {share_text(component.share)}" for component in self.levels
+            ]
+            return (
+                f"No level alone decides {self.subject}: of {self.variance}, {', '.join(shares)}."
+            )
         named = f" ({first.inputs_named})" if first.inputs else ""
         share = f"{share_text(first.share)} of {self.variance}"
-        least = [f"{one.words} {share_text(one.share)}" for one in rest]
-        text = f"{first.words}{named} decides {self.of}: {share}"
+        least = [f"{component.words} {share_text(component.share)}" for component in rest]
+        text = f"{first.words}{named} decides {self.subject}: {share}"
         return sentence(", ".join([text, *least]))
 
     @property
@@ -99,7 +103,7 @@ class VarianceComponents:
 
 
 def levels_of(
-    findings: Findings, target: str, of: str, ranking: Ranking | None = None
+    findings: Findings, target: str, subject: str, ranking: Ranking | None = None
 ) -> VarianceComponents | None:
     """Return which level decides a target; None where that is not known.
 
@@ -108,41 +112,49 @@ def levels_of(
     findings : Findings
     target : str
         Of an element, such as ``life``, or of an event.
-    of : str
-        What is decided, in words.
+    subject : str
+        The quantity or question decided, in words.
     ranking : Ranking, optional
         Of the inputs: a level names first those that contribute most.
     """
     if not findings.result.is_nested or findings.result.has_weights:
         return None
-    known = findings.levels
-    name = next((one for one in known.outputs if target in (one, split_name(one)[1])), None)
+    decomposition = findings.levels
+    name = next(
+        (label for label in decomposition.outputs if target in (label, split_name(label)[1])), None
+    )
     if name is None:
         return None
-    words = _words(findings, known.inputs, known.units)
-    shares = known.outputs[name].shares
-    ranked = () if ranking is None else [n for one in ranking.contributions for n in one.sure]
+    words = _words(findings, decomposition.inputs, decomposition.units)
+    shares = decomposition.outputs[name].shares
+    ranked = (
+        ()
+        if ranking is None
+        else [n for contribution in ranking.contributions for n in contribution.sure]
+    )
     place = {name: i for i, name in enumerate(ranked)}
 
     def on(level: str) -> tuple[str, ...]:
-        return tuple(sorted(known.inputs_on(level), key=lambda name: place.get(name, len(place))))
+        return tuple(
+            sorted(decomposition.inputs_on(level), key=lambda name: place.get(name, len(place)))
+        )
 
-    found = [
+    components = [
         VarianceComponent(
             level, words[level], on(level), shares[level], len(place.keys() & set(on(level)))
         )
         for level in LEVELS
-        if known.inputs_on(level) or shares[level].value > 0
+        if decomposition.inputs_on(level) or shares[level].value > 0
     ]
-    if len(found) < 2 or any(isnan(one.share.value) for one in found):
+    if len(components) < 2 or any(isnan(component.share.value) for component in components):
         return None
     form = FORMS.get(split_name(name)[0])
     return VarianceComponents(
         name,
-        of,
+        subject,
         f"the variance of its {form}" if form else "the variance",
-        tuple(sorted(found, key=lambda one: -one.share.value)),
-        known.another_regime if target.startswith("P(regime=") else None,
+        tuple(sorted(components, key=lambda component: -component.share.value)),
+        decomposition.another_regime if target.startswith("P(regime=") else None,
     )
 
 
@@ -161,8 +173,8 @@ def starts_alike(result: Result) -> str:
     """Return that the start is the same in all rows, where a model has one to vary, or ""."""
     starts = [
         name
-        for name, one in result.dataset.variables.items()
-        if one.attrs.get("role") in ("input", "fixed") and "initial" in one.attrs
+        for name, variable in result.dataset.variables.items()
+        if variable.attrs.get("role") in ("input", "fixed") and "initial" in variable.attrs
     ]
     if not starts or any(result.dataset[name].attrs.get("role") == "input" for name in starts):
         return ""

@@ -33,9 +33,9 @@ class NumberTarget:
         self._compared, self._asked = "", result.analysis.thresholds.get(output, ())
         if result.is_category(output):
             self.meaning = str(result.dataset[output].attrs["long_name"])
-        elif output in (known := result.outputs):
+        elif output in (outputs := result.outputs):
             element, *others = result.named_elements(inside)
-            declared = known[output]
+            declared = outputs[output]
             self._units = declared.unit
             self._compared = compared(inside, declared.is_angle)
             self.meaning = element_called(result, element)

@@ -26,8 +26,8 @@ class Event:
     ----------
     name : str
         The target, such as ``P(life<86400.0)``.
-    said : str
-        What happens: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
+    predicate : str
+        What the rows do: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
     share : Estimate
     failed : Estimate or None
         Bounds with the failed rows at best and at worst, where rows failed.
@@ -48,7 +48,7 @@ class Event:
     """
 
     name: str
-    said: str
+    predicate: str
     share: Estimate
     failed: Estimate | None = None
     ranking: Ranking | None = None
@@ -65,7 +65,7 @@ class Event:
         if isnan(self.share.value):
             why = self.share.reason
             return sentence(f"how many {self.clause} is not known: {why}") if why else ""
-        text = f"{share_text(self.share)} {self.said}"
+        text = f"{share_text(self.share)} {self.predicate}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
@@ -76,7 +76,7 @@ class Event:
     @property
     def clause(self) -> str:
         """What rows do: ``exceed 5``, ``are chaotic``."""
-        return f"are {self.said}" if self.name.startswith("P(regime=") else self.said
+        return f"are {self.predicate}" if self.name.startswith("P(regime=") else self.predicate
 
     @property
     def with_cause(self) -> str:
@@ -87,7 +87,7 @@ class Event:
     def named_cause(self) -> str:
         """What decides it, after its name."""
         cause = self.decided_by
-        return f"{capitalized(self.said)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
+        return f"{capitalized(self.predicate)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
 
     @property
     def limited(self) -> str:
@@ -99,8 +99,8 @@ class Event:
         leader = None if self.ranking is None else self.ranking.leader
         if self.curve is None or leader is None or len(leader.inputs) > 1:
             return self
-        found = limit_of(self.curve, self.over, self.over_unit, self.said, not more_is_better)
-        return replace(self, limit=found)
+        limit = limit_of(self.curve, self.over, self.over_unit, self.predicate, not more_is_better)
+        return replace(self, limit=limit)
 
     @property
     def decided_by(self) -> str:
@@ -202,13 +202,13 @@ class Quantity:
         """Return the same with limits of the inputs that decide its events."""
         if (more := self.wants_more) is None:
             return self
-        return replace(self, events=tuple(one.with_limit(more) for one in self.events))
+        return replace(self, events=tuple(event.with_limit(more) for event in self.events))
 
     @property
     def ranking_sentence(self) -> str:
         """What contributes most; "" where there is no ranking, and an event said why already."""
-        said = [event.decided_by for event in self.events]
-        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in said):
+        causes = [event.decided_by for event in self.events]
+        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in causes):
             return ""
         return self.ranking.with_effect
 
@@ -227,28 +227,28 @@ class Quantity:
         """The event that stands first, where nothing can be promised."""
         if self.promise is not None and self.promise.sentence:
             return None
-        return next((one for one in self.events if one.sentence), None)
+        return next((event for event in self.events if event.sentence), None)
 
     @property
     def repeated(self) -> PredictionInterval:
         """What the study would find with another seed."""
         if self.first is None:
             return repeated_quantile(self.promise, self.range, self.ranking)
-        return repeated_share(self.first.said, self.first.share, self.ranking)
+        return repeated_share(self.first.predicate, self.first.share, self.ranking)
 
     @property
     def others(self) -> list[Event]:
         """The events that do not stand first."""
-        return [one for one in self.events if one is not self.first]
+        return [event for event in self.events if event is not self.first]
 
     @property
     def head(self) -> list[str]:
         """What can be promised, of what, and its likely range, as far as they are known."""
-        found = [] if self.promise is None else [self.promise.sentence]
+        sentences = [] if self.promise is None else [self.promise.sentence]
         if self.first is not None:
-            found += [self.first.sentence, self.first.decided_by, self.first.limited]
-        found.append(self.subject)
-        found += [] if self.promise is None else [self.promise.basis]
-        found += [] if self.own_error is None else [self.own_error.sentence]
-        found += [] if self.range is None else [self.range.sentence]
-        return [*filter(None, found)]
+            sentences += [self.first.sentence, self.first.decided_by, self.first.limited]
+        sentences.append(self.subject)
+        sentences += [] if self.promise is None else [self.promise.basis]
+        sentences += [] if self.own_error is None else [self.own_error.sentence]
+        sentences += [] if self.range is None else [self.range.sentence]
+        return [*filter(None, sentences)]

@@ -57,21 +57,21 @@ def promise_of(
     part = "joint_bounds" if joint else "tolerance"
     both = [described.find(part, name) for name in ("lower", "upper")]
     bounds = [
-        one.estimate.value if matters and one else nan
-        for one, matters in zip(both, sides, strict=True)
+        statistic.estimate.value if matters and statistic else nan
+        for statistic, matters in zip(both, sides, strict=True)
     ]
     piled = () if joint else tuple(piles(element, sides, coverage))
-    upper_piled = {one.upper for one in piled}
+    upper_piled = {atom.upper for atom in piled}
     sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
-    bounds = [one if matters else nan for one, matters in zip(bounds, sides, strict=True)]
+    bounds = [bound if matters else nan for bound, matters in zip(bounds, sides, strict=True)]
     # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
     signed = bool(joint) and element.is_angle
-    found = [
+    quantiles = [
         described.find("quantiles", repr(p)) if matters and not signed else None
         for p, matters in zip((round(1 - coverage, 12), coverage), sides, strict=True)
     ]
-    ends = [one.best.estimate if one else NOTHING for one in found]
-    with_failed = [one.best.failed if one else None for one in found]
+    ends = [statistic.best.estimate if statistic else NOTHING for statistic in quantiles]
+    with_failed = [statistic.best.failed if statistic else None for statistic in quantiles]
     reason = ""
     if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(result, element, both, bounds)
@@ -136,8 +136,8 @@ def _recurs(element: Element) -> bool:
 
 def quantile_of(described: Described, p: float) -> Estimate:
     """Return a quantile that was asked for, else nothing."""
-    found = described.find("quantiles", repr(p))
-    return found.best.estimate if found else NOTHING
+    statistic = described.find("quantiles", repr(p))
+    return statistic.best.estimate if statistic else NOTHING
 
 
 def end_of(element: Element) -> str:
@@ -174,12 +174,14 @@ def _sides(
 def _why_no_bound(
     result: Result, element: Element, both: list[Statistic | None], bounds: list[float]
 ) -> str:
-    needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    needed = next(
+        (statistic.rows_needed for statistic in both if statistic and statistic.rows_needed), None
+    )
     if needed == inf:
         return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
     if needed:
         return f"it needs {needed:.0f} rows"
-    if any(not isnan(one) for one in bounds):
+    if any(not isnan(bound) for bound in bounds):
         return f"too few {end_of(element)}"
     if result.has_weights:
         return "the rows are weighted by inspections"

@@ -73,24 +73,28 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     part = findings.rows.replicates
     context = Context(findings.rows, wanted, part, findings.rows.weights)
     return [
-        _quantity(findings, _with(summary.outputs[one.name], more.get(one.name)), context, one)
-        for one in findings.rows.elements(_by_importance(result, asked))  # one at a time in memory
-        if one.present.any() and only in (None, one.name)
+        _quantity(
+            findings, _with(summary.outputs[element.name], more.get(element.name)), context, element
+        )
+        for element in findings.rows.elements(
+            _by_importance(result, asked)
+        )  # one at a time in memory
+        if element.present.any() and only in (None, element.name)
     ]
 
 
 def only_ranked(findings: Findings) -> list[Quantity]:
     """Return what the inputs contribute, of rows that have indices but no statistics."""
     result = findings.result
-    found = []
+    ranked = []
     for element in result.elements(_by_importance(result, result.analysis)):
         values = np.abs(element.values[np.isfinite(element.values)])
         if not len(values):
             continue
         ranking = _ranking(findings, element, unit_for(element.units, float(np.median(values))))
         words, meaning = element_called(result, element), readable(element.meaning)
-        found.append(Quantity(element.name, words, meaning, ranking=ranking))
-    return found
+        ranked.append(Quantity(element.name, words, meaning, ranking=ranking))
+    return ranked
 
 
 def _by_importance(result: Result, asked: AnalysisTable) -> list[str]:
@@ -201,55 +205,57 @@ def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking
     if element.is_angle:  # of all that is said, this alone is not of its magnitude
         verb = ("lowers its signed value", "raises its signed value")
     try:
-        found = ranking_of(findings, name, method, verb)
+        ranking = ranking_of(findings, name, method, verb)
     except InputError as refused:
         return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
-    if element.is_angle and found.what:
-        found = replace(found, what=f"{found.what}, of the angle with its sign")
+    if element.is_angle and ranking.index_meaning:
+        ranking = replace(
+            ranking, index_meaning=f"{ranking.index_meaning}, of the angle with its sign"
+        )
     if split_name(name)[0]:
-        return found
+        return ranking
     # Changes of the output itself are in its unit, as are indices that are not relative.
-    kind = next((one for one in METHODS[method].kinds if one.key == found.kind), None)
+    kind = next((kind for kind in METHODS[method].kinds if kind.key == ranking.kind), None)
     of_index = unit if kind is not None and kind.unit == "output" else DisplayUnit()
-    own = tuple(
+    contributions = tuple(
         replace(
-            one,
-            changes=tuple(replace(change, unit=unit) for change in one.changes),
+            contribution,
+            changes=tuple(replace(change, unit=unit) for change in contribution.changes),
             unit=of_index,
         )
-        for one in found.contributions
+        for contribution in ranking.contributions
     )
-    return replace(found, contributions=own)
+    return replace(ranking, contributions=contributions)
 
 
 def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
     """Return a ranking that says if it is of lives as computed, while other numbers integrate."""
-    facts = [one.facts.get("integrated") for one in described.parts["integrated"]]
-    if ranking is None or not ranking.what or not any(facts):
+    facts = [statistic.facts.get("integrated") for statistic in described.parts["integrated"]]
+    if ranking is None or not ranking.index_meaning or not any(facts):
         return ranking
-    return replace(ranking, what=f"{ranking.what}, of lives as computed")
+    return replace(ranking, index_meaning=f"{ranking.index_meaning}, of lives as computed")
 
 
 def _events(
     findings: Findings, described: Described, element: Element, unit: DisplayUnit
 ) -> Iterator[Event]:
     side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
-    for one in described.parts["thresholds"]:
-        if one.key[-1] != side or one.at is None:
+    for statistic in described.parts["thresholds"]:
+        if statistic.key[-1] != side or statistic.at is None:
             continue
-        at = threshold(one.at, element.units)
-        said = f"exceed {at}"
+        at = threshold(statistic.at, element.units)
+        predicate = f"exceed {at}"
         if element.is_lifetime:  # what ends at the time itself is not counted
             ended = element.values[~element.censored]
-            at_it = element.law is None and (ended == one.at).any()
-            said = f"{end_of(element)} {'before' if at_it else 'within'} {at}"
-        said += " in magnitude" * element.is_angle
-        target = f"P({element.name}{sign}{one.at!r})"
-        undefined = one.facts.get("undefined") or 0.0
-        yield replace(event(findings, target, said, one), undefined=undefined)
+            at_it = element.law is None and (ended == statistic.at).any()
+            predicate = f"{end_of(element)} {'before' if at_it else 'within'} {at}"
+        predicate += " in magnitude" * element.is_angle
+        target = f"P({element.name}{sign}{statistic.at!r})"
+        undefined = statistic.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, predicate, statistic), undefined=undefined)
 
 
-def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
+def event(findings: Findings, target: str, predicate: str, statistic: Statistic) -> Event:
     """Return what is known of an event: its probability, what decides it, and where.
 
     Parameters
@@ -257,29 +263,29 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
     findings : Findings
     target : str
         Its name as that of a target of indices.
-    said : str
-        What happens, in words.
-    one : Statistic
+    predicate : str
+        The event, in words.
+    statistic : Statistic
         Its probability.
     """
-    found = Event(target, said, one.best.estimate, one.failed)
+    outcome = Event(target, predicate, statistic.best.estimate, statistic.failed)
     method = method_for(findings.result, event=True)
-    if method is None or one.best.estimate.value in (0.0, 1.0):
-        return found
+    if method is None or statistic.best.estimate.value in (0.0, 1.0):
+        return outcome
     verb = ("lowers the probability", "raises the probability")
     try:
         ranking = ranking_of(findings, target, method, verb)
     except InputError as refused:
         why = str(refused)
         if not split_name(target)[2]:  # a regime, of which the rows that could rank have none
-            why = f"no ranking of the inputs: no row that it could rest on is {said}"
-        return replace(found, ranking=Ranking(target, method, reason=why))
-    found = replace(found, ranking=ranking)
+            why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
+        return replace(outcome, ranking=Ranking(target, method, reason=why))
+    outcome = replace(outcome, ranking=ranking)
     if ranking.leader is None:
-        return found
+        return outcome
     over, rows = ranking.leader.inputs[0], findings.ranked.rows
     curve = curve_over(rows, target, method, over)
-    return replace(found, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
+    return replace(outcome, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
 
 
 def curve_over(rows: Result, target: str, method: str, over: str) -> EventCurve | None:

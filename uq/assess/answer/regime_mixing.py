@@ -40,5 +40,5 @@ class Intermingled:
 
 def intermingled(findings: Findings) -> Intermingled:
     """Return how intermingled the regimes of a result are."""
-    known = findings.boundary
-    return Intermingled() if known is None else Intermingled(known.estimate)
+    boundary = findings.boundary
+    return Intermingled() if boundary is None else Intermingled(boundary.estimate)

@@ -19,7 +19,7 @@ class TighterTolerance:
     Attributes
     ----------
     inputs : tuple of str
-    what : str
+    statistic : str
         The number that changes: ``the 5 % quantile``.
     before, after : Estimate
     is_share : bool
@@ -41,7 +41,7 @@ class TighterTolerance:
     """
 
     inputs: tuple[str, ...]
-    what: str
+    statistic: str
     before: Estimate = NOTHING
     after: Estimate = NOTHING
     is_share: bool = False
@@ -91,15 +91,15 @@ class TighterTolerance:
         """Half the width of the interval; 0 without one."""
         return (self.after.high - self.after.low) / 2 if self.after.has_interval else 0.0
 
-    def text(self, one: Estimate) -> str:
+    def text(self, estimate: Estimate) -> str:
         """Return one of the numbers with its unit."""
-        return percent(one.value) if self.is_share else self.unit.text(one.value)
+        return percent(estimate.value) if self.is_share else self.unit.text(estimate.value)
 
     @property
     def after_in_words(self) -> str:
         """The number that it would be; a quantile says which."""
-        what = "" if self.is_share else f"{self.what.removeprefix('the ')} "
-        return f"{what}{self.text(self.after)}"
+        prefix = "" if self.is_share else f"{self.statistic.removeprefix('the ')} "
+        return f"{prefix}{self.text(self.after)}"
 
     @property
     def interval(self) -> str:
@@ -117,7 +117,7 @@ class TighterTolerance:
             return f"Tightening {words}: {self.reason}."
         law = f" ({self.law})" if self.law else ""
         first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
-        moved = f"move {self.what} from {first} to {self._then}"
+        moved = f"move {self.statistic} from {first} to {self._then}"
         return f"Half the scatter of {words}{law} would {moved}."
 
     @property
@@ -135,9 +135,9 @@ class TighterTolerance:
     def besides(self) -> str:
         """What would change for the worse, after a number that gets better."""
         if self.is_share:
-            does = self.what.removeprefix(SHARE_OF)
+            does = self.statistic.removeprefix(SHARE_OF)
             return f"But {'more' if self.rises else 'fewer'} would {does}: {self._then}."
-        return f"But {self.what} would {'rise' if self.rises else 'fall'} to {self._then}."
+        return f"But {self.statistic} would {'rise' if self.rises else 'fall'} to {self._then}."
 
     @property
     def _then(self) -> str:
@@ -156,8 +156,8 @@ class Advice:
     rule : str
         Why: ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
         ``keep``, ``rows`` or ``nothing``.
-    said : str
-        The sentence, without what would help about as much.
+    sentence : str
+        The advice, without alternatives of about the same effect.
     inputs : tuple of str
     rows : int or None
         How many there should be in all, where more help.
@@ -171,7 +171,7 @@ class Advice:
     """
 
     rule: str
-    said: str
+    sentence: str
     inputs: tuple[str, ...] = ()
     rows: int | None = None
     tightened: TighterTolerance | None = None
@@ -182,28 +182,31 @@ class Advice:
     @property
     def also(self) -> str:
         """Which other tolerances would help about as much; "" for none."""
-        named = [f"{called_together(one.inputs)} ({one.after_in_words})" for one in self.alike]
+        named = [
+            f"{called_together(tolerance.inputs)} ({tolerance.after_in_words})"
+            for tolerance in self.alike
+        ]
         return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
 
     @property
-    def own(self) -> list[TighterTolerance]:
+    def effects(self) -> list[TighterTolerance]:
         """All numbers that the tolerance which is advised would change."""
-        of = None if self.tightened is None else self.tightened.inputs
-        return [one for one in self.tolerances if one.inputs == of]
+        advised_inputs = None if self.tightened is None else self.tightened.inputs
+        return [tolerance for tolerance in self.tolerances if tolerance.inputs == advised_inputs]
 
     @property
     def sure(self) -> TighterTolerance | None:
         """The number of which it says what could then be promised."""
-        return next((one for one in self.own if one.promised), None)
+        return next((tolerance for tolerance in self.effects if tolerance.promised), None)
 
     @property
     def harmed(self) -> list[TighterTolerance]:
         """The numbers that the tolerance which is advised would worsen."""
-        return [one for one in self.own if one.harms]
+        return [tolerance for tolerance in self.effects if tolerance.harms]
 
     @property
     def text(self) -> str:
         """All of it."""
         sure = "" if self.sure is None else self.sure.promised
-        worse = [one.besides for one in self.harmed]
-        return " ".join(filter(None, (self.said, sure, *worse, self.also)))
+        worse = [tolerance.besides for tolerance in self.harmed]
+        return " ".join(filter(None, (self.sentence, sure, *worse, self.also)))

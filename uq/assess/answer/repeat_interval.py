@@ -21,8 +21,8 @@ class PredictionInterval:
 
     Attributes
     ----------
-    what : str
-        ``the 5 % quantile``, or of whom there is a share: ``end within 24 hours``; "" for none.
+    subject : str
+        ``the 5 % quantile``, or the event of a share: ``end within 24 hours``; "" for none.
     low, high : float
         Between which it would lie with a probability of 95 %.
     is_share : bool
@@ -31,7 +31,7 @@ class PredictionInterval:
         What would contribute most; "" where that is not known.
     """
 
-    what: str = ""
+    subject: str = ""
     low: float = nan
     high: float = nan
     is_share: bool = False
@@ -42,10 +42,10 @@ class PredictionInterval:
     def sentence(self) -> str:
         """What it would find; "" where that is not known."""
         number = ""
-        if self.what and self.is_share:
-            number = f"{percent_interval(self.low, self.high)} would {self.what} (95 %)"
-        elif self.what:
-            number = f"{self.what} would {self._lie} (95 %)"
+        if self.subject and self.is_share:
+            number = f"{percent_interval(self.low, self.high)} would {self.subject} (95 %)"
+        elif self.subject:
+            number = f"{self.subject} would {self._lie} (95 %)"
         text = "; ".join(filter(None, (number, self.ranking)))
         return f"With another seed, {text}." if text else ""
 
@@ -57,12 +57,12 @@ class PredictionInterval:
         return f"lie between {self.unit.between(self.low, self.high, ' and ')}"
 
 
-def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
+def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
     """Return between which values an estimate from as many other rows lies with 95 %.
 
     Parameters
     ----------
-    one : Estimate
+    estimate : Estimate
         With its 95 % interval.
     is_positive : bool
         Whether it is a life, whose logarithm scatters evenly.
@@ -77,9 +77,9 @@ def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
     G. J. Hahn, W. Q. Meeker, "Statistical Intervals" (Wiley, 1991): the difference of two
     independent estimates has twice the variance of one.
     """
-    if not (one.has_interval and isfinite(one.value)):
+    if not (estimate.has_interval and isfinite(estimate.value)):
         return nan, nan
-    value, low, high = one.numbers
+    value, low, high = estimate.numbers
     if is_positive and low > 0:
         return value * (low / value) ** AGAIN, value * (high / value) ** AGAIN
     return value - AGAIN * (value - low), value + AGAIN * (high - value)
@@ -95,35 +95,35 @@ def repeated_quantile(
     """
     order = _ranked_again(ranking)
     if promise is not None:
-        for p, one in zip(promise.probabilities, promise.quantiles, strict=True):
-            low, high = found_again(one, promise.is_life)
+        for p, quantile in zip(promise.probabilities, promise.quantiles, strict=True):
+            low, high = found_again(quantile, promise.is_life)
             if isfinite(low):
                 if likely is not None and p < 0.5:
-                    high = min(high, max(likely.high.value, one.high))
+                    high = min(high, max(likely.high.value, quantile.high))
                 elif likely is not None:
-                    low = max(low, min(likely.low.value, one.low))
-                of = " of the magnitudes" if promise.of_magnitude else ""
-                what = f"the {100 * p:.3g} % quantile{of}"
-                return PredictionInterval(what, low, high, False, promise.unit, order)
+                    low = max(low, min(likely.low.value, quantile.low))
+                of_magnitudes = " of the magnitudes" if promise.of_magnitude else ""
+                subject = f"the {100 * p:.3g} % quantile{of_magnitudes}"
+                return PredictionInterval(subject, low, high, False, promise.unit, order)
     return PredictionInterval(ranking=order)
 
 
-def repeated_share(said: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
+def repeated_share(predicate: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
     """Return what would be found of the share of rows that do what is said, and of the ranking."""
     low, high = found_again(share, False)
-    known = said if isfinite(low) else ""
+    subject = predicate if isfinite(low) else ""
     return PredictionInterval(
-        known, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking)
+        subject, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking)
     )
 
 
-def _ranked_again(one: Ranking | None) -> str:
+def _ranked_again(ranking: Ranking | None) -> str:
     """Return what would contribute most, in words; "" where that is not known."""
-    if one is None or one.denies_a_leader:
+    if ranking is None or ranking.denies_a_leader:
         return ""
-    if one.leader is None:
-        return "the order of the inputs could differ" if isfinite(one.rows_factor) else ""
-    names = [called(name) for name in one.rivals]
+    if ranking.leader is None:
+        return "the order of the inputs could differ" if isfinite(ranking.rows_factor) else ""
+    names = [called(name) for name in ranking.rivals]
     if len(names) > MOST_NAMED:
         return "the order of the inputs could differ"
     again = "again " if len(names) == 1 else ""

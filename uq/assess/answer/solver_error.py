@@ -62,7 +62,7 @@ class OwnError:
         if not (self._moved or self.share >= NOTABLE or self.unstated):
             return ""
         about = (self._moved, self._of_variance, self._missing)
-        return " ".join(f"{capitalized(one)}." for one in about if one)
+        return " ".join(f"{capitalized(clause)}." for clause in about if clause)
 
     @property
     def _moved(self) -> str:
@@ -73,8 +73,10 @@ class OwnError:
         if not moved:
             return ""
         how = joined([ways[i] for i in moved], "or")
-        what = "quantile" if self.are_quantiles else "bound"
-        does, it = (f"{what} does", "it") if len(moved) == 1 else (f"{what}s do", "they")
+        bound_noun = "quantile" if self.are_quantiles else "bound"
+        does, it = (
+            (f"{bound_noun} does", "it") if len(moved) == 1 else (f"{bound_noun}s do", "they")
+        )
         return (
             f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
             f" by as much, {it} would be {joined([then[i] for i in moved])}"
@@ -88,11 +90,13 @@ class OwnError:
     def _of_variance(self) -> str:
         if not self.share >= NOTABLE:
             return ""
-        of = "variance of the logarithm" if self.is_life else "variance"
+        variance = "variance of the logarithm" if self.is_life else "variance"
         which = "this error" if self._moved else "the rows' own numerical error"
         if self.share >= 1:
-            return f"the mean square of {which} exceeds the {of}: all scatter may be numerical"
-        return f"the mean square of {which} is {percent(self.share)} of the {of}"
+            return (
+                f"the mean square of {which} exceeds the {variance}: all scatter may be numerical"
+            )
+        return f"the mean square of {which} is {percent(self.share)} of the {variance}"
 
     @property
     def _missing(self) -> str:
@@ -132,8 +136,10 @@ def own_error_of(
         if isfinite(bounds[side]) and not promise.joint:
             moved = off_by_error(element, error, (-1, 1)[side])
             worse[side] = _again(promise, are_quantiles, moved, context)[side]
-    known = [one.facts["accuracy"] for one in described.parts.get("accuracy", ())]
-    asked, missed = next(((one["asked"], one["share"] or 0.0) for one in known), (nan, 0.0))
+    accuracies = [statistic.facts["accuracy"] for statistic in described.parts.get("accuracy", ())]
+    asked, missed = next(
+        ((accuracy["asked"], accuracy["share"] or 0.0) for accuracy in accuracies), (nan, 0.0)
+    )
     return OwnError(
         bounds,
         (worse[0], worse[1]),
@@ -152,10 +158,18 @@ def _again(
 ) -> Sides:
     """Return the bounds of other values of the same rows."""
     if not are_quantiles:
-        bounds = {one.key[-1]: one.estimate.value for one in tolerance(element, context)}
+        bounds = {
+            statistic.key[-1]: statistic.estimate.value for statistic in tolerance(element, context)
+        }
         return bounds["lower"], bounds["upper"]
-    alike = (one for one in population(context.rows, [element.output]) if one.name == element.name)
+    alike = (
+        candidate
+        for candidate in population(context.rows, [element.output])
+        if candidate.name == element.name
+    )
     drawn = replace(next(alike), values=element.values)  # with the law of what scales its lives
-    known = {one.key[-1]: one.best.estimate.value for one in quantiles(drawn, context)}
-    low, high = (known[repr(p)] for p in promise.probabilities)
+    values = {
+        statistic.key[-1]: statistic.best.estimate.value for statistic in quantiles(drawn, context)
+    }
+    low, high = (values[repr(p)] for p in promise.probabilities)
     return low, high

@@ -26,8 +26,8 @@ def mark(source: str) -> str:
         ``given``, ``inferred``, ``fitted``, ``assumed`` or ``chosen``: the first that begins the
         sentence or one of its parts, or ends it.
     """
-    found = _MARK.search(source)
-    return (found[1] or found[2]) if found else ""
+    match = _MARK.search(source)
+    return (match[1] or match[2]) if match else ""
 
 
 def mark_of(result: Result, name: str) -> str:

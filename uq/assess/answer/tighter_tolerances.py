@@ -56,16 +56,16 @@ def tightened(
     for key, words, before, unit, more in promised_numbers:
         statistic = described.find(*key) if described is not None else None
         if statistic is None:
-            yield replace(unanswered, what=words, reason=_UNKNOWN)
+            yield replace(unanswered, statistic=words, reason=_UNKNOWN)
             continue
         after = statistic.best.estimate
         if not isfinite(after.value):
-            yield replace(unanswered, what=words, reason=f"{_UNKNOWN} ({after.reason})")
+            yield replace(unanswered, statistic=words, reason=f"{_UNKNOWN} ({after.reason})")
             continue
         given = {name: repr(value) for name, value in changes.items()}
         yield replace(
             unanswered,
-            what=words,
+            statistic=words,
             before=before,
             after=after,
             is_share=key[0] == "thresholds",
@@ -104,7 +104,7 @@ def _promised(
             continue
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
-        words = SHARE_OF + event.said
+        words = SHARE_OF + event.predicate
         yield key, words, event.share, DisplayUnit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
@@ -161,7 +161,7 @@ def tighten(result: Result, quantity: Quantity, leader: Contribution) -> Iterato
             for tolerance in refused[:1]
         )
         return
-    compared = [tolerance for tolerance in better if tolerance.what == better[0].what]
+    compared = [tolerance for tolerance in better if tolerance.statistic == better[0].statistic]
     best, *others = compared[:1]
     if best.wants_more is not None:
         best, *others = sorted(compared, key=lambda tolerance: -tolerance.gain)

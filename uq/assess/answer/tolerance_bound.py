@@ -27,7 +27,7 @@ class SampleSupport:
     rows_failed: bool = False
     undefined: float = 0.0
 
-    def of(self, noun: str) -> str:
+    def phrase(self, noun: str) -> str:
         """Return which they are: ``of the computed lives``; "" for all."""
         if self.undefined > 0:
             return f"of the defined {noun}"
@@ -81,7 +81,7 @@ class ToleranceBound:
         What a life does at its end.
     joint : tuple of str
         Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
-    known : Known
+    support : SampleSupport
         Which values it is about.
     recurs : bool
         Whether rows have equal values, so that many may have that of a bound.
@@ -105,7 +105,7 @@ class ToleranceBound:
     of_magnitude: bool = False
     ends: str = "end"
     joint: tuple[str, ...] = ()
-    known: SampleSupport = field(default_factory=SampleSupport)
+    support: SampleSupport = field(default_factory=SampleSupport)
     recurs: bool = False
     ranks: tuple[int, int] = (0, 0)
     rows: int = 0
@@ -114,7 +114,7 @@ class ToleranceBound:
     @property
     def sentence(self) -> str:
         """What can be promised, and where rows pile up; "" where nothing can be said."""
-        piles = (f"{one.sentence(self.unit)}." for one in self.piled)
+        piles = (f"{atom.sentence(self.unit)}." for atom in self.piled)
         return " ".join(filter(None, (self._promised, *piles)))
 
     @property
@@ -136,13 +136,13 @@ class ToleranceBound:
         if bounds:
             each, joined = " each" * (len(bounds) > 1), f", and at least {covered} ".join(bounds)
             return f"{self._sure}{each}, at least {covered} {joined}."
-        share = " ".join(filter(None, (share, self.known.of(self._noun))))
+        share = " ".join(filter(None, (share, self.support.phrase(self._noun))))
         cautious: list[str] = []
-        for i, one in enumerate(self.quantiles):
-            end = (one.low, one.high)[i]
-            if not isfinite(one.value):
+        for i, quantile in enumerate(self.quantiles):
+            end = (quantile.low, quantile.high)[i]
+            if not isfinite(quantile.value):
                 continue
-            text = f"{share} {self._side(i)} {self.unit.text(one.value)}"
+            text = f"{share} {self._side(i)} {self.unit.text(quantile.value)}"
             if isfinite(end):
                 text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
             else:
@@ -169,10 +169,10 @@ class ToleranceBound:
         it is, and not a bound of its coverage: the tolerance bound, of another estimator, is.
         """
         is_upper = isfinite(self.upper)
-        bound, now = ((one.low, one.high)[is_upper] for one in (quantile, before))
+        bound, now = ((estimate.low, estimate.high)[is_upper] for estimate in (quantile, before))
         if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
-        then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
+        then, studied = (self.unit.text(end, (-inf, inf)[is_upper]) for end in (bound, now))
         return f"{self.end_of_quantile} {then}; as studied, {studied}."
 
     @property
@@ -180,8 +180,8 @@ class ToleranceBound:
         """What an end of the interval of the quantile that it bounds would be, up to the number."""
         is_upper = isfinite(self.upper)
         side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
-        of = " of magnitudes" if self.of_magnitude else ""
-        return f"The {side} end of the interval of the {100 * p:.3g} % quantile{of} would then be"
+        quantile = f"{100 * p:.3g} % quantile{' of magnitudes' * self.of_magnitude}"
+        return f"The {side} end of the interval of the {quantile} would then be"
 
     def opening(self) -> str:
         """Return what a single bound promises, up to the bound."""
@@ -201,9 +201,9 @@ class ToleranceBound:
         if not self.reason:
             several = isfinite(self.lower) and isfinite(self.upper)
             bound = f"{'joint ' * bool(self.joint)}tolerance bound{'s' * several}"
-            known = [grouped(rank) for rank in self.ranks if rank]
-            places = f"{'s' * several} {' and '.join(known)} of {grouped(self.rows)} in order"
-            which = f": value{places}" if known else ""
+            ranks = [grouped(rank) for rank in self.ranks if rank]
+            places = f"{'s' * several} {' and '.join(ranks)} of {grouped(self.rows)} in order"
+            which = f": value{places}" if ranks else ""
             return f"{bound.capitalize()} from order statistics{which}, valid for any distribution."
         end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
         bound = f"{'joint ' * bool(self.joint)}tolerance bound"
@@ -223,7 +223,7 @@ class ToleranceBound:
     @property
     def _of_bounded(self) -> str:
         """Which values a tolerance bound is about: failed rows count as beyond it."""
-        return replace(self.known, rows_failed=False).of(self._noun)
+        return replace(self.support, rows_failed=False).phrase(self._noun)
 
     @property
     def _is_cautious(self) -> bool:
@@ -246,7 +246,7 @@ class ToleranceBound:
 class Range:
     """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
 
-    ``ends`` is what a life does at its end, ``known`` which values they are.
+    ``ends`` is what a life does at its end, ``support`` which values they describe.
     """
 
     low: Estimate
@@ -256,7 +256,7 @@ class Range:
     of_magnitude: bool = False
     ends: str = "end"
     never: Estimate = NOTHING
-    known: SampleSupport = field(default_factory=SampleSupport)
+    support: SampleSupport = field(default_factory=SampleSupport)
     is_life: bool = False
 
     @property
@@ -264,20 +264,20 @@ class Range:
         """Range, median, and how many never end, as far as they are known."""
         parts = []
         noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
-        of = self.known.of(noun) or "of the magnitudes" * self.of_magnitude
-        what = f"{of} " if of else ""
+        of_values = self.support.phrase(noun) or "of the magnitudes" * self.of_magnitude
+        subject = f"{of_values} " if of_values else ""
         if isfinite(self.low.value) and isfinite(self.high.value):
             ends = self.unit.between(self.low.value, self.high.value, " and ")
-            parts.append(f"90 % {what}lie between {ends}")
+            parts.append(f"90 % {subject}lie between {ends}")
         elif isfinite(self.low.value) and self.high.value == inf:
-            parts.append(f"5 % {what}{self.ends} within {self.unit.text(self.low.value)}")
+            parts.append(f"5 % {subject}{self.ends} within {self.unit.text(self.low.value)}")
             if "value" in self.high.beyond:
                 parts.append("more than 5 % exceed the horizon")
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
         parts.append(self._never)
-        if self.known.undefined > 0:
-            parts.append(f"{percent(self.known.undefined)} of the rows have none")
+        if self.support.undefined > 0:
+            parts.append(f"{percent(self.support.undefined)} of the rows have none")
         return sentence("; ".join(filter(None, parts))) if any(parts) else ""
 
     @property
