@@ -52,8 +52,8 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     part, *names = path or ("",)
     alone = not result.is_nested  # a level that decides changes what is said of the regimes
     if part == "quantities" and names and alone:
-        known = tuple(quantities(findings, names[0]))
-        return answer_json(Answer("", 0, 0, known, (), ()))
+        answered = tuple(quantities(findings, names[0]))
+        return answer_json(Answer("", 0, 0, answered, (), ()))
     if part == "regimes" and alone:
         return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
     if part in ("rows", "failed"):
@@ -62,7 +62,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return answer_json(whole(findings))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where a number of the answer comes from."""
     part, *names = path
     if part in ("rows", "failed"):
@@ -78,7 +78,7 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     if part == "advice":
         return Origin((cited(what_if if "tolerances" in names else unsettled),), result)
     if "ranking" in names:
-        ranking = value_at(said, path[: path.index("ranking") + 1])
+        ranking = value_at(document, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
         if "effects" in names:
             return Origin((cited(effects),), result)
@@ -91,11 +91,11 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(event_curve), cited(share_interval)), result)
     rows = result.independent
     if part == "regimes":
-        found = summarise(result, result.analysis).regimes[names[0]]
-        return Origin(tuple(map(cited, found.by)), rows)
+        statistic = summarise(result, result.analysis).regimes[names[0]]
+        return Origin(tuple(map(cited, statistic.by)), rows)
     states = states_of(rows.named_elements(names[0])[0])
     return Origin(
-        tuple(dict.fromkeys(_estimators(result, said["quantities"][names[0]], *names))),
+        tuple(dict.fromkeys(_estimators(result, document["quantities"][names[0]], *names))),
         rows,
         states,
     )
@@ -108,19 +108,21 @@ def _one_of_each(result: Result) -> Iterator[str]:
         yield f"the index rests on {grouped(used)} of these rows, the first of each sample"
 
 
-def _estimators(result: Result, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
+def _estimators(
+    result: Result, entry: Json, name: str, part: str, *rest: str
+) -> Iterator[Citation]:
     """Yield what computes a number of a promise, a range, an event, or of another seed."""
     asked = with_bounds(result.analysis_of(name.partition("[")[0]), Findings(result))
-    found = summarise(result, asked).outputs[name]
+    described = summarise(result, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]
     if part == "another_seed":
         yield cited(found_again)
-        promised = said["promise"]["sentence"] if "promise" in said else ""
-        part, rest = ("range", ()) if promised else ("events", tuple(said["events"]))
+        promised = entry["promise"]["sentence"] if "promise" in entry else ""
+        part, rest = ("range", ()) if promised else ("events", tuple(entry["events"]))
     if part == "own_error":
         yield from map(cited, _OF_ERROR.get("".join(rest), (off_by_error, error_share, accuracy)))
         keys *= any(end in rest for end in ("lower", "upper"))
-        if keys and not said["promise"]["reason"]:
+        if keys and not entry["promise"]["reason"]:
             keys = [("tolerance", "lower")]
     elif part == "range" and "".join(rest).startswith("never"):
         yield from map(cited, (never_ending, Population if result.has_weights else share_interval))
@@ -136,4 +138,4 @@ def _estimators(result: Result, said: Json, name: str, part: str, *rest: str) ->
         side = "below" if "<" in rest[0] else "above"
         keys = [("thresholds", split_name(rest[0])[2], side)]
     for key in keys:
-        yield from map(cited, functions_of(found, key))
+        yield from map(cited, functions_of(described, key))

@@ -29,9 +29,11 @@ def cited(function: Callable[..., Any]) -> Citation:
     """Return what a function estimates, and what its docstring cites."""
     while isinstance(function, partial):
         function = function.func
-    said = inspect.getdoc(function) or ""
-    first = _joined(said.split("\n\n")[0])
-    section = re.search(r"^References\n-+\n(.*?)(?=^\w+\n-+$|\Z)", said, re.DOTALL | re.MULTILINE)
+    docstring = inspect.getdoc(function) or ""
+    first = _joined(docstring.split("\n\n")[0])
+    section = re.search(
+        r"^References\n-+\n(.*?)(?=^\w+\n-+$|\Z)", docstring, re.DOTALL | re.MULTILINE
+    )
     entries = re.split(r"^\.\. (?=\[\d+\] )", section[1], flags=re.MULTILINE) if section else []
     code = f"{function.__module__}.{getattr(function, '__qualname__', '')}"
     return Citation(first.removesuffix("."), code, tuple(filter(None, map(_joined, entries))))

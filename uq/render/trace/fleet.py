@@ -29,8 +29,8 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return fleet_json(fleet_of(result, size, by, allow, output))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where a number of a fleet comes from."""
     rows = result.independent
-    states = states_of(rows.named_elements(said["output"])[0])
-    return Origin((cited(fleet), cited(Population)), rows, states, tuple(said["notes"]))
+    states = states_of(rows.named_elements(document["output"])[0])
+    return Origin((cited(fleet), cited(Population)), rows, states, tuple(document["notes"]))

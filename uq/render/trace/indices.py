@@ -19,20 +19,20 @@ from uq.text.keys import Json, Options, Path
 def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the indices: of the target alone that a path names, if it names one."""
     named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
-    found = sensitivities(result, options.get("method"), named, options.get("regime"))
-    return sensitivity_json(found)
+    indices = sensitivities(result, options.get("method"), named, options.get("regime"))
+    return sensitivity_json(indices)
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where an index comes from."""
     if regime := options.get("regime"):
         result = result.within_regime(regime)
     rows = result.ranked.first_rows
-    by = (estimator_of(said["method"], *path[2:3]),)
+    by = (estimator_of(document["method"], *path[2:3]),)
     if path[0] != "outputs":
         return Origin(by, rows)
-    entry = said["outputs"][path[1]]
-    (target,) = chosen(rows, said["method"], [path[1]])
+    entry = document["outputs"][path[1]]
+    (target,) = chosen(rows, document["method"], [path[1]])
     sample = replace(sample_of(rows), values=target.values)
     states = {"in groups with a value in each row": len(np.unique(sample.groups[sample.whole]))}
     dropped = len(np.unique(sample.groups[~sample.whole]))
@@ -49,9 +49,9 @@ def estimator_of(method: str, key: str = "") -> Citation:
     key : str
         Of the kind of index; "" if not one of its own.
     """
-    own = METHODS[method]
-    kinds = [f" ({kind.words})" for kind in own.kinds if kind.key == key]
+    estimator = METHODS[method]
+    kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]
     code = f"uq.indices.methods.METHODS['{method}']"
-    said = [own.source, own.intervals and f"intervals: {own.intervals}"]
-    sources = (*filter(None, said), *cited(own.estimate).sources)
-    return Citation(f"{own.question}{''.join(kinds)}", code, sources)
+    references = [estimator.source, estimator.intervals and f"intervals: {estimator.intervals}"]
+    sources = (*filter(None, references), *cited(estimator.estimate).sources)
+    return Citation(f"{estimator.question}{''.join(kinds)}", code, sources)

@@ -33,7 +33,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return learnt_json(learnt(result, read_times("by", texts, result)))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where a number that inspections say comes from."""
     by: list[Callable[..., Any]] = [posterior]
     if path[0] == "inputs":
@@ -42,4 +42,4 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
         by += [remaining, over_shared if "over_shared" in path else Population]
     elif path[0] in _PARTS:
         by.append(_PARTS[path[0]])
-    return Origin(tuple(map(cited, by)), result.independent, notes=tuple(said["notes"]))
+    return Origin(tuple(map(cited, by)), result.independent, notes=tuple(document["notes"]))

@@ -22,7 +22,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return levels_json(by_level(result, named))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where a share comes from."""
     rows = result.independent
     if path[0] == "outputs":

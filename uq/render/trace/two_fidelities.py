@@ -17,7 +17,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return twin_json(with_twin(result, options.get("model")))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where an estimate with a twin comes from."""
     rows = result.independent
     states = states_of(rows.named_elements(path[1])[0]) if path[0] == "outputs" else {}

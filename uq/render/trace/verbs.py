@@ -20,9 +20,9 @@ from uq.result.result import Result
 from uq.text.keys import SUMMARY, Json, Options, Path, value_at
 
 
-def from_the_rows(verb: "Verb", found: Origin, options: Options, path: Path) -> Any:
+def from_the_rows(verb: "Verb", number_origin: Origin, options: Options, path: Path) -> Any:
     """Return what the verb says of the rows of an origin alone."""
-    return value_at(verb.says(found.rows, options, path), path)
+    return value_at(verb.says(number_origin.rows, options, path), path)
 
 
 class Verb(NamedTuple):

@@ -15,15 +15,15 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return what_if_json(_answer(result, options))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
     """Return where a number under other laws comes from."""
     rows = result.independent
     if path[0] in ("samples", "status", "rows_used"):
-        return summary.origin(result, {}, path, said)
+        return summary.origin(result, {}, path, document)
     if path[0] in ("effective_rows", "pareto_k"):
         return Origin((cited(what_if), cited(summary.WEIGHTS[path[0]])), rows)
-    found = summary.in_summary(_answer(result, options).summary, rows, path)
-    return Origin((cited(what_if), *found.estimators), rows, found.states)
+    base = summary.in_summary(_answer(result, options).summary, rows, path)
+    return Origin((cited(what_if), *base.estimators), rows, base.states)
 
 
 def _answer(result: Result, options: Options) -> WhatIf:
