@@ -183,7 +183,9 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
         # A dot in the middle would hide the dashes of a short line.
-        dotted = any(isinstance(one, Line2D) and one.get_marker() == "." for one in handles)
+        dotted = any(
+            isinstance(handle, Line2D) and handle.get_marker() == "." for handle in handles
+        )
         style = {"handlelength": _LONG} if dotted else {}
         shown = figure.legend(
             handles, labels, loc="outside lower left", markerscale=1.5, ncols=across, **style
