@@ -91,12 +91,12 @@ def earliest_rows(element: Element) -> Places:
 
     Fewer where fewer end, or where a row was censored before: it may have ended earlier.
     """
-    known = np.flatnonzero(element.present)
-    ended = known[~element.censored[known] & np.isfinite(element.values[known])]
+    present = np.flatnonzero(element.present)
+    ended = present[~element.censored[present] & np.isfinite(element.values[present])]
     first_censored = element.values[element.censored & element.present].min(initial=np.inf)
     ended = ended[element.values[ended] <= first_censored]
     order = ended[np.argsort(element.values[ended], kind="stable")]
-    return order[: max(int(np.ceil(SHARE * len(known))), min(FEWEST, len(known) // 2))]
+    return order[: max(int(np.ceil(SHARE * len(present))), min(FEWEST, len(present) // 2))]
 
 
 def inputs_apart(
@@ -137,7 +137,7 @@ def inputs_apart(
         part = part.view(np.ndarray)
     sure = 1 - (1 - CONFIDENCE) / (2 * max(len(ranked), 1))
     columns = independent_inputs(result)
-    found, has_intervals = [], False
+    differences, has_intervals = [], False
     for name, rank in ranked.items():
         away = np.abs(rank - 0.5)
         # The range of ranks is 1, that of their distances 1/2.
@@ -148,20 +148,20 @@ def inputs_apart(
                 mean = float(values[mask].mean())
                 ends = mean_interval(values[mask], part)
                 sign = 1 if mean > middle else -1
-                own = columns[name]
-                one = Apart(
+                column = columns[name]
+                difference = Apart(
                     name,
                     sign if values is rank else 0,
                     0 if values is rank else sign,
                     Estimate(mean, float(ends[0]), float(ends[1])),
-                    float(np.median(own[mask])),
-                    float(np.median(own[~mask])),
+                    float(np.median(column[mask])),
+                    float(np.median(column[~mask])),
                 )
-                found.append((abs(mean - middle) / size, one))
+                differences.append((abs(mean - middle) / size, difference))
                 break
     if not has_intervals:
         return None
-    return [one for _, one in sorted(found, key=lambda pair: -pair[0])]
+    return [difference for _, difference in sorted(differences, key=lambda pair: -pair[0])]
 
 
 def regimes_of_first(
@@ -171,9 +171,9 @@ def regimes_of_first(
 
     If there are none, that in which most of them are; nothing where all rows are in one regime.
     """
-    found = sorted(_regimes(result, first, replicate), key=lambda one: -one.share.value)
-    more = [one for one in found if one.is_more_frequent]
-    return more or [one for one in found[:1] if one.overall < 1]
+    regimes = sorted(_regimes(result, first, replicate), key=lambda regime: -regime.share.value)
+    more = [regime for regime in regimes if regime.is_more_frequent]
+    return more or [regime for regime in regimes[:1] if regime.overall < 1]
 
 
 def _regimes(result: Result, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
@@ -182,9 +182,9 @@ def _regimes(result: Result, first: Places, replicate: Replicates) -> Iterator[R
     mask = np.zeros(len(result), dtype=bool)
     mask[first] = True
     part = replicates_of_some(replicate, mask)
-    known = [(code, label) for code, label in flags(result.dataset["regime"]) if code >= 0]
-    sure = 1 - (1 - CONFIDENCE) / max(len(known), 1)
-    for code, label in known:
+    regimes = [(code, label) for code, label in flags(result.dataset["regime"]) if code >= 0]
+    sure = 1 - (1 - CONFIDENCE) / max(len(regimes), 1)
+    for code, label in regimes:
         inside = result.dataset["regime"].values == code
         overall = float(inside.mean())
         low, _ = share_interval(inside[mask], part, sure)

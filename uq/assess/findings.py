@@ -52,8 +52,10 @@ class Findings:
     def absent(self) -> frozenset[str]:
         """The outputs that no independent row has."""
         names = self.rows.output_names
-        there = (one.output for one in self.rows.elements(names) if one.present.any())
-        return frozenset(names) - frozenset(there)
+        occurring = (
+            element.output for element in self.rows.elements(names) if element.present.any()
+        )
+        return frozenset(names) - frozenset(occurring)
 
     @cached_property
     def input_ranks(self) -> dict[str, Floats]:
@@ -94,8 +96,8 @@ class Findings:
         """The fleet of each life, of as many units as a sample has; empty where that is one."""
         units = self.rows.nesting.units
         shown = self.rows.shown_outputs(self.rows.analysis) if units > 1 else ()
-        lives = [one for one in self.rows.elements(shown) if one.is_lifetime]
-        return list(chain.from_iterable(_fleets(self.result, units, one) for one in lives))
+        lives = [element for element in self.rows.elements(shown) if element.is_lifetime]
+        return list(chain.from_iterable(_fleets(self.result, units, life) for life in lives))
 
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.assess.sensitivities.sensitivities` finds by a method.
@@ -117,12 +119,14 @@ class Findings:
         InputError
             When the method does not apply to this result, or there is no such target.
         """
-        known = self._sensitivities[method].targets if method in self._sensitivities else {}
-        if target in known:
-            return known[target]
+        cached = self._sensitivities[method].targets if method in self._sensitivities else {}
+        if target in cached:
+            return cached[target]
         if (method, target) not in self._indices:
-            found = sensitivities(self.result, method, target).targets
-            self._indices |= {(method, name): one for name, one in found.items()}
+            computed = sensitivities(self.result, method, target).targets
+            self._indices |= {
+                (method, name): target_indices for name, target_indices in computed.items()
+            }
         return self._indices[method, target]
 
 

@@ -117,11 +117,11 @@ class Units:
         """Return the mean over repeats, shape (samples, units); of units that are alike, one."""
         table = self.place.table(np.where(self.element.present, numbers, np.nan))
         axes = (1, 2) if self.are_alike else 2
-        known = np.isfinite(table)
-        count = known.sum(axis=axes)
-        sums = np.where(known, table, 0.0).sum(axis=axes)
-        found = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
-        return found[:, None] if self.are_alike else found
+        present = np.isfinite(table)
+        count = present.sum(axis=axes)
+        sums = np.where(present, table, 0.0).sum(axis=axes)
+        means = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
+        return means[:, None] if self.are_alike else means
 
     def fleet(self, size: int, allow: int, part: Replicates) -> Population:
         """Return the population of the times by which more than `allow` of `size` have ended.
@@ -167,9 +167,9 @@ class _MoreThan:
     def _turns(self) -> Floats:
         units, element = self.units, self.units.element
         table = units.place.table(np.where(element.present, element.values, np.nan))
-        found = turns(table, self.size, self.allow, units.are_alike)
+        times = turns(table, self.size, self.allow, units.are_alike)
         place = units.place
-        return found[place.sample, place.unit, place.repeat]
+        return times[place.sample, place.unit, place.repeat]
 
     @property
     def spread(self) -> float:
@@ -179,11 +179,11 @@ class _MoreThan:
         units = self.units
         if units.shared is not None and units.element.law is None:
             each = self._turns * units.shared.below(units.element.values, time)
-            found = np.bincount(units.place.sample, each, units.place.samples).astype(float)
+            probability = np.bincount(units.place.sample, each, units.place.samples).astype(float)
         else:
             ended = units.ended(time)
-            found = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights
-        return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
+            probability = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights
+        return np.where(np.isnan(lives), 0.0, np.clip(probability, 0.0, 1.0))
 
 
 def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
@@ -199,7 +199,7 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
         Whether lives are taken as computed.
     """
     place, levels = rows.nesting, rows.levels
-    own = shared = None
+    inner = shared = None
     inputs, why = inputs_of(rows), ""
     scales = element.declared.scales and not plain
     if scales and element.censored.any():
@@ -207,38 +207,40 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
     elif scales:
         inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
         outside = integrated(rows, element.declared, inputs, {SHARED})
-        own, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
-        if own and shared and shared.spread >= _WIDEST * own.spread:
-            kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(own.inputs)))
+        inner, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
+        if inner and shared and shared.spread >= _WIDEST * inner.spread:
+            kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(inner.inputs)))
             shared = None
         why = not_integrated(kept)
     idle = without_effect(inputs, element.declared)
-    known = idle if own is None else (*own.inputs, *idle)
-    varying = _unknown(levels, inputs.tied, known)
+    integrated_inputs = idle if inner is None else (*inner.inputs, *idle)
+    varying = _unknown(levels, inputs.tied, integrated_inputs)
     if rows.is_random:
         varying = (*varying, "the model's own chance")
-    known = idle if shared is None else (*shared.inputs, *idle)
-    repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
+    integrated_inputs = idle if shared is None else (*shared.inputs, *idle)
+    repeats = _repeats(
+        inputs, [name for name in levels if levels[name] == SHARED], integrated_inputs, place
+    )
     design = rows.design_name
     weights = rows.sample_weights("fleets")
-    return Units(replace(element, law=own), place, shared, varying, why, repeats, design, weights)
+    return Units(replace(element, law=inner), place, shared, varying, why, repeats, design, weights)
 
 
 def _repeats(
-    inputs: Inputs, shared: Collection[str], known: Collection[str], place: Nesting
+    inputs: Inputs, shared: Collection[str], integrated_inputs: Collection[str], place: Nesting
 ) -> bool:
     """Return whether what worlds share, but for what is integrated, is the same in some of them."""
-    names = {inputs.tied.get(name, name) for name in shared} - {*known}
+    names = {inputs.tied.get(name, name) for name in shared} - {*integrated_inputs}
     values = [inputs.values[name] for name in sorted(names)]
     return bool(values) and len(np.unique(values, axis=1).T) < place.samples
 
 
 def _unknown(
-    levels: Mapping[str, str], tied: Mapping[str, str], known: tuple[str, ...]
+    levels: Mapping[str, str], tied: Mapping[str, str], integrated_inputs: tuple[str, ...]
 ) -> tuple[str, ...]:
     """Return the inputs of units that are not integrated."""
     return tuple(
         name
         for name, level in levels.items()
-        if level != SHARED and tied.get(name, name) not in known
+        if level != SHARED and tied.get(name, name) not in integrated_inputs
     )

@@ -139,8 +139,8 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
         return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
-        known = counted(never, "never ends", "never end")
-        return f"of {len(life)} rows {known}, and under this law all do"
+        endless = counted(never, "never ends", "never end")
+        return f"of {len(life)} rows {endless}, and under this law all do"
     if none := int((life <= 0).sum()):
         return f"{counted(none, 'row has', 'rows have')} no positive life; under this law all have"
     if ended.sum() < MIN_ENDED:
@@ -171,8 +171,8 @@ def _refits(
     place = np.searchsorted(share, rng.random(x.shape))
     limit = np.append(seen.x[0], np.inf)[place]
     drawn = _sorted(np.minimum(x, limit), x <= limit)
-    found = fit(family, *drawn)
-    return *found, _distance(family, *found, drawn)
+    fitted = fit(family, *drawn)
+    return *fitted, _distance(family, *fitted, drawn)
 
 
 @lru_cache(maxsize=4)
@@ -185,8 +185,8 @@ def _complete_refits(law: str, n: int) -> tuple[Floats, Floats, Floats]:
     u = np.random.default_rng(0).random((_refits_of(n), n))
     x = np.sort(family.standard.ppf(u), axis=1)
     drawn = _Sample(x, np.ones_like(x, dtype=bool))
-    found = fit(family, *drawn)
-    return *found, _distance(family, *found, drawn)
+    fitted = fit(family, *drawn)
+    return *fitted, _distance(family, *fitted, drawn)
 
 
 def _refits_of(rows: int) -> int:

@@ -128,8 +128,8 @@ class LearntScale:
         row = np.arange(len(score))
         low, high = self.scores[row, after - 1], self.scores[row, after]
         part = (score - low) / (high - low)
-        found = special.ndtr(_FINE[after - 1] + part * (_FINE[after] - _FINE[after - 1]))
-        return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, found))
+        share = special.ndtr(_FINE[after - 1] + part * (_FINE[after] - _FINE[after - 1]))
+        return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, share))
 
 
 def learnt_scale(
@@ -151,12 +151,12 @@ def learnt_scale(
         return None
     from scipy.interpolate import PchipInterpolator  # late: it takes a while to import
 
-    of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
+    arguments = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
     scores = PchipInterpolator(SCORES, rows.dataset[SCALE_SCORES].values, axis=1)(_FINE)
     terms = None
     if LAW_SCORES in rows.dataset:
         terms = TermsOfLaws(rows.dataset[LAW_SCORES].values, rows.dataset[SCALE_SCORES].values)
-    return LearntScale((name,), *of, scores, terms)
+    return LearntScale((name,), *arguments, scores, terms)
 
 
 def learnt_input(rows: Result) -> str:

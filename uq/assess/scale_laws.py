@@ -64,8 +64,8 @@ class IndependentScale:
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.term.below(np.log(time) - np.log(lives) + self.drawn)
-        return np.where(np.isnan(lives), 0.0, found)
+            share = self.term.below(np.log(time) - np.log(lives) + self.drawn)
+        return np.where(np.isnan(lives), 0.0, share)
 
     def longer(self, z: Floats) -> Iterator[Floats]:
         """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
@@ -143,7 +143,7 @@ class ConditionalScale:
     @property
     def moments(self) -> tuple[Floats, Floats]:
         """Mean growth of the logarithm of each life, and its variance, shapes (n,)."""
-        nodes, weights = (one[0] for one in normal_rule(np.array([-np.inf, np.inf]), _NODES))
+        nodes, weights = (array[0] for array in normal_rule(np.array([-np.inf, np.inf]), _NODES))
         mean = square = np.zeros(self.drawn.shape)
         for weight, longer in zip(weights, self.longer(nodes), strict=True):
             mean, square = mean + weight * longer, square + weight * longer**2

@@ -67,8 +67,8 @@ def integrated(
     if rows.design.imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
     if rows.has_weights:
-        own = rows.stands_for_any_unit
-        learnt = {name for name in exponents if not own or inputs.laws[name].level == SHARED}
+        any_unit = rows.stands_for_any_unit
+        learnt = {name for name in exponents if not any_unit or inputs.laws[name].level == SHARED}
         kept |= dict.fromkeys(learnt, "inspections have changed its law")
     for name in exponents:
         if problem := _problem(name, inputs) or _sign_problem(name, inputs):
@@ -78,7 +78,7 @@ def integrated(
         for name, exponent in exponents.items()
         if name not in kept and inputs.laws[name].times is None
     }
-    free = {name: one for name, one in terms.items() if name not in inputs.correlated}
+    free = {name: term for name, term in terms.items() if name not in inputs.correlated}
     bound = {
         name: _conditional(name, exponent, inputs)
         for name, exponent in exponents.items()
@@ -86,7 +86,7 @@ def integrated(
     }
     reach = {name: law.deviation * law.spread for name, law in bound.items()}
     widest = max(bound, key=lambda name: reach[name], default="")
-    if free and np.hypot.reduce([one.spread for one in free.values()]) >= reach.get(widest, 0.0):
+    if free and np.hypot.reduce([term.spread for term in free.values()]) >= reach.get(widest, 0.0):
         kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
         return Integrated(_independent(free, exponents, inputs, kept), kept)
     kept |= dict.fromkeys({*free, *bound} - {widest}, f"{widest} scatters lives more")
@@ -122,21 +122,23 @@ class _Exponents(NamedTuple):
 
 
 def _exponents(inputs: Inputs, scales: Mapping[str, float]) -> _Exponents:
-    found: dict[str, float] = {}
+    exponents: dict[str, float] = {}
     for name, exponent in scales.items():
         if name in inputs.laws or name in inputs.tied:
             leader = inputs.tied.get(name, name)
-            found[leader] = found.get(leader, 0.0) + exponent
+            exponents[leader] = exponents.get(leader, 0.0) + exponent
     kept = {}
-    for leader in found:
+    for leader in exponents:
         members = [leader, *(name for name, other in inputs.tied.items() if other == leader)]
         if other := next((name for name in members if name not in scales), ""):
             same = "it" if other == leader else f"{other} has the same value and"
             kept[leader] = f"{same} does more than scale lives"
         elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
             kept[leader] = f"{other} is a multiple of it"
-    idle = tuple(name for name, one in found.items() if not one and name not in kept)
-    return _Exponents({name: one for name, one in found.items() if one}, kept, idle)
+    idle = tuple(name for name, exponent in exponents.items() if not exponent and name not in kept)
+    return _Exponents(
+        {name: exponent for name, exponent in exponents.items() if exponent}, kept, idle
+    )
 
 
 def without_effect(inputs: Inputs, output: Output) -> tuple[str, ...]:
@@ -155,7 +157,7 @@ def _problem(name: str, inputs: Inputs) -> str:
         positive = (inputs.values[law.times] > 0).all()
         return "" if positive else "it is a multiple of an input that is not positive"
     if name in inputs.correlated:
-        listed = [one for one in inputs.correlated if inputs.laws[one].discrete]
+        listed = [other for other in inputs.correlated if inputs.laws[other].discrete]
         return f"it depends on listed values of {listed[0]}" if listed else ""
     return ""
 
@@ -210,9 +212,9 @@ def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
     assert inputs.dependence is not None
     names = list(inputs.correlated)
     matrix = normal_correlations(inputs.dependence.rank_correlation)
-    own, rest = names.index(name), [i for i, one in enumerate(names) if one != name]
-    slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, own])
-    deviation = float(np.sqrt(1 - matrix[own, rest] @ slope))
+    position, rest = names.index(name), [i for i, other in enumerate(names) if other != name]
+    slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, position])
+    deviation = float(np.sqrt(1 - matrix[position, rest] @ slope))
     return dict(zip([names[i] for i in rest], slope.tolist(), strict=True)), deviation
 
 

@@ -62,7 +62,7 @@ def scales_by_level(rows: Result, element: Element) -> Scales:
     if not element.declared.scales:
         return Scales({})
     inputs = inputs_of(rows)
-    found = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
-    kept = {name: why for one in found.values() for name, why in one.kept.items()}
-    laws = {level: one.law for level, one in found.items() if one.law is not None}
+    parts = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
+    kept = {name: why for part in parts.values() for name, why in part.kept.items()}
+    laws = {level: part.law for level, part in parts.items() if part.law is not None}
     return Scales(laws, not_integrated(kept), without_effect(inputs, element.declared))

@@ -57,7 +57,7 @@ class TargetIndices:
     def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
         """Return the indices of single inputs, or those of pairs."""
         values = self.indices.values.items()
-        return {kind: found for kind, found in values if kind.of_pairs == of_pairs}
+        return {kind: indices for kind, indices in values if kind.of_pairs == of_pairs}
 
 
 @dataclass(frozen=True)
@@ -144,22 +144,28 @@ def sensitivities(
         notes = (*notes, ONE_ROW)
     if sample.random and METHODS[method].noise:
         notes = (*notes, METHODS[method].noise)
-    found: dict[str, TargetIndices] = {}
+    targets: dict[str, TargetIndices] = {}
     whole: list[Mask] = []
     used: list[Mask] = []
     for target in chosen(result, method, output):
         quantiles = _quantiles(target, result.analysis.quantiles)
-        own = replace(sample, values=target.values, quantiles=quantiles)
-        found[target.name] = one = indices_of_target(result, METHODS[method], target, own, notes)
-        (whole if one.refused else used).append(own.whole)
+        target_sample = replace(sample, values=target.values, quantiles=quantiles)
+        targets[target.name] = target_indices = indices_of_target(
+            result, METHODS[method], target, target_sample, notes
+        )
+        (whole if target_indices.refused else used).append(target_sample.whole)
     if nested:
-        found = {name: _with_reason(one) for name, one in found.items()}
-    return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), found)
+        targets = {name: _with_reason(target_indices) for name, target_indices in targets.items()}
+    return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), targets)
 
 
-def _with_reason(one: TargetIndices) -> TargetIndices:
+def _with_reason(target_indices: TargetIndices) -> TargetIndices:
     """Return indices of one row a sample, with that reason where there are none."""
-    return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
+    return (
+        replace(target_indices, refused=f"{target_indices.refused}; {ONE_ROW}")
+        if target_indices.refused
+        else target_indices
+    )
 
 
 def indices_of_target(
@@ -197,12 +203,12 @@ def indices_of_target(
         method.refuse_few_groups(asked)  # in them even a continuous output may have two values
         # Of those in which it happens there is no other side.
         few = () if method.conditional else few_hits(result, target, bool(method.intervals))
-        found = method.indices(asked)
+        indices = method.indices(asked)
     except RefusedError as refusal:
         factor = refusal.rows_factor
         return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)
-    combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
-    return TargetIndices(target.name, *counts, replace(found, notes=combined))
+    combined = (*target.notes, *few, *filter(None, [caution]), *indices.notes, *notes)
+    return TargetIndices(target.name, *counts, replace(indices, notes=combined))
 
 
 def _conditioned(target: IndexTarget, sample: DesignSample) -> DesignSample:
@@ -253,9 +259,9 @@ def _check_method(design: str, method: str, dependent: str, in_regime: bool) -> 
             f" (methods that do not: {', '.join(others)})"
         )
     if method not in METHODS:
-        known = sorted(METHODS)
+        names = sorted(METHODS)
         raise InputError(
-            f"no such method '{method}'{nearest(method, known)} (allowed: {', '.join(known)})"
+            f"no such method '{method}'{nearest(method, names)} (allowed: {', '.join(names)})"
         )
     raise InputError(
         f"method '{method}' needs a design of {' or '.join(designs_for(method))}; this result is of"

@@ -50,14 +50,17 @@ SOME_FAILED = (
 )
 
 
-def share_json(one: Statistic) -> dict[str, Any]:
+def share_json(statistic: Statistic) -> dict[str, Any]:
     """Return count and share of a category as JSON has them."""
-    share = {"count": one.facts["count"], "share": estimate_json.number(one.estimate.value)}
-    return share | estimate_json.ends(one.estimate) | estimate_json.failed(one.failed)
+    share = {
+        "count": statistic.facts["count"],
+        "share": estimate_json.number(statistic.estimate.value),
+    }
+    return share | estimate_json.ends(statistic.estimate) | estimate_json.failed(statistic.failed)
 
 
-def _compared_json(one: Statistic) -> dict[str, Any]:
-    return share_json(one) | {"value": estimate_json.number(one.estimate.value)}
+def _compared_json(statistic: Statistic) -> dict[str, Any]:
+    return share_json(statistic) | {"value": estimate_json.number(statistic.estimate.value)}
 
 
 SHARE = StatisticKind(entry=_compared_json)
@@ -97,7 +100,7 @@ class Described:
 
     def find(self, *key: str) -> Statistic | None:
         """Return the statistic with this key."""
-        return next((one for one in self.statistics if one.key == key), None)
+        return next((statistic for statistic in self.statistics if statistic.key == key), None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +146,9 @@ class Summary:
     def categories(self) -> dict[str, Shares]:
         """The same of other categories, of those labels that occur."""
         return {
-            name: {label: one for label, one in shares.items() if one.facts["count"]}
+            name: {
+                label: statistic for label, statistic in shares.items() if statistic.facts["count"]
+            }
             for name, shares in self.shares.items()
             if name != REGIME
         }

@@ -68,7 +68,7 @@ def _enough(enough: Enough) -> dict[str, Any]:
     if enough.again.is_share and enough.again.subject:
         entry["expected"] = _repeated(enough.again)["expected"]
     if enough.errors is not None:
-        entry |= {"own_error": enough.errors.own, "sampling_error": enough.errors.sampling}
+        entry |= {"own_error": enough.errors.numerical, "sampling_error": enough.errors.sampling}
     return entry
 
 

@@ -79,7 +79,7 @@ class Enough:
         if self.errors is None:
             return ""
         numerical, sampling = (
-            self.unit.text(error) for error in (self.errors.own, self.errors.sampling)
+            self.unit.text(error) for error in (self.errors.numerical, self.errors.sampling)
         )
         return (
             "Compute more accurate rows before more of them (finer settings or longer averages):"
