@@ -47,8 +47,9 @@ class Checker:
         for event in found.events:
             yield from (f"{event.name}: {text}" for text in self.alone(event))
         for regime in found.regimes:
-            hits = (labels(self.rows["regime"]).values == regime.said).astype(float)
-            yield from (f"{regime.said}: {text}" for text in denied_event(self.rows, regime, hits))
+            hits = (labels(self.rows["regime"]).values == regime.predicate).astype(float)
+            denied = denied_event(self.rows, regime, hits)
+            yield from (f"{regime.predicate}: {text}" for text in denied)
         for advice in found.advice:
             yield from (f"{advice.rule}: {text}" for text in denied_advice(self.ds, advice, found))
         yield from denied_mixing(self.ds, found)
@@ -170,14 +171,14 @@ class Checker:
     def repeated(self, one):
         """Compare the scatter among seeds with that of the rows drawn again, with replacement."""
         known = one.repeated
-        if not known.what:
+        if not known.subject:
             return
         if known.is_share:
             numbers, per = np.nan_to_num(self.hits(one, one.first)).astype(float), 100
             estimate = np.mean
         else:
             numbers, per = self.values(one), 1 / known.unit.per
-            p = numbers_in(known.what)[0] / 100
+            p = numbers_in(known.subject)[0] / 100
             if round(p, 6) not in (0.05, 0.95):
                 yield known.sentence
                 return
@@ -188,7 +189,7 @@ class Checker:
         drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
         again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]
         wide = 2 * 1.96 * 2**0.5 * np.std(again) * per
-        shown = numbers_in(known.sentence.split(known.what)[0 if known.is_share else 1])
+        shown = numbers_in(known.sentence.split(known.subject)[0 if known.is_share else 1])
         if "would again be" in known.sentence:
             if wide > 0.02 * abs(shown[0]):
                 yield f"{known.sentence} {wide}"

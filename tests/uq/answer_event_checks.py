@@ -88,7 +88,8 @@ def denied_advice(ds, advice, found):
     if one is None or one.reason:
         return
     first, then, *ends = numbers_in(one.sentence.split(" from ")[1])
-    known = [event.share.value for event in found.quantities[0].events if event.said in one.what]
+    events = found.quantities[0].events
+    known = [event.share.value for event in events if event.predicate in one.statistic]
     if known and abs(first - 100 * known[0]) > 0.06:
         yield one.sentence
     if ends and not ends[0] <= then <= ends[1]:
@@ -118,8 +119,8 @@ def denied_advice(ds, advice, found):
 def _before(lead, one):
     """Return the same number of the answer."""
     if one.is_share:
-        return next(event.share.value for event in lead.events if event.said in one.what)
-    return lead.promise.quantiles["95 %" in one.what].value
+        return next(event.share.value for event in lead.events if event.predicate in one.statistic)
+    return lead.promise.quantiles["95 %" in one.statistic].value
 
 
 def _denied_law(ds, one):
@@ -142,7 +143,7 @@ def _denied_law(ds, one):
 
 def _denied_besides(ds, advice, lead):
     """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
-    for sure in [one for one in advice.own if one.promise is not None]:
+    for sure in [one for one in advice.effects if one.promise is not None]:
         known, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
         plain = uq.trace(ds, sure.key.partition("]/")[2])  # the same key, of the study's own laws
         end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
@@ -180,7 +181,7 @@ def _not_alike(advice):
         gains = [abs(one.after.value - one.before.value) for one in (best, each)]
         wide = max((one.after.high - one.after.low) for one in (best, each))
         if (
-            each.what != best.what
+            each.statistic != best.statistic
             or gains[1] > gains[0]
             or gains[0] - gains[1] > gains[0] / 3 + wide
         ):

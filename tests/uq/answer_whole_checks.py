@@ -51,7 +51,7 @@ def denied_enough(ds, found):
     one, lead = found.enough, found.lead
     if found.regimes_first:
         low, high = found_again(found.regimes[0].share, False)
-        if one.again.what and not np.allclose((one.again.low, one.again.high), (low, high)):
+        if one.again.subject and not np.allclose((one.again.low, one.again.high), (low, high)):
             yield one.sentence
     elif lead is not None and one.again != lead.repeated:
         yield one.sentence

@@ -122,10 +122,10 @@ def test_regimes_are_named_with_their_shares():
     shares = summarised(ds)["regime"]
     assert len(found.regimes) == 2
     for one in found.regimes:
-        share, low, high = numbers(rf"# % \(# to # %\) {one.said}\.", one.sentence)
-        known = [100 * shares[one.said][key] for key in ("share", "low", "high")]
+        share, low, high = numbers(rf"# % \(# to # %\) {one.predicate}\.", one.sentence)
+        known = [100 * shares[one.predicate][key] for key in ("share", "low", "high")]
         assert [share, low, high] == pytest.approx(known, abs=0.05)
-    assert all(one.said in found.regimes_sentence for one in found.regimes)
+    assert all(one.predicate in found.regimes_sentence for one in found.regimes)
 
 
 @pytest.mark.parametrize("rows", [1, 5])

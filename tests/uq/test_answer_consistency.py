@@ -178,5 +178,5 @@ def test_no_input_moves_an_event_that_no_single_input_decides():
         for event in found.lead.events if found.lead else ():
             if event.ranking is not None and event.ranking.denies_a_leader:
                 assert not any(
-                    event.said in one.text for one in found.advice if one.rule == "tighten"
+                    event.predicate in one.text for one in found.advice if one.rule == "tighten"
                 )

@@ -50,7 +50,7 @@ def of_regimes(share_of_start, samples=400, is_initial=True, of_pairs=False):
 def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
     ds = of_regimes(0.95)
     found = answer(ds)
-    word = found.regimes[0].said
+    word = found.regimes[0].predicate
     share, low, high, *_ = numbers(
         rf"The start \(x2\) decides whether it is {word}: # % \(# to # %\) of the variance,"
         r" the machine # % \(# to # %\)\.",
@@ -80,7 +80,7 @@ def test_single_inputs_are_called_so_where_another_level_decides():
     assert found.levels.leader.inputs == ("x2", "x3")
     by = "x1, though it alone explains only 21 % (15 to 26 %)"
     assert found.regimes[0].decided_by.startswith(f"Of single inputs, decided most by {by}: from ")
-    traced = trace(ds, f"answer/regimes/{found.regimes[0].said}/decided_by")
+    traced = trace(ds, f"answer/regimes/{found.regimes[0].predicate}/decided_by")
     assert traced["sentence"] == found.regimes[0].decided_by and traced["equal"]
     assert "x1 would again contribute most" not in found.enough.sentence
     other = answer(of_regimes(0.05))

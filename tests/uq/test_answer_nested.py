@@ -173,5 +173,5 @@ def test_a_regime_that_no_first_row_of_a_sample_has_is_not_ranked(nested):
     attrs |= {"may_be_undefined": 0}
     attrs |= {"flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
     found = answer(ds.assign(regime=("sample", rare.astype(np.int8), attrs)))
-    (rough,) = [one for one in found.regimes if one.said == "rough"]
+    (rough,) = [one for one in found.regimes if one.predicate == "rough"]
     assert rough.decided_by == "No ranking of the inputs: no row that it could rest on is rough."

@@ -111,7 +111,7 @@ def test_where_fewer_than_five_per_cent_end_these_are_the_earliest():
     lives = np.full(1000, np.inf)
     lives[::50] = np.linspace(1, 2, 20)
     found = answer(with_lives(lives)).lead.earliest
-    assert (found.size, found.of) == (20, 1000) and "2 % (20 rows)" in found.sentence
+    assert (found.size, found.total) == (20, 1000) and "2 % (20 rows)" in found.sentence
     nothing = answer(with_lives(np.full(100, np.inf))).lead
     assert nothing.earliest is None
 
@@ -123,7 +123,7 @@ def test_replicates_show_what_differs_and_one_design_alone_does_not():
     found = answer(ds).lead.earliest
     assert found.inputs[0].name == "x4"
     rows = independent_rows(ds)
-    assert found.of == rows.sizes["sample"]
+    assert found.total == rows.sizes["sample"]
     assert answer(lived(law, 512, "sobol")).lead.earliest.sentence == ""
 
 

@@ -98,7 +98,7 @@ def test_reports_say_what_the_indices_are_of():
     (method,) = sensitivity_of(Findings(Result(ds)))
     (subject,) = method.subjects
     assert subject.words == "Logarithm of the meaning of work"
-    assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.what
+    assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.index_meaning
 
 
 def test_plans_and_convergence_name_and_judge_the_same_number():

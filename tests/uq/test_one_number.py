@@ -41,7 +41,7 @@ def test_a_bound_is_the_same_in_table_and_answer(life):
     assert said["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
     quantile = summarised(life)["outputs"]["life"]["quantiles"]["0.05"]
     for advice in answer(life).advice:
-        for one in advice.own:
+        for one in advice.effects:
             if one.promised:  # the end of an interval is not called a bound
                 assert "With 95 % confidence" not in one.promised
                 assert one.before.low == pytest.approx(quantile["low"], rel=1e-12)
