@@ -122,7 +122,7 @@ def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
 
 
 def _as_stored(name: str, element: str, candidates: Sequence[IndexTarget]) -> str:
-    """Return a name with that of its element, of which some targets are, as the result has it."""
+    """Return a name in which the element is spelt as in the result."""
     stored_element = candidates[0].element if candidates else None
     return (
         name

@@ -23,7 +23,7 @@ from uq.study.file import AnalysisTable
 
 @dataclass(frozen=True)
 class Side:
-    """One of two results: its title, and a summary of what either study asks for."""
+    """One of two results: its title and the summary that both studies ask for."""
 
     title: str
     summary: Summary
@@ -103,7 +103,7 @@ def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
 
 
 def comparison(first: Result, second: Result) -> Comparison:
-    """Return the findings of `compare`, and what was changed."""
+    """Return the differences of `compare` and the changes of the study."""
     _refuse(first, second)
     results = (first, second)
     analyses = [result.analysis for result in results]
@@ -161,7 +161,7 @@ def _outputs(results: tuple[Result, ...], analyses: list[AnalysisTable]) -> list
 
 
 def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
-    """Return what either study asks for."""
+    """Return the union of the analyses of both studies."""
 
     def both(*parts: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(sorted({number for part in parts for number in part}))

@@ -184,7 +184,7 @@ Line = tuple[str, str, tuple[float, float, float], str, str]
 
 
 def estimates_from(result: Result, targets: list[str]) -> Iterator[Line]:
-    """Yield what some rows give: output, label, value with interval; of an index kind and input."""
+    """Yield output, label and estimate of each statistic, for an index also kind and input."""
     for name, output in summarise(result).outputs.items():
         for statistic in output.statistics:
             if statistic.is_read_by(Reader.RUNNING):

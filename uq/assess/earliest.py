@@ -24,7 +24,7 @@ SHARE = 0.05
 """The part of the rows that counts as the earliest."""
 
 FEWEST = 10
-"""Of fewer rows nothing is said."""
+"""Minimum number of early rows for a comparison."""
 
 Places = NDArray[np.intp]
 
@@ -79,7 +79,7 @@ class RegimeOfFirst:
 
 
 def ranks(column: Floats) -> Floats:
-    """Return the rank of each value, from 0 to 1; equal values share theirs."""
+    """Return the rank of each value, from 0 to 1; equal values share their mean rank."""
     # Not scipy.stats.rankdata: a summary starts without loading scipy.stats.
     _, place, counts = np.unique(column, return_inverse=True, return_counts=True)
     below = np.cumsum(counts) - counts / 2
@@ -167,9 +167,9 @@ def inputs_apart(
 def regimes_of_first(
     result: Result, first: Places, replicate: Replicates = None
 ) -> list[RegimeOfFirst]:
-    """Return the regimes that some rows are in more often than all, the most frequent first.
+    """Return regimes more frequent in the given rows than in all rows, the most frequent first.
 
-    If there are none, that in which most of them are; nothing where all rows are in one regime.
+    If there are none, their most frequent regime; nothing where all rows are in one regime.
     """
     regimes = sorted(_regimes(result, first, replicate), key=lambda regime: -regime.share.value)
     more = [regime for regime in regimes if regime.is_more_frequent]

@@ -143,7 +143,7 @@ def _suits_logarithm(column: Floats) -> bool:
 
 
 def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
-    """Whether what an input explains steps against its slope from one fifth to the next."""
+    """Whether the partial effect of an input steps against its slope between adjacent fifths."""
     edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
     piece = np.searchsorted(edges, x, side="right")
     counts = np.bincount(piece, minlength=PIECES)
@@ -161,7 +161,7 @@ def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
 
 
 def _interval(value: float, rows: Floats, part: Replicates, confidence: float = CONFIDENCE) -> Ends:
-    """Return the interval of an estimate from what each row says of it."""
+    """Return the interval of an estimate from the influence of each row."""
     estimates = rows if part is None else by_replicate(rows, part)
     if len(estimates) > 1 and is_constant(estimates):  # no row deviates
         return value, value

@@ -97,7 +97,7 @@ def expected_widths(pilot: Result) -> dict[str, Widths]:
 
 
 def _factor(independent: bool, replicates: int) -> float | None:
-    """Return half the width of an interval in standard errors."""
+    """Return the half-width of an interval in standard errors."""
     if independent:
         return float(normal(upper_probability()))
     return student(upper_probability(), replicates - 1) if replicates > 1 else None

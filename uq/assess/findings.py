@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Findings:
-    """What is known of a result, each part computed when first needed.
+    """Results of an assessment, each computed once when first needed.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Findings:
 
     @cached_property
     def absent(self) -> frozenset[str]:
-        """The outputs that no independent row has."""
+        """The outputs without a value in any independent row."""
         names = self.rows.output_names
         occurring = (
             element.output for element in self.rows.elements(names) if element.present.any()
@@ -64,17 +64,17 @@ class Findings:
 
     @cached_property
     def summary(self) -> Summary:
-        """What `uq.assess.summary.summarise` returns."""
+        """The summary (`uq.assess.summary.summarise`)."""
         return summarise(self.result)
 
     @cached_property
     def boundary(self) -> Statistic | None:
-        """What `uq.assess.regime_boundary.boundary` returns."""
+        """The boundary between regimes (`uq.assess.regime_boundary.boundary`)."""
         return boundary(self.result)
 
     @cached_property
     def running(self) -> "pd.DataFrame":
-        """What `uq.running_estimates` returns; where it refuses, no lines, and why in ``attrs``."""
+        """The `uq.running_estimates`; if refused, no lines, and the reason in ``attrs``."""
         import pandas as pd
 
         from uq.assess.convergence import COLUMNS, running_estimates
@@ -88,7 +88,7 @@ class Findings:
 
     @cached_property
     def levels(self) -> ByLevel:
-        """What `uq.assess.level_shares.by_level` returns."""
+        """The variance components (`uq.assess.level_shares.by_level`)."""
         return by_level(self.result)
 
     @cached_property
@@ -100,7 +100,7 @@ class Findings:
         return list(chain.from_iterable(_fleets(self.result, units, life) for life in lives))
 
     def sensitivities(self, method: str) -> Sensitivities:
-        """Return what `uq.assess.sensitivities.sensitivities` finds by a method.
+        """Return the indices of all targets by a method (`uq.assess.sensitivities.sensitivities`).
 
         Raises
         ------

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fleet:
-    """What a result says of fleets of some size.
+    """Times and numbers of failures in fleets of one size.
 
     Attributes
     ----------
@@ -72,12 +72,12 @@ class Fleet:
 
     @property
     def ended(self) -> str:
-        """What a unit has done at the end of its life, in words."""
+        """Participle for the end of a life: ``succeeded`` or ``ended``."""
         return "succeeded" if self.is_success else "ended"
 
     @property
     def sentences(self) -> list[str]:
-        """What is integrated, what is missing, and what is assumed."""
+        """Sentences on integrated inputs, missing numbers and assumptions."""
         exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
         worth = [worth_in_words(self.weights)] if self.weights else []
         return [*exactly, *worth, *self.notes]
@@ -181,7 +181,7 @@ def fleet_of(
     *,
     plain: bool = False,
 ) -> Fleet:
-    """Return what `fleet` tabulates."""
+    """Return the numbers that `fleet` tabulates."""
     if why := result.why_no_statistics:
         raise InputError(f"no fleet: the rows of a '{result.design_name}' design {why}")
     if size < 1 or allow < 0:
@@ -229,7 +229,7 @@ def fleet_of(
 
 
 def the_life(rows: Result, output: str | None) -> Element:
-    """Return the element of a life that is meant: the only one, unless it is named."""
+    """Return the named life, or the only one."""
     outputs = rows.outputs
     shown = [name for name in rows.shown_outputs(rows.analysis) if outputs[name].is_lifetime]
     asked = [output] if output is not None else shown

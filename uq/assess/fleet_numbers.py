@@ -17,7 +17,7 @@ from uq.stats.intervals import Replicates, replicates_of_some
 from uq.stats.roots import root
 
 LOW, HIGH = 0.05, 0.95
-"""Of worlds, at the ends of a band."""
+"""Shares of worlds below the ends of a band."""
 
 ALIKE = "samples share nothing that varies"
 _FARTHEST = 8.2  # probit of a probability
@@ -130,7 +130,7 @@ class FleetNumbers:
         return Banded(estimate, low, high, bounds(estimate, least, most, is_life))
 
     def _within_horizon(self, estimate: Estimate) -> Estimate:
-        """Return a time, or why it is not known where rows were censored before it."""
+        """Return a time, or the reason why it is unknown: rows were censored before it."""
         element = self._units.element
         if not element.censored.any():
             return estimate
@@ -216,7 +216,7 @@ class FleetNumbers:
 
 
 class _UnknownError(ArithmeticError):
-    """The spread over worlds is not known there."""
+    """The distribution over worlds is unknown at this time."""
 
 
 def _around(estimate: Estimate) -> Estimate:
@@ -228,7 +228,7 @@ def _around(estimate: Estimate) -> Estimate:
 
 
 def _in_order(low: Estimate, high: Estimate) -> tuple[Estimate, Estimate]:
-    """Return the ends of a band, which on a plateau may be found to cross."""
+    """Return the ends of a band in order: on a plateau the computed roots may cross."""
     return (high, low) if low.value > high.value else (low, high)
 
 

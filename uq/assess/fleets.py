@@ -46,16 +46,16 @@ class Units:
     place : Nesting
         Of these rows.
     shared : Scale or None
-        What scales all lives of a world alike.
+        Law of the inputs that scale all lives of a world alike.
     varying : tuple of str
-        What differs between the units of a world and is not integrated. With nothing of this kind,
+        Inputs that differ between the units of a world and are not integrated. Without any,
         the probability of a unit's life is known in each world.
     why_not_more : str
         A sentence on the inputs that scale lives but are not integrated, or "".
     worlds_repeat : bool
-        Whether what worlds share, but for what is integrated, is the same in some of them.
+        Whether some worlds have equal values of all shared inputs that are not integrated.
     design : str
-        By which they were drawn.
+        Design of the samples.
     of_worlds : ndarray, shape (samples,), or None
         Their weights, where inspections have weighted them.
     """
@@ -71,7 +71,7 @@ class Units:
 
     @property
     def integrated(self) -> tuple[str, ...]:
-        """All that is integrated."""
+        """All integrated inputs."""
         return tuple(name for law in (self.element.law, self.shared) if law for name in law.inputs)
 
     @property
@@ -81,12 +81,12 @@ class Units:
 
     @property
     def end_together(self) -> bool:
-        """Whether all units of a world end together, at a time known but for what scales it."""
+        """Whether all units of a world end together, at a time scaled by integrated inputs only."""
         return self.are_alike and self.shared is not None and self.element.law is None
 
     @property
     def nodes(self) -> Floats:
-        """Standard normal quantiles of what is integrated once per world, shape (nodes,)."""
+        """Standard normal quantiles of the inputs integrated once per world, shape (nodes,)."""
         if self.shared is None:
             return np.zeros(1)
         law = self.element.law
@@ -229,7 +229,7 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
 def _repeats(
     inputs: Inputs, shared: Collection[str], integrated_inputs: Collection[str], place: Nesting
 ) -> bool:
-    """Return whether what worlds share, but for what is integrated, is the same in some of them."""
+    """Return whether some worlds have equal values of all shared inputs that are not integrated."""
     names = {inputs.tied.get(name, name) for name in shared} - {*integrated_inputs}
     values = [inputs.values[name] for name in sorted(names)]
     return bool(values) and len(np.unique(values, axis=1).T) < place.samples

@@ -29,7 +29,7 @@ class ChangedEntry(NamedTuple):
 
 
 class InputMoments(NamedTuple):
-    """Mean and standard deviation of an input, in its unit; 0 where it is one number."""
+    """Mean and standard deviation of an input in its unit; sd 0 for a fixed value."""
 
     mean: float
     sd: float

@@ -78,7 +78,7 @@ def _together(elements: Sequence[Element], form: str) -> IndexTarget:
 
 
 def _weights(elements: Sequence[Element], values: np.ndarray) -> tuple[str, ...]:
-    """Return what the elements count, in a sentence; none where nothing varies."""
+    """Return a sentence on the weights of the elements; none where nothing varies."""
     if len(values) == 0 or not (variance := sized(values)[0].var(axis=0)).any():
         return ()
     most = int(variance.argmax())

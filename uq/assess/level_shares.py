@@ -31,7 +31,7 @@ NO_ERROR_OF = "the numerical error is that of the output, not of its {form}"
 
 @dataclass(frozen=True)
 class ByLevel:
-    """What a result says of its levels.
+    """Variance components of the targets of a result.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ def by_level(result: Result, output: str | None = None, *, plain: bool = False) 
 
 
 def _scales(rows: Result, target: IndexTarget) -> Scales:
-    """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
+    """Return the inputs integrated exactly: for logarithms of lives, those that only scale them."""
     element = target.element
     if element is None or target.event or target.refused or not element.declared.scales:
         return Scales({})

@@ -45,7 +45,7 @@ def terms_at(law: Floats, scores: Floats) -> Floats:
 
 
 class TermsOfLaws:
-    """The terms in rows each of which has a law of the input.
+    """Legendre terms in rows that each have a posterior law of the input.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class LearntScale:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that it causes."""
+        """Standard deviation of the logarithms of lives due to the input."""
         return float(abs(self.exponent) * np.log(self.drawn).std())
 
     def below(self, lives: Floats, time: float) -> Floats:
@@ -135,7 +135,7 @@ class LearntScale:
 def learnt_scale(
     rows: Result, inputs: Inputs, exponents: Mapping[str, float]
 ) -> LearntScale | None:
-    """Return the law that inspections left of the integrated input, if it scales lives.
+    """Return the posterior law of the integrated input, if it only scales lives.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def learnt_scale(
 
 
 def learnt_input(rows: Result) -> str:
-    """Return the input whose law in each row is what inspections of a unit left, or ""."""
+    """Return the input with a posterior law in each row, or ""."""
     return str(rows.dataset[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows.dataset else ""
 
 

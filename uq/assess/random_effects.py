@@ -105,7 +105,7 @@ def _mean(share: Floats, part: Replicates, weights: Floats | None) -> Estimate:
 
 
 class Noisy:
-    """The spread over worlds of a probability that is known from some units of each.
+    """Distribution over worlds of a probability that is estimated from several units of each.
 
     Its law is normal on the scale of probits [1]_, fitted by maximum likelihood to the numbers of
     units that ended, as if these were binomial with as many units as give the scatter seen within

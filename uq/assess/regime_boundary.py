@@ -72,7 +72,7 @@ def _exponent(rows: Result) -> Estimate:
 
 
 def boundary_json(statistic: Statistic | None) -> dict[str, Any]:
-    """Return what is known of the boundary in plain data: nothing without several regimes."""
+    """Return the boundary in plain data; empty without several regimes."""
     return {} if statistic is None else {BOUNDARY: {EXPONENT: entry(statistic)}}
 
 
@@ -83,7 +83,7 @@ def still_uncertain(exponent: Estimate) -> Estimate:
 
 
 def in_words(statistic: Statistic) -> str:
-    """Return what an exponent means for a user, in a clause."""
+    """Return the meaning of an uncertainty exponent, in a clause."""
     value, high, low = (1 - end for end in still_uncertain(statistic.estimate).numbers)
     return (
         f"if all inputs are known twice as well, {percent(value)} ({percent_interval(low, high)})"

@@ -16,7 +16,7 @@ from uq.stats.intervals import Replicates
 
 
 class Weighting:
-    """Weights of the rows of a result that make them those of another study.
+    """Importance weights of the rows of a result under the laws of another study.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Weighting:
         return self.integrating(())
 
     def elements(self, outputs: Sequence[str]) -> Iterator[Element]:
-        """Yield the elements of some outputs whose weights can be trusted."""
+        """Yield the elements of the outputs whose weights are reliable."""
         for element in self._rows.elements(outputs):
             law = None
             if element.declared.scales and not element.censored.any():

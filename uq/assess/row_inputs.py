@@ -19,7 +19,7 @@ EVERYWHERE = (-inf, inf)
 
 @dataclass(frozen=True)
 class Inputs:
-    """The uncertain inputs of some rows, and their laws.
+    """Values and laws of the uncertain inputs of rows.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Inputs:
 
 
 def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> Inputs:
-    """Return the inputs of some rows of a result.
+    """Return the uncertain inputs of rows.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ Sizes = list[tuple[int, Estimate]]
 
 
 class Converging(NamedTuple):
-    """The convergence of one output, or of what stands for it.
+    """Running estimates of one output, or of its transform.
 
     Attributes
     ----------

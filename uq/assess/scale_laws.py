@@ -58,7 +58,7 @@ class IndependentScale:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that it causes."""
+        """Standard deviation of the logarithms of lives due to the inputs."""
         return float(self.drawn.std())
 
     def below(self, lives: Floats, time: float) -> Floats:
@@ -68,7 +68,7 @@ class IndependentScale:
         return np.where(np.isnan(lives), 0.0, share)
 
     def longer(self, z: Floats) -> Iterator[Floats]:
-        """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
+        """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in self.term.at(z):
             yield at - self.drawn
 
@@ -111,7 +111,7 @@ class ConditionalScale:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that it causes."""
+        """Standard deviation of the logarithms of lives due to the inputs."""
         drawn = self.drawn if self.other is None else self.drawn / self.other
         return float(abs(self.exponent) * np.log(drawn).std())
 
@@ -129,7 +129,7 @@ class ConditionalScale:
         return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
 
     def longer(self, z: Floats) -> Iterator[Floats]:
-        """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
+        """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in np.sign(self.exponent) * z:
             u = special.ndtr(self.mean + self.deviation * at)
             u = np.clip(u, 2.0**-54, 1 - 2.0**-53)

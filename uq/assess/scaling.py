@@ -25,7 +25,7 @@ NOT_POSITIVE = "it is not always positive"
 
 @dataclass(frozen=True)
 class Integrated:
-    """What is integrated of the lives of an output, and why not more.
+    """Law of the integrated inputs of the lives of an output, and why others are not integrated.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Integrated:
 def integrated(
     rows: Result, output: Output, inputs: Inputs, levels: Collection[str] | None = None
 ) -> Integrated:
-    """Return the law of what scales the lives of an output, given all that does not.
+    """Return the law of the inputs that only scale the lives of an output, given all others.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
 
 
 class _Exponents(NamedTuple):
-    """What inputs do to a life that scales.
+    """Exponents of the inputs in a life that scales.
 
     Attributes
     ----------
@@ -196,7 +196,7 @@ def _independent(
 
 
 def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale:
-    """Return the law of an input given those that it depends on."""
+    """Return the conditional law of an input given its correlated inputs."""
     law, bounds, values = inputs.laws[name], inputs.bounds[name], inputs.values[name]
     if law.times is not None:
         nothing = np.zeros(len(values))
@@ -219,7 +219,7 @@ def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
 
 
 def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> Iterator[Element]:
-    """Yield the elements of some outputs, with the laws of their lives where these are known.
+    """Yield the elements of outputs, with the laws of their lives where inputs are integrated.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> 
 
 
 def why_not_integrated(rows: Result, element: Element) -> str:
-    """Return a sentence on what scales the lives of an element but is not integrated, or ""."""
+    """Return a sentence on inputs that scale lives but are not integrated, or ""."""
     inputs = inputs_of(rows)
     exponents, _, _ = _exponents(inputs, element.declared.scales)
     if not exponents:

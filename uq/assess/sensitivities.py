@@ -36,7 +36,7 @@ class TargetIndices:
     Attributes
     ----------
     name : str
-        That of the target.
+        Name of the target.
     rows_used, groups_dropped : int
         Rows, and groups of rows, with and without a value in each row.
     indices : Indices
@@ -55,14 +55,14 @@ class TargetIndices:
     rows_factor: float = nan
 
     def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
-        """Return the indices of single inputs, or those of pairs."""
+        """Return the indices of single inputs, or of pairs."""
         values = self.indices.values.items()
         return {kind: indices for kind, indices in values if kind.of_pairs == of_pairs}
 
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """The indices of some targets by one method.
+    """Indices of targets by one method.
 
     Attributes
     ----------
@@ -222,7 +222,7 @@ def _conditioned(target: IndexTarget, sample: DesignSample) -> DesignSample:
 
 
 def _counts(*whole: Mask, rows: int) -> tuple[int, int]:
-    """Return the rows in groups that are whole for all of some targets, and the other groups."""
+    """Return the number of rows in groups complete for all targets, and of incomplete groups."""
     every = np.logical_and.reduce(whole)
     return int(every.sum()) * (rows // every.size), int((~every).sum())
 

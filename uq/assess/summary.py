@@ -139,12 +139,12 @@ class Summary:
 
     @property
     def regimes(self) -> Shares:
-        """Share of each regime, also of those that do not occur; empty without regimes."""
+        """Share of each declared regime, 0 if it does not occur; empty without regimes."""
         return self.shares.get(REGIME, {})
 
     @property
     def categories(self) -> dict[str, Shares]:
-        """The same of other categories, of those labels that occur."""
+        """Shares of the labels that occur, of categories other than the regime."""
         return {
             name: {
                 label: statistic for label, statistic in shares.items() if statistic.facts["count"]

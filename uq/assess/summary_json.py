@@ -54,7 +54,7 @@ def _labels(shares: Shares) -> dict[str, Any]:
 
 
 def quality_json(weights: Smoothed | None) -> dict[str, Any]:
-    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
+    """Return effective sample size and tail shape of weights in plain data."""
     return {name: estimate_json.number(number) for name, number in quality(weights).items()}
 
 
@@ -73,7 +73,7 @@ def _described(described: Described) -> dict[str, Any]:
 def written(
     statistics: Iterable[Statistic],
 ) -> Iterator[tuple[tuple[str, ...], list[Statistic], dict[str, Any]]]:
-    """Yield path, statistics and JSON of those that are written together."""
+    """Yield path, statistics and JSON of each group of statistics with one entry."""
     for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
         members = list(group)
         yield parent, members, members[0].kind.write(members)
@@ -95,7 +95,7 @@ def _fit(fit: Fit) -> dict[str, Any]:
 
 
 def put(document: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
-    """Add an entry to JSON at a path, which is made if it is not there."""
+    """Merge an entry into JSON at a path, creating the path if absent."""
     for part in path:
         document = document.setdefault(part, {})
     document |= entry

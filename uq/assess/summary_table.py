@@ -75,6 +75,6 @@ def _cells(column: str, statistic: Statistic) -> dict[str, float]:
 
 
 def _number(estimate: Estimate, end: str) -> float:
-    """Return a number, infinity for never, NaN where it is not known."""
+    """Return a number: infinity for never, NaN if unknown."""
     value = getattr(estimate, end)
     return value if isfinite(value) or (value == inf and end not in estimate.beyond) else nan

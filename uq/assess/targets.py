@@ -22,7 +22,7 @@ class IndexTarget:
     Attributes
     ----------
     name : str
-        That of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
+        Name of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
         ``rate(element)`` and ``P(element<t)``; for regimes ``P(regime=label)``; ``output[:]`` for
         all elements together.
     element : Element or None
@@ -66,7 +66,7 @@ def targets(
     thresholds: Mapping[str, tuple[float, ...]],
     every: bool = False,
 ) -> Iterator[IndexTarget]:
-    """Yield targets of some elements.
+    """Yield the targets of elements.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ INDICES_OF = "these are indices of its {form}; ask for {name} for those of the o
 
 
 def lightened(target: IndexTarget, template: str = INDICES_OF) -> IndexTarget:
-    """Return what replaces a value with a heavy tail, for methods that apportion a variance.
+    """Return the transform of a heavy-tailed value, for methods that apportion a variance.
 
     Parameters
     ----------

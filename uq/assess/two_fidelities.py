@@ -49,13 +49,13 @@ class Sharpened:
     estimate : Estimate
         By control variates.
     reduction : float
-        Variance of the plain estimate over that of this one.
+        Variance reduction factor against the plain estimate.
     plain : Estimate
         From the rows of the result alone.
     failed : Estimate, optional
         Ends of the plain interval with the failed rows at best and at worst, where rows failed.
     note : str
-        Where few rows are hits, or misses: what that means for the estimate.
+        Consequence for the estimate where few rows are hits, or misses.
     """
 
     estimate: Estimate
@@ -67,7 +67,7 @@ class Sharpened:
 
 @dataclass(frozen=True)
 class TwoFidelities:
-    """What `two_fidelities` finds.
+    """Estimates by control variates (`two_fidelities`).
 
     Attributes
     ----------

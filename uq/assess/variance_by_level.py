@@ -54,7 +54,7 @@ class LevelShares:
 
     @property
     def sentences(self) -> list[str]:
-        """Why shares or intervals are missing, and what replaces the output."""
+        """Sentences on missing shares or intervals, and on transforms of the output."""
         reasons: dict[str, list[str]] = {}
         for name, share in self.shares.items():
             if share.reason:
@@ -131,7 +131,7 @@ def shares_of(
 
 
 def _reduced(table: Any, names: Collection[str]) -> Any:
-    """Return what is independent, its units and their repeats, without levels on which none vary.
+    """Return the table over independent samples, units and repeats, without constant levels.
 
     Without chance, the repeats of a unit are one row; without anything own, units are repeats; with
     nothing shared, samples do not matter. Of two levels the inner one takes the place of units.
@@ -152,9 +152,9 @@ def _reduced(table: Any, names: Collection[str]) -> Any:
 
 
 def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, ...], ...]:
-    """Return which levels are told apart: those in each place of a reduced table, outermost first.
+    """Return the levels confounded in each dimension of a reduced table, outermost first.
 
-    Levels in one place cannot be separated.
+    Levels in one dimension cannot be separated.
     """
     _, units, repeats = shape
     if names == tuple(LEVELS) and repeats == 1 < units:
@@ -171,7 +171,7 @@ def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, 
 
 
 def _of_levels(levels: tuple[str, ...], share: Estimate, design: str) -> dict[str, Estimate]:
-    """Return the shares of levels from the share of their place."""
+    """Return the shares of levels from the share of their dimension."""
     if len(levels) == 1:
         return {levels[0]: share}
     advice = {key: several(key, design) for key in ("units", "repeats")}

@@ -29,7 +29,7 @@ SAME = "what if: which inputs are the same cannot be changed"
 
 @dataclass(frozen=True)
 class WhatIf:
-    """The answer to a what-if.
+    """Summary of a result under other laws of its inputs.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def answer(
     asked: AnalysisTable | None = None,
     parts: Collection[str] = STATISTICS,
 ) -> WhatIf:
-    """Return what `what_if` tabulates, or that part of it which is asked for."""
+    """Return the summary that `what_if` tabulates, or the requested part of it."""
     result.refuse_weights("what if")
     if why := result.why_no_statistics:
         raise InputError(f"what if: the rows of a '{result.design_name}' design {why}")

@@ -20,11 +20,11 @@ from uq.text.keys import key_of
 from uq.text.numbers import counted, grouped
 
 _AS_SETTLED = ("known", "source", "tighten", "keep", "chance")
-"""Rules of advice that is given also where everything is settled."""
+"""Rules of advice that is given even if everything is settled."""
 
 
 def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
-    """Yield what to do, the most urgent first; nothing where inspections have weighted the rows.
+    """Yield advice, the most urgent first; none where inspections have weighted the rows.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
 
 
 def _leave_to_chance(levels: VarianceComponents | None) -> Iterator[Advice]:
-    """Yield that tolerances change little, where something that differs each time decides."""
+    """Yield the advice that tolerances change little, where chance is the main driver."""
     leader = None if levels is None else levels.leader
     if levels is not None and leader is not None and leader.name == CHANCE:
         yield Advice(
@@ -95,14 +95,14 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
 
 
 def _unknown(answer: Answer) -> Iterator[Advice]:
-    """Yield that no number of rows settles an event of which nothing is known."""
+    """Yield the advice that no sample size settles an event without an estimate."""
     unknown = [event.sentence for event in answer.asked_events if isnan(event.share.value)]
     for text in [text for text in unknown if text][:1]:
         yield Advice("unknown", f"More rows would not help: {text[:1].lower()}{text[1:]}")
 
 
 def _leading(answer: Answer) -> tuple[Contribution | None, Event | None]:
-    """Return what contributes most to what the study is about, and the event that it decides."""
+    """Return the leading contribution to the subject of the study, and the event that it drives."""
     about = [(event.ranking, event) for event in answer.asked_events]
     lead_ranking = None if answer.lead is None or answer.regimes_first else answer.lead.ranking
     for ranking, event in (*about, (lead_ranking, None)):
@@ -170,7 +170,7 @@ def _tighten(findings: Findings, answer: Answer) -> Iterator[Advice]:
 
 
 def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
-    """Yield where to keep the input that decides an event, where the event is settled to differ."""
+    """Yield the range to keep the leading input in, if the event differs significantly there."""
     _, event = _leading(answer)
     lead = answer.lead
     if event is None or event.curve is None or lead is None or (more := lead.wants_more) is None:
@@ -194,7 +194,7 @@ def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
 
 
 def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
-    """Yield that intervals are missing, or how many rows would settle what the study is about."""
+    """Yield the sample size that settles the subject of the study, or why intervals are missing."""
     rows = len(result)
     if enough.unknown:
         wanted = "know what can be promised" if result.why_no_statistics else "have intervals"

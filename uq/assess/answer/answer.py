@@ -47,7 +47,7 @@ _KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
 
 
 def conclude(findings: Findings) -> Answer:
-    """Return the answer from what is known of a result, computed once."""
+    """Return the answer of a result, computed once."""
     if findings not in _KNOWN:
         draft = without_advice(findings)
         _KNOWN[findings] = replace(draft, advice=tuple(advise(findings, draft)))
@@ -55,7 +55,7 @@ def conclude(findings: Findings) -> Answer:
 
 
 def without_advice(findings: Findings) -> Answer:
-    """Return the answer but for what to do, for which rows are weighted."""
+    """Return the answer without advice, which would take reweighted rows."""
     result = findings.result
     answered = tuple((quantities if len(findings.rows) else only_ranked)(findings))
     regimes = tuple(regimes_of(findings))
@@ -82,7 +82,7 @@ def without_advice(findings: Findings) -> Answer:
 
 
 def beside_levels(draft: Answer, levels: VarianceComponents | None) -> Answer:
-    """Return an answer that says which level decides, and if single inputs are not on it."""
+    """Return an answer with its variance components; events note if their leader is elsewhere."""
     leader = None if levels is None else levels.leader
     if leader is None:
         return replace(draft, levels=levels)
@@ -103,7 +103,7 @@ def beside_levels(draft: Answer, levels: VarianceComponents | None) -> Answer:
 
 
 def _levels(findings: Findings, draft: Answer) -> VarianceComponents | None:
-    """Return which level decides what the study is about; None where that is not known."""
+    """Return the variance components of the subject of the study; None if unknown."""
     if draft.regimes_first:
         (first, *_) = draft.regimes
         return levels_of(findings, first.name, f"whether it is {first.predicate}", first.ranking)
@@ -112,7 +112,7 @@ def _levels(findings: Findings, draft: Answer) -> VarianceComponents | None:
 
 
 def ties_of(result: Result, draft: Answer) -> str:
-    """Return which inputs have the value of one that contributes most in every row, or ""."""
+    """Return a sentence on inputs tied to a leading input, or ""."""
     lead_rankings = [] if draft.lead is None else [draft.lead.ranking]
     rankings = [*(event.ranking for event in draft.asked_events), *lead_rankings]
     leading = {
@@ -132,7 +132,7 @@ def ties_of(result: Result, draft: Answer) -> str:
 
 
 def regimes_of(findings: Findings) -> Iterator[Event]:
-    """Yield the regimes that occur, the most frequent first; one alone needs no words."""
+    """Yield the regimes that occur, the most frequent first; none if there is only one."""
     shares = [
         statistic for statistic in findings.summary.regimes.values() if statistic.facts["count"]
     ]

@@ -10,7 +10,7 @@ from uq.text.numbers import counted
 
 
 def assumptions(result: Result) -> tuple[str, ...]:
-    """Return which laws and fixed values are assumed, or have no source that says it, in words.
+    """Return sentences on assumed laws and fixed values, and on laws without a source.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def _some(names: Sized, total: Sized, noun: str) -> str:
 
 
 def _marks(result: Result, role: str) -> dict[str, str]:
-    """Return how well each parameter of a role is known."""
+    """Return the quality of the source of each parameter with a role."""
     return {
         str(name): mark_of(result, str(name))
         for name, variable in result.dataset.variables.items()

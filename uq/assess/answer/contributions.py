@@ -14,22 +14,22 @@ SMALL = 0.05
 
 @dataclass(frozen=True)
 class AverageEffect:
-    """How a target changes with one input, on average.
+    """Average change of a target with one input.
 
     Attributes
     ----------
     direction : int
-        1 if it rises with the input, -1 if it falls, 0 where that is not clear.
+        1 if it rises with the input, -1 if it falls, 0 if unclear.
     step : str
-        The change of the input: ``10 %``; "" where only the direction is known.
+        The change of the input: ``10 %``; "" if only the direction is known.
     amount : str
-        How much that is in the unit of the input, where the step does not say it.
+        The step in the unit of the input, if it is not relative.
     by : Estimate
         The change of the target.
     unit : DisplayUnit
         Of `by`: ``%`` for relative changes, ``percentage points`` for probabilities.
     verbs : tuple of str
-        What a fall and a rise of the target are called.
+        Verbs for a fall and a rise of the target.
     """
 
     direction: int = 0
@@ -71,7 +71,7 @@ class Contribution:
     unit : DisplayUnit
         Of an index in the unit of the output.
     doubtful : tuple of str
-        Those of the inputs that may as well have no effect.
+        Inputs whose effect is not significant.
     """
 
     inputs: tuple[str, ...]
@@ -90,7 +90,7 @@ class Contribution:
 
     @property
     def sure(self) -> tuple[str, ...]:
-        """The inputs that have more effect than one without."""
+        """The inputs with a significant effect."""
         return tuple(name for name in self.inputs if name not in self.doubtful)
 
     @property
@@ -129,7 +129,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Ranking:
-    """Which inputs contribute to a target.
+    """Ranking of the inputs by their contribution to a target.
 
     Attributes
     ----------
@@ -141,13 +141,13 @@ class Ranking:
     contributions : tuple of Contribution
         The largest first; only those that exceed inputs without effect.
     reason : str
-        Why there is no ranking: no index, or nothing settled; "" where there is one.
+        Reason for a missing ranking: no index, or nothing settled; "" otherwise.
     rows_factor : float
-        How many times the rows would settle it; NaN where that does not apply.
+        Factor on the sample size that would settle it; NaN if not applicable.
     is_flat : bool
         Whether it is settled that no input contributes measurably.
     rivals : tuple of str
-        Inputs of which one would contribute most with another seed, with 95 %; none if not known.
+        Inputs one of which would lead with another seed, with 95 %; none if unknown.
     share_of : str
         The variance that an index is a share of: ``its variance``; "" of other indices and of
         events.
@@ -155,11 +155,11 @@ class Ranking:
         Share of the variance that no single input explains, where inputs are ranked by what each
         explains alone.
     runner_up : float
-        The largest index of the inputs that stand behind the first.
+        The largest index of the inputs ranked after the leader.
     totals : dict of str to float
         Input -> total index, the largest first, where an expansion of these rows gives it.
     remedy : str
-        What shows interactions where `totals` are not known.
+        Way to show interactions if `totals` are unknown.
     """
 
     target: str
@@ -179,12 +179,12 @@ class Ranking:
 
     @property
     def leader(self) -> Contribution | None:
-        """What contributes most, where that is settled."""
+        """The largest contribution, if settled."""
         return self.contributions[0] if self.contributions and not self.reason else None
 
     @property
     def leads(self) -> bool:
-        """Whether what contributes most contributes much."""
+        """Whether the largest contribution is large."""
         leader = self.leader
         if leader is None or (leader.share_of_variance and leader.value < SMALL):
             return False
@@ -215,7 +215,7 @@ class Ranking:
 
     @property
     def sentence(self) -> str:
-        """What contributes most, or why that is not known."""
+        """The leading contribution, or the reason why it is unknown."""
         if self.reason:
             return sentence(self.reason)
         leader = self.leader
@@ -233,7 +233,7 @@ class Ranking:
 
     @property
     def beyond_single(self) -> str:
-        """How much no single input explains, where that could change the order; else ""."""
+        """Share that no single input explains, if it could change the order; else ""."""
         if not self.may_be_overturned or self.of_event:
             return ""
         share = Contribution(("",), (self.unexplained,), True).size
@@ -250,6 +250,6 @@ class Ranking:
 
     @property
     def with_effect(self) -> str:
-        """What contributes most, with direction and size."""
+        """The leading contribution, with direction and size."""
         effect = self.leader.effect if self.leader is not None and self.leads else ""
         return " ".join(filter(None, (self.sentence, effect and sentence(effect))))

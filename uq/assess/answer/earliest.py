@@ -34,7 +34,7 @@ _MOST_INPUTS = 3
 
 @dataclass(frozen=True)
 class Earliest:
-    """The rows that end first, and what distinguishes them from the others.
+    """The rows that end first, and their distinguishing inputs and regimes.
 
     Attributes
     ----------
@@ -42,19 +42,19 @@ class Earliest:
     rows : tuple of int
         The numbers of the first, of all rows of the result.
     lives : tuple of float
-        Theirs.
+        Their lives.
     size, total : int
         Numbers of the earliest rows, and of all that have a life.
     inputs : tuple of Apart, or None
-        Those whose values differ, the most different first; None where that cannot be known.
+        Inputs whose values differ, the most different first; None if undetermined.
     units : tuple of DisplayUnit
-        Theirs.
+        Their units.
     regimes : tuple of RegimeOfFirst
-        Those that the earliest are in more often than all, else that of most of them.
+        Regimes more frequent among the earliest than among all, else their most frequent.
     unit : DisplayUnit
         Of the lives.
     command : str
-        What shows the first of them.
+        Command that shows the first of them.
     """
 
     element: str
@@ -80,7 +80,7 @@ class Earliest:
 
     @property
     def why(self) -> str:
-        """What distinguishes the earliest rows; "" where that cannot be known."""
+        """The distinguishing inputs of the earliest rows; "" if undetermined."""
         if self.inputs is None:
             return ""
         share = f"{100 * self.size / self.total:.2g} %"
@@ -93,7 +93,7 @@ class Earliest:
 
     @property
     def where(self) -> str:
-        """The regime of most of the earliest, and whether it is less frequent among all."""
+        """The most frequent regime of the earliest rows, compared with all rows."""
         if not self.regimes:
             return ""
         regime = self.regimes[0]
@@ -106,19 +106,19 @@ class Earliest:
 
     @property
     def sentence(self) -> str:
-        """What distinguishes the earliest rows, and their regime."""
+        """The distinguishing inputs of the earliest rows, and their regime."""
         return " ".join(filter(None, (self.why, self.where)))
 
     @property
     def lines(self) -> list[str]:
-        """All of it."""
+        """All sentences."""
         return [*filter(None, (self.sentence, f"{self.first} To see the first: {self.command}"))]
 
 
 def earliest(
     findings: Findings, element: Element, unit: DisplayUnit, part: Replicates
 ) -> Earliest | None:
-    """Return which rows end first, and what distinguishes them; None where none does.
+    """Return the rows that end first and their distinguishing inputs; None if no row ends.
 
     Parameters
     ----------

@@ -24,26 +24,26 @@ class Answer:
     title : str
     rows, failed : int
     quantities : tuple of Quantity
-        The one that the study is about first.
+        The subject of the study first.
     regimes : tuple of Event
         Shares of the regimes, the most frequent first.
     advice : tuple of Advice
     notes : tuple of str
-        What could not be said, and why.
+        Missing results and their reasons.
     regimes_first : bool
         Whether the study is about the regimes: it names them before all other outputs.
     levels : VarianceComponents or None
-        Which level decides what the study is about, where a sample has several rows.
+        Variance components of the subject of the study, where samples have several rows.
     starts_alike : str
-        That the start is the same in all rows, where it might decide the regime, or "".
+        Sentence on a start that is equal in all rows but might decide the regime, or "".
     enough : Enough
-        Whether the rows are.
+        Sufficiency of the sample size.
     assumptions : tuple of str
-        Which laws and fixed values are assumed.
+        Sentences on assumed laws and fixed values.
     ties : str
-        Which inputs have the value of one that contributes most to what the study is about, or "".
+        Sentence on inputs tied to a leading input, or "".
     mixing : Intermingled
-        How intermingled the regimes are, of a study about them.
+        Intermingling of the regimes, of a study about them.
     """
 
     title: str
@@ -63,7 +63,7 @@ class Answer:
 
     @property
     def rows_sentence(self) -> str:
-        """How many rows were computed."""
+        """Sentence on the number of computed rows."""
         if self.failed:
             return f"{grouped(self.failed)} of {grouped(self.rows)} rows failed."
         return (
@@ -84,20 +84,20 @@ class Answer:
 
     @property
     def events(self) -> list[Event]:
-        """All events, those of the regimes last."""
+        """All events, regimes last."""
         return [event for quantity in self.quantities for event in quantity.events] + [
             *self.regimes
         ]
 
     @property
     def regimes_sentence(self) -> str:
-        """The shares of the main regimes; "" where there is one at most."""
+        """The shares of the main regimes; "" if there is at most one."""
         shares = [f"{share_text(regime.share)} {regime.predicate}" for regime in self.main_regimes]
         return f"{', '.join(shares)}." if shares else ""
 
     @property
     def regime_causes(self) -> list[Event]:
-        """The main regimes of which is known what decides them; the first, the rest, only alone."""
+        """The main regimes with a leading input; the most frequent only if no other has one."""
         ranked = [
             regime
             for regime in self.main_regimes
@@ -131,7 +131,7 @@ class Answer:
 
     @property
     def level_lines(self) -> list[str]:
-        """Which level decides, as far as that is known."""
+        """Sentences on the variance components; none if unknown."""
         if self.levels is None:
             return []
         return [*filter(None, (self.levels.sentence, self.levels.switching))]

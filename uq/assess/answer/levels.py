@@ -17,7 +17,7 @@ _MOST_NAMED = 4
 
 @dataclass(frozen=True)
 class VarianceComponent:
-    """The share of the variance that a level has.
+    """Share of the variance due to one level.
 
     Attributes
     ----------
@@ -25,9 +25,9 @@ class VarianceComponent:
     words : str
         ``the start``, ``the machine``.
     inputs : tuple of str
-        On this level, those that contribute most first.
+        Inputs of this level, the largest contributions first.
     ranked : int
-        How many of them contribute.
+        Number of contributing inputs.
     share : Estimate
     """
 
@@ -39,7 +39,7 @@ class VarianceComponent:
 
     @property
     def inputs_named(self) -> str:
-        """Its inputs by their names: those that contribute, or the first ones."""
+        """Its contributing inputs by their names, or the first inputs."""
         named = [
             called(name) for name in self.inputs[: min(self.ranked or _MOST_NAMED, _MOST_NAMED)]
         ]
@@ -49,16 +49,16 @@ class VarianceComponent:
 
 @dataclass(frozen=True)
 class VarianceComponents:
-    """Which level decides.
+    """Variance components of a target.
 
     Attributes
     ----------
     target : str
-        What they are shares of, as `uq.levels` names it.
+        Name of the target, as in `uq.levels`.
     subject : str
         The quantity or question decided: ``its scatter``, ``whether it is periodic``.
     variance : str
-        Whose shares they are: ``the variance of its logarithm``.
+        The apportioned variance: ``the variance of its logarithm``.
     levels : tuple of VarianceComponent
         Levels on which something varies, the largest share first.
     another : Estimate or None
@@ -73,13 +73,13 @@ class VarianceComponents:
 
     @property
     def leader(self) -> VarianceComponent | None:
-        """The level that has most of the variance, if that is settled."""
+        """The level with most of the variance, if settled."""
         first = self.levels[0]
         return first if first.share.has_interval and first.share.low > 0.5 else None
 
     @property
     def sentence(self) -> str:
-        """Which level decides, with its share."""
+        """The main level with its share."""
         first, rest = self.levels[0], self.levels[1:]
         if self.leader is None:
             shares = [
@@ -96,7 +96,7 @@ class VarianceComponents:
 
     @property
     def switching(self) -> str:
-        """How often a repeat ends in another regime; "" where that is not known."""
+        """Share of repeats that end in another regime; "" if unknown."""
         if self.another is None or isnan(self.another.value):
             return ""
         return f"{share_text(self.another)} of repeats end in another regime."
@@ -105,7 +105,7 @@ class VarianceComponents:
 def levels_of(
     findings: Findings, target: str, subject: str, ranking: Ranking | None = None
 ) -> VarianceComponents | None:
-    """Return which level decides a target; None where that is not known.
+    """Return the variance components of a target; None if unknown.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def levels_of(
 
 
 def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[str, str]:
-    """Return what the levels are called: by what is on them."""
+    """Return the names of the levels, by their inputs."""
     drawn_anew = [name for name, level in inputs.items() if level == CHANCE]
     starts = any("initial" in findings.result.dataset[name].attrs for name in drawn_anew)
     return {
@@ -170,7 +170,7 @@ def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[st
 
 
 def starts_alike(result: Result) -> str:
-    """Return that the start is the same in all rows, where a model has one to vary, or ""."""
+    """Return a sentence on a start that could vary but is equal in all rows, or ""."""
     starts = [
         name
         for name, variable in result.dataset.variables.items()

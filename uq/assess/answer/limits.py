@@ -23,7 +23,7 @@ class Limit:
     predicate : str
         The event that is rare in it: ``end within 60 s``; or that is then frequent.
     is_wanted : bool
-        Whether that is wanted, so that it is the frequent side.
+        Whether the event is wanted, so that it is the frequent side.
     at : float
         The limit, its inner end; NaN where there is none.
     end : float
@@ -33,7 +33,7 @@ class Limit:
     of_values : bool
         Whether the input has few values, so that nothing is averaged.
     share : Estimate
-        How probable it is in the part of the input next to the limit, or in the last part.
+        Its probability in the part of the input next to the limit, or in the last part.
     unit : DisplayUnit
         Of the input.
     why : str
@@ -70,12 +70,12 @@ class Limit:
 
     @property
     def averaged(self) -> str:
-        """That the range is averaged over, as its rows are distributed; "" for single values."""
+        """Note that the probability is averaged over the range; "" for single values."""
         return "" if self.of_values else " on average"
 
     @property
     def few(self) -> str:
-        """How many there are in the range."""
+        """Bound on the probability in the range."""
         return _few(self.is_wanted)
 
 

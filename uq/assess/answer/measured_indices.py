@@ -1,4 +1,4 @@
-"""The index of each input, and what tells it from the others."""
+"""Index of each input, and its separation from the others."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -34,7 +34,7 @@ class Measured:
     index : Estimate
         With an interval where one is known.
     half : float
-        Half the width of its interval, or what tells it from another.
+        Half-width of its interval, or another measure of its error.
     counts : bool
         Whether it is larger than those of inputs without effect.
     shared : dict of str to float
@@ -53,7 +53,7 @@ class Measured:
 
 
 def method_for(result: Result, event: bool) -> str | None:
-    """Return the method that ranks: the first that the study asks for, or that its design feeds.
+    """Return the ranking method: the first that the study asks for, or that its design supports.
 
     Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
     probability of a rare one. None for rows with weights. Of shares of the variance alone, the ones
@@ -123,7 +123,7 @@ def _size(index: Estimate) -> float:
 
 
 def _parts(result: Result, method: str, name: str) -> dict[str, dict[str, list[float]]]:
-    """Return the indices from independent parts of the rows: kind -> input -> one of each part."""
+    """Return the indices from independent parts of the rows: kind -> input -> one per part."""
     if result.design.layout is not PLAIN:
         return {}
     result = result.first_rows

@@ -8,7 +8,7 @@ from uq.text.symbols import readable
 
 
 class NumberTarget:
-    """An element of an output, or what is derived from one.
+    """An element of an output, or a quantity derived from it.
 
     Parameters
     ----------

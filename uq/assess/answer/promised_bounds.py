@@ -31,7 +31,7 @@ def promise_of(
     wanted: str,
     unit: DisplayUnit,
 ) -> ToleranceBound:
-    """Return what can be promised of an element.
+    """Return the tolerance bound of an element, or quantiles in its place.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def promise_of(
         With the quantiles and bounds that the answer needs.
     element : Element
     analysis : AnalysisTable
-        What the study asks for.
+        The [analysis] of the study.
     wanted : {"", "above", "below"}
         The good side of a limit.
     unit : DisplayUnit
@@ -119,7 +119,7 @@ def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterat
 
 
 def known_of(element: Element) -> SampleSupport:
-    """Return which values numbers are about: those of sound rows that are defined."""
+    """Return the support of the sample: defined values of rows that did not fail."""
     sound = ~element.failed
     share = float(element.undefined[sound].mean()) if sound.any() else 0.0
     return SampleSupport(bool(element.failed.any()), share)
@@ -135,18 +135,18 @@ def _recurs(element: Element) -> bool:
 
 
 def quantile_of(described: Described, p: float) -> Estimate:
-    """Return a quantile that was asked for, else nothing."""
+    """Return a requested quantile, else an estimate without a number."""
     statistic = described.find("quantiles", repr(p))
     return statistic.best.estimate if statistic else NOTHING
 
 
 def end_of(element: Element) -> str:
-    """Return what a life does at its end, in words."""
+    """Return the verb for the end of a life."""
     return "succeed" if element.declared.success else "end"
 
 
 def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
-    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+    """Return a bound on the wrong side of its quantile; NaN if there is none.
 
     By chance few rows give one, where the quantile is better known since lives are integrated.
     """
@@ -159,7 +159,7 @@ def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
 def _sides(
     element: Element, described: Described, thresholds: tuple[float, ...], wanted: str
 ) -> tuple[bool, bool]:
-    """Return whether a lower and an upper bound are what matters."""
+    """Return whether a lower and an upper bound matter."""
     if element.is_lifetime:
         early = bool(element.declared.success)  # the latest time of a success is what matters
         return not early, early

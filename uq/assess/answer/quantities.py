@@ -52,7 +52,7 @@ _NARROW = 0.003  # a range over its values, of which three digits show but few s
 
 
 def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
-    """Return the answer for each element that the study asks for, the one it is about first.
+    """Return the answer for each element that the study asks for, its subject first.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
 
 
 def only_ranked(findings: Findings) -> list[Quantity]:
-    """Return what the inputs contribute, of rows that have indices but no statistics."""
+    """Return rankings alone, of rows that have indices but no statistics."""
     result = findings.result
     ranked = []
     for element in result.elements(_by_importance(result, result.analysis)):
@@ -98,7 +98,7 @@ def only_ranked(findings: Findings) -> list[Quantity]:
 
 
 def _by_importance(result: Result, asked: AnalysisTable) -> list[str]:
-    """Return the outputs that a study asks for, the one that it is about first."""
+    """Return the outputs that a study asks for, its subject first."""
     declared = result.outputs
     return sorted(
         result.shown_outputs(asked),
@@ -119,7 +119,7 @@ def _with(described: Described, more: Described | None) -> Described:
 
 
 def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
-    """Return what a study asks for, with the bounds and quantiles that the answer needs."""
+    """Return the [analysis] of a study with the bounds and quantiles that the answer needs."""
     coverage = asked.tolerance.coverage if asked.tolerance else COVERAGE
     needed = {LOW, MIDDLE, HIGH, coverage, round(1 - coverage, 12)}
     missing = tuple(sorted(needed - set(asked.quantiles)))
@@ -185,13 +185,13 @@ def _quantity(
 
 
 def assumed_scales(result: Result, element: Element) -> tuple[str, ...]:
-    """Return what all lives are proportional to, or to the reciprocal of, and is assumed."""
+    """Return the assumed quantities that all lives scale with, or with the reciprocal of."""
     scales = (name for name in element.declared.scales if name in result.dataset)
     return tuple(name for name in scales if mark_of(result, name) == ASSUMED)
 
 
 def _may_end_badly(result: Result, element: Element) -> bool:
-    """Return whether the rows that end first are of interest, and stand for themselves."""
+    """Return whether the rows that end first are of interest and have equal weight."""
     return element.is_lifetime and not element.declared.success and not result.has_weights
 
 
@@ -229,7 +229,7 @@ def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking
 
 
 def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
-    """Return a ranking that says if it is of lives as computed, while other numbers integrate."""
+    """Return a ranking, marked if it is of lives as computed while other numbers integrate."""
     facts = [statistic.facts.get("integrated") for statistic in described.parts["integrated"]]
     if ranking is None or not ranking.index_meaning or not any(facts):
         return ranking
@@ -256,7 +256,7 @@ def _events(
 
 
 def event(findings: Findings, target: str, predicate: str, statistic: Statistic) -> Event:
-    """Return what is known of an event: its probability, what decides it, and where.
+    """Return an event: its probability, ranking, and probability over the leading input.
 
     Parameters
     ----------

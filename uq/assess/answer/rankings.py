@@ -39,7 +39,7 @@ _WITHIN = 4.0  # standard deviations that a step may span
 
 
 def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
-    """Return which inputs contribute to a target.
+    """Return the ranking of the inputs of a target.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
         Of a target.
     method : str
     verbs : tuple of str
-        What a fall and a rise of the target are called.
+        Verbs for a fall and a rise of the target.
 
     Returns
     -------
@@ -148,14 +148,14 @@ def _totals(findings: Findings, name: str) -> dict[str, float]:
 
 
 def _scale(first: Measured, kind: IndexKind) -> float:
-    """Return what an index is compared with: those in the unit of the output, with the largest."""
+    """Return the reference of an index: the largest, if in the unit of the output, else 1."""
     return abs(first.index.value) if kind.unit == "output" else 1.0
 
 
 def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
-    """Return the inputs of which one would contribute most with another seed, with 95 %.
+    """Return the inputs one of which would lead with another seed, with 95 %.
 
-    None where there is no other, or nothing tells them apart.
+    None without another input, or if errors are unknown.
     """
     first = measured[0]
     if len(measured) == 1 or not all(isfinite(candidate.half) for candidate in measured):
@@ -164,7 +164,7 @@ def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
 
 
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
-    """Return why no index counts, how many times the rows would settle it, and if none is large."""
+    """Return the reason why no index counts, the factor on the rows, and whether none is large."""
     text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
     which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
     if not isfinite(first.half):
@@ -181,7 +181,7 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
 
 
 def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat: bool) -> str:
-    """Return that inputs contribute alike, or none of them much."""
+    """Return a clause: inputs contribute alike, or none contributes much."""
     most = f"is {first.index.value:.2f} at most"
     if is_flat:
         does = "decides that alone" if of_event else "explains much"
@@ -190,7 +190,7 @@ def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat
 
 
 def _groups(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:
-    """Yield inputs together that are twins or whose indices do not distinguish them."""
+    """Yield groups of inputs that are twins or have indistinguishable indices."""
     laws = {
         name: None if isinstance(law, Tied) else law.model_dump(exclude={"source"})
         for name, law in result.study.uncertain.items()

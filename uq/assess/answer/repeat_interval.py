@@ -17,18 +17,18 @@ MOST_NAMED = 3
 
 @dataclass(frozen=True)
 class PredictionInterval:
-    """What the same study with another seed would most likely find.
+    """Prediction interval of a repetition of the study with another seed.
 
     Attributes
     ----------
     subject : str
         ``the 5 % quantile``, or the event of a share: ``end within 24 hours``; "" for none.
     low, high : float
-        Between which it would lie with a probability of 95 %.
+        Ends of the 95 % prediction interval.
     is_share : bool
     unit : DisplayUnit
     ranking : str
-        What would contribute most; "" where that is not known.
+        The leading input of the repetition, in words; "" if unknown.
     """
 
     subject: str = ""
@@ -40,7 +40,7 @@ class PredictionInterval:
 
     @property
     def sentence(self) -> str:
-        """What it would find; "" where that is not known."""
+        """The prediction in words; "" if unknown."""
         number = ""
         if self.subject and self.is_share:
             number = f"{percent_interval(self.low, self.high)} would {self.subject} (95 %)"
@@ -88,7 +88,7 @@ def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
 def repeated_quantile(
     promise: ToleranceBound | None, likely: Range | None, ranking: Ranking | None
 ) -> PredictionInterval:
-    """Return what would be found of the quantile that a promise bounds, and of the ranking.
+    """Return the prediction interval of the quantile that a promise bounds, and of the ranking.
 
     A low quantile is no larger than the upper end of the likely range, which matters where values
     jump, and a high one no smaller than its lower end.
@@ -109,7 +109,7 @@ def repeated_quantile(
 
 
 def repeated_share(predicate: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
-    """Return what would be found of the share of rows that do what is said, and of the ranking."""
+    """Return the prediction interval of the probability of an event, and of the ranking."""
     low, high = found_again(share, False)
     subject = predicate if isfinite(low) else ""
     return PredictionInterval(
@@ -118,7 +118,7 @@ def repeated_share(predicate: str, share: Estimate, ranking: Ranking | None) -> 
 
 
 def _ranked_again(ranking: Ranking | None) -> str:
-    """Return what would contribute most, in words; "" where that is not known."""
+    """Return the leading input of a repetition, in words; "" if unknown."""
     if ranking is None or ranking.denies_a_leader:
         return ""
     if ranking.leader is None:

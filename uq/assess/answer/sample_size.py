@@ -28,14 +28,14 @@ _BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
 
 @dataclass(frozen=True)
 class Unsettled:
-    """Something that the rows do not settle.
+    """A result that the sample size does not settle.
 
     Attributes
     ----------
     clause : str
         The uncertainty in words, without its remedy.
     factor : float
-        How many times the rows would settle it; infinite where no number would.
+        Factor on the sample size that would settle it; infinite if no number would.
     """
 
     clause: str
@@ -64,7 +64,7 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
 
 
 def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
-    """Yield the bounds that the study asks for and the rows do not give."""
+    """Yield the requested bounds that the sample size does not support."""
     rows = len(findings.rows)
     for key, words in _BOUNDS.items():
         described = (findings.summary.outputs[quantity.name] for quantity in answered)
@@ -77,7 +77,7 @@ def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterat
 
 
 def unsettled_share(event: Event) -> Iterator[Unsettled]:
-    """Yield that the probability of an event is not settled."""
+    """Yield the probability of an event, if not settled."""
     share = event.share
     if isnan(share.value) and event.sentence:
         yield Unsettled(f"{event.sentence[:1].lower()}{event.sentence[1:-1]}", inf)

@@ -17,21 +17,21 @@ from uq.result.elements import Element
 from uq.text.numbers import capitalized, counted, percent
 
 NOTABLE = 0.01
-"""A smaller share of the variance is not worth a word."""
+"""A smaller share of the variance is negligible."""
 
 Sides = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class OwnError:
-    """What the rows' own error would do.
+    """Effect of the numerical error of the rows on a promise.
 
     Attributes
     ----------
     bounds : tuple of float
         Lower and upper, as promised; NaN without one.
     worse : tuple of float
-        The same if every value were wrong by its own error, to the unsafe side.
+        The bounds if every value were wrong by its error, to the unsafe side.
     are_quantiles : bool
         Whether quantiles are promised, for want of tolerance bounds.
     share : float
@@ -58,7 +58,7 @@ class OwnError:
 
     @property
     def sentence(self) -> str:
-        """What the error would do; "" where it is not worth a word."""
+        """The effect of the error in words; "" if negligible."""
         if not (self._moved or self.share >= NOTABLE or self.unstated):
             return ""
         about = (self._moved, self._of_variance, self._missing)
@@ -66,7 +66,7 @@ class OwnError:
 
     @property
     def _moved(self) -> str:
-        """Where the bounds would lie, of those that move by a digit that is shown."""
+        """The new bounds, of those that change in a shown digit."""
         noun, ways = "life" if self.is_life else "value", ("overestimated", "underestimated")
         now, then = ([*self._texts(ends)] for ends in (self.bounds, self.worse))
         moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
@@ -113,13 +113,13 @@ class OwnError:
 def own_error_of(
     promise: ToleranceBound, described: Described, element: Element, context: Context
 ) -> OwnError | None:
-    """Return what the rows' own error would do to a promise; None where no error is stated.
+    """Return the effect of the stated errors of rows on a promise; None if none is stated.
 
     Parameters
     ----------
     promise : ToleranceBound
     described : Described
-        The statistics that it is from.
+        The statistics behind it.
     element : Element
         Of an angle, its magnitude.
     context : Context

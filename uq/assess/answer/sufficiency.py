@@ -24,24 +24,24 @@ from uq.text.numbers import capitalized, rows_in_words
 
 @dataclass(frozen=True)
 class Enough:
-    """Whether the rows are enough.
+    """Sufficiency of the sample size.
 
     Attributes
     ----------
     unknown : str
-        Why that is not known, or "".
+        Reason why it is unknown, or "".
     question : tuple of Unsettled
-        What is not settled of that which the study is about, the least settled first.
+        Unsettled results on the subject of the study, the least settled first.
     besides : tuple of Unsettled
-        The same of everything else that it asks for.
+        Unsettled results on everything else, the least settled first.
     errors : Errors or None
-        Of what it is about, where the error of the rows themselves is the larger.
+        Errors of the subject, if the numerical error exceeds the sampling error.
     unit : DisplayUnit
         Of these errors.
     again : PredictionInterval
-        What another seed would find.
+        Prediction interval for another seed.
     others : tuple of str
-        What is not settled besides the first of the question, in sentences.
+        Sentences on all unsettled results but the first of the question.
     """
 
     unknown: str = ""
@@ -54,12 +54,12 @@ class Enough:
 
     @property
     def every(self) -> tuple[Unsettled, ...]:
-        """All that is not settled, the least settled first."""
+        """All unsettled results, the least settled first."""
         return tuple(sorted(self.question + self.besides, key=lambda shortfall: -shortfall.factor))
 
     @property
     def sentence(self) -> str:
-        """Whether they are enough, and what another seed would find; "" where nothing is known."""
+        """Sufficiency and prediction for another seed; "" if unknown."""
         again = self.again.sentence
         if self.unknown:
             return again
@@ -75,7 +75,7 @@ class Enough:
 
     @property
     def finer(self) -> str:
-        """That the error of the rows themselves is the larger; "" where it is not."""
+        """Advice on a dominant numerical error; "" if it does not dominate."""
         if self.errors is None:
             return ""
         numerical, sampling = (
@@ -97,9 +97,9 @@ def enough_of(
     ----------
     findings : Findings
     answered : sequence of Quantity
-        The one that the study is about first.
+        The subject of the study first.
     regimes : sequence of Event
-        Those that the study is about; none if it is about a quantity.
+        The subject of the study; none if that is a quantity.
     """
     result = findings.result
     why = result.why_no_statistics
@@ -149,19 +149,19 @@ def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInt
 
 
 def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
-    """Return the errors of a quantity where that of the rows themselves is the larger."""
+    """Return the errors of a quantity, if its numerical error exceeds its sampling error."""
     (element,) = findings.rows.named_elements(quantity.name)
     errors = compared(findings.rows, element, findings.summary.outputs[quantity.name])
     return errors if errors.warning else None
 
 
 def settled(shortfall: Unsettled, result: Result) -> str:
-    """Return what is not settled, and how many rows in all would settle it."""
+    """Return an unsettled result and the sample size that would settle it."""
     return f"{shortfall.clause}; {needed(shortfall, result)} in all would settle it."
 
 
 def needed(shortfall: Unsettled, result: Result) -> str:
-    """Return the rows that would settle it, and of how many samples where these have several."""
+    """Return the number of rows that would settle it, with samples if these have several rows."""
     many = "more than" if shortfall.factor > MOST else "about"
     factor = min(shortfall.factor, MOST)
     rows = f"{many} {rows_in_words(factor * result.dataset.sizes['sample'])} rows"

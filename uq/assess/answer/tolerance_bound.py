@@ -14,21 +14,21 @@ _ONE_END = (1 + CONFIDENCE) / 2
 
 @dataclass(frozen=True)
 class SampleSupport:
-    """Which values a number is about.
+    """Values that a statistic describes.
 
     Attributes
     ----------
     rows_failed : bool
         Whether there are rows without a value because they failed.
     undefined : float
-        Share of the rows in which there is none.
+        Share of the rows without a defined value.
     """
 
     rows_failed: bool = False
     undefined: float = 0.0
 
     def phrase(self, noun: str) -> str:
-        """Return which they are: ``of the computed lives``; "" for all."""
+        """Return them in words: ``of the computed lives``; "" for all."""
         if self.undefined > 0:
             return f"of the defined {noun}"
         return f"of the computed {noun}" if self.rows_failed else ""
@@ -51,7 +51,7 @@ class BoundaryAtom:
     share: float
 
     def sentence(self, unit: DisplayUnit) -> str:
-        """Return how many they are, in words."""
+        """Return their share in words."""
         which = "largest" if self.upper else "smallest"
         text = f"{percent(self.share)} of the rows share the {which} value, {unit.text(self.value)}"
         return f"{text}, at which values may be cut off"
@@ -59,7 +59,7 @@ class BoundaryAtom:
 
 @dataclass(frozen=True)
 class ToleranceBound:
-    """A value that can be promised.
+    """A tolerance bound that can be promised, or conservative quantiles.
 
     Attributes
     ----------
@@ -73,22 +73,22 @@ class ToleranceBound:
     failed : tuple
         The same quantiles with failed rows at either side; None where none failed.
     reason : str
-        Why there is no tolerance bound, or "".
+        Reason for a missing tolerance bound, or "".
     unit : DisplayUnit
     is_life, of_magnitude : bool
         Whether it is a life that ends; whether it is the magnitude of an angle.
     ends : str
-        What a life does at its end.
+        Verb for the end of a life.
     joint : tuple of str
         Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
     support : SampleSupport
-        Which values it is about.
+        Values that it describes.
     recurs : bool
         Whether rows have equal values, so that many may have that of a bound.
     ranks : tuple of int
         Places of the bounds among all rows, the smallest first; 0 without one.
     rows : int
-        How many rows these are.
+        Number of all rows.
     piled : tuple of BoundaryAtom
         Instead of bounds: sides on which too many rows have the last value for one.
     """
@@ -113,13 +113,13 @@ class ToleranceBound:
 
     @property
     def sentence(self) -> str:
-        """What can be promised, and where rows pile up; "" where nothing can be said."""
+        """The promise, and boundary atoms; "" if there is none."""
         piles = (f"{atom.sentence(self.unit)}." for atom in self.piled)
         return " ".join(filter(None, (self._promised, *piles)))
 
     @property
     def probabilities(self) -> tuple[float, float]:
-        """Those of its quantiles."""
+        """Probabilities of its quantiles."""
         return round(1 - self.coverage, 12), self.coverage
 
     @property
@@ -151,7 +151,7 @@ class ToleranceBound:
         return f"{'; '.join(cautious)}." if cautious else ""
 
     def of_quantile(self, probability: float) -> "ToleranceBound | None":
-        """Return the same with the bound of one quantile alone.
+        """Return it with the bound of one quantile alone.
 
         None where there is none, or an end of the interval of the quantile would not bound it with
         this confidence.
@@ -163,7 +163,7 @@ class ToleranceBound:
         return replace(self, upper=nan) if isfinite(self.lower) else None
 
     def would_be(self, quantile: Estimate, before: Estimate) -> str:
-        """Return what an end of the interval of the quantile would be, beside the same now.
+        """Return a sentence on the new end of the interval of the quantile, beside the present one.
 
         "" without it, or where it is no better than now: the rows may be too few. It is called what
         it is, and not a bound of its coverage: the tolerance bound, of another estimator, is.
@@ -177,14 +177,14 @@ class ToleranceBound:
 
     @property
     def end_of_quantile(self) -> str:
-        """What an end of the interval of the quantile that it bounds would be, up to the number."""
+        """Opening of the sentence on the new end of the interval of the bounded quantile."""
         is_upper = isfinite(self.upper)
         side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
         quantile = f"{100 * p:.3g} % quantile{' of magnitudes' * self.of_magnitude}"
         return f"The {side} end of the interval of the {quantile} would then be"
 
     def opening(self) -> str:
-        """Return what a single bound promises, up to the bound."""
+        """Return the opening of the promise of a single bound, up to the bound."""
         side = self._side(isfinite(self.upper))
         share = f"at least {100 * self.coverage:g} %"
         return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
@@ -195,7 +195,7 @@ class ToleranceBound:
 
     @property
     def basis(self) -> str:
-        """What kind of bound it is, or why there is none."""
+        """The kind of bound, or the reason why there is none."""
         if not (isfinite(self.lower) or isfinite(self.upper) or self.reason):
             return ""
         if not self.reason:
@@ -222,7 +222,7 @@ class ToleranceBound:
 
     @property
     def _of_bounded(self) -> str:
-        """Which values a tolerance bound is about: failed rows count as beyond it."""
+        """Values that a tolerance bound describes: failed rows count as beyond it."""
         return replace(self.support, rows_failed=False).phrase(self._noun)
 
     @property
@@ -246,7 +246,7 @@ class ToleranceBound:
 class Range:
     """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
 
-    ``ends`` is what a life does at its end, ``support`` which values they describe.
+    ``ends`` is the verb for the end of a life, ``support`` which values they describe.
     """
 
     low: Estimate
@@ -261,7 +261,7 @@ class Range:
 
     @property
     def sentence(self) -> str:
-        """Range, median, and how many never end, as far as they are known."""
+        """Range, median, and share that never ends, as far as known."""
         parts = []
         noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
         of_values = self.support.phrase(noun) or "of the magnitudes" * self.of_magnitude
@@ -282,7 +282,7 @@ class Range:
 
     @property
     def _never(self) -> str:
-        """How many never end; "" where that is not known, or it is no life."""
+        """Share that never ends; "" if unknown, or not of a life."""
         if self.never.value == 0 and self.never.has_interval:
             most = rounded(100 * self.never.high, inf)
             verb = self.ends + "s"

@@ -10,7 +10,7 @@ from uq.assess.findings import Findings
 
 
 def verdict(findings: Findings, output: str | None = None) -> list[str]:
-    """Return whether the rows are enough, in sentences, the least settled first.
+    """Return the verdict on the sample size in sentences, the least settled first.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ class DisplayUnit(NamedTuple):
     name : str
         "" for a pure number.
     per : float
-        What numbers are divided by.
+        Divisor of the numbers.
     resolution : float
         The smallest difference that digits must show, before the division; 0 for three digits.
     """
@@ -120,7 +120,7 @@ def _twins_called(stem: str, names: Sequence[str]) -> str:
 
 
 def twin_of(name: str) -> str:
-    """Return what the name of an input is without its number: ``unbalance`` of ``unbalance_2``."""
+    """Return the name of an input without its number: ``unbalance`` of ``unbalance_2``."""
     match = _TWIN.fullmatch(name)
     return match[1] if match else name
 

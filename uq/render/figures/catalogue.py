@@ -92,7 +92,7 @@ class Drawable:
 
     @property
     def caption(self) -> str:
-        """What it shows."""
+        """Its caption: subject, method and part."""
         result, name = self.findings.result, self.subject.name
         words = (
             str(result.dataset[name].attrs["long_name"])
@@ -115,7 +115,7 @@ class Drawable:
 def drawables(
     figures: Mapping[str, Entry], findings: Findings, section: str | None = None
 ) -> Iterator[Drawable]:
-    """Yield every figure of a result, or those of one section of its report, in order.
+    """Yield every figure of a result, or of one section of its report, in order.
 
     Neighbouring entries with the same subjects alternate: all figures of one output come before
     those of the next.

@@ -170,7 +170,7 @@ def _numbers(lines: pd.DataFrame) -> list[Floats]:
 
 
 def _over_samples(axes: Axes, result: Result) -> str:
-    """Draw the axis of samples, and return what the bands are."""
+    """Draw the axis of samples, and return the title's note on intervals."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: grouped(round(value)))

@@ -238,7 +238,7 @@ def _mark_bounds(
 
 
 def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: str) -> set[str]:
-    """Mark the B-lives of an element with their intervals, and return the names of those known."""
+    """Mark the B-lives of an element with their intervals, and return the names of finite ones."""
     if described is None:
         return set()
     asked = {name: described.find("b_lives", name) for name in B_LIVES}

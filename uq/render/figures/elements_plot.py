@@ -63,7 +63,7 @@ def display_unit(units: str, values: Floats) -> ReadableUnit:
 
 
 def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
-    """Label the horizontal axis as that of an input, and return the size of its unit."""
+    """Label the horizontal axis with an input, and return the size of its unit."""
     unit = result.input_unit(name)
     axes.set_xlabel(labelled(result.dataset[name], unit.name, width))
     return unit.size
@@ -72,9 +72,9 @@ def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
 def mark_thresholds(
     axes: Axes, result: Result, element: Element, unit: ReadableUnit, vertical: bool = False
 ) -> None:
-    """Draw the study's thresholds of an output as lines, those of an angle on both sides.
+    """Draw the study's thresholds of an output as lines, for an angle on both sides.
 
-    One that is so far away that it would squeeze the data is an arrow at the edge.
+    A threshold so far away that it would squeeze the data is an arrow at the edge.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def mark_thresholds(
     result : Result
     element : Element
     unit : ReadableUnit
-        That of the axis.
+        Unit of the axis.
     vertical : bool
         Whether the output is on the vertical axis.
     """

@@ -211,7 +211,7 @@ def heading(axes: Axes, text: str) -> None:
 
 
 def title(axes: Axes, *lines: str) -> None:
-    """Write lines of text above a panel: what its vertical axis shows, and of what."""
+    """Write lines of text above a panel: the quantity of its vertical axis and its subject."""
     axes.set_title("\n".join(filter(None, lines)), loc="left")
 
 

@@ -133,7 +133,7 @@ def bifurcation(
 
 
 def _coloured(words: NDArray[Any], declared: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the words that occur, each with its colour: those known have their own."""
+    """Return the words that occur, each with its colour; declared words keep theirs."""
     occurring = {str(word) for word in np.unique(words)}
     order = [*declared, *sorted(occurring - set(declared))]
     return [pair for pair in zip(order, cycle(COLOURS)) if pair[0] in occurring]

@@ -132,7 +132,7 @@ def _points(axes: Axes, x: Floats, element: Element) -> None:
 
 
 def _needs_median(element: Element, mask: Mask) -> bool:
-    """Whether the mean of some rows is infinite or without information."""
+    """Whether the mean of the rows is infinite or uninformative."""
     values = element.at_most[mask[element.present]]
     return not np.isfinite(values).all() or lacks_variance(values)
 
@@ -147,7 +147,7 @@ def _conditional(
     medians: bool,
     independent: bool,
 ) -> None:
-    """Draw the mean (or median) of some rows within slices of the input, with its 95 % band."""
+    """Draw the mean (or median) within slices of the input, with its 95 % band."""
     selected = mask[element.present]
     values, x = element.at_most[selected], x[element.present][selected]
     count = min(_MOST_BINS, len(x) // _IN_BIN)

@@ -62,7 +62,7 @@ def targets(findings: Findings) -> Iterator[FigureSubject]:
 
 
 def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
-    """Yield each method with what it finds for each target."""
+    """Yield each method with the indices of each target."""
     for method in methods(findings.result):
         try:
             targets_of = findings.sensitivities(method).targets

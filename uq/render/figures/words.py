@@ -57,7 +57,7 @@ def _subscript(match: re.Match[str]) -> str:
 
 
 def typeset(text: str) -> str:
-    """Return text with its symbols as formulas, its roots and minus signs as such."""
+    """Return text with symbols as formulas and typographic roots and minus signs."""
     text = IN_TEXT.sub(lambda match: formula(match[0]), literal(minus(text)))
     return text.replace("sqrt(", "√(").replace(" - ", " \N{MINUS SIGN} ")
 
@@ -77,7 +77,7 @@ def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> st
 
 
 def _wrapped(text: str, width: int) -> str:
-    """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
+    """Wrap text by its visible width: a formula is narrower than its source and never broken."""
     text = re.sub(r" ([+−=]) ", "\u00a0\\1\u00a0", text)  # a difference is one word
     text = re.sub(r"(?<=[a-z]) (?=\d+\b)", "\u00a0", text)  # as is "motor 1"
     formulas = re.findall(_FORMULA, text)

@@ -102,7 +102,7 @@ def origin(result: Result, options: Options, path: Path, document: Json) -> Orig
 
 
 def _one_of_each(result: Result) -> Iterator[str]:
-    """Yield that an index rests on fewer rows, where samples have several."""
+    """Yield the note that an index rests on one row per sample, where samples have several rows."""
     if result.is_nested:
         used = len(result.first_rows)
         yield f"the index rests on {grouped(used)} of these rows, the first of each sample"
@@ -111,7 +111,7 @@ def _one_of_each(result: Result) -> Iterator[str]:
 def _estimators(
     result: Result, entry: Json, name: str, part: str, *rest: str
 ) -> Iterator[Citation]:
-    """Yield what computes a number of a promise, a range, an event, or of another seed."""
+    """Yield the estimators of a number of a promise, range, event or prediction interval."""
     asked = with_bounds(result.analysis_of(name.partition("[")[0]), Findings(result))
     described = summarise(result, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]

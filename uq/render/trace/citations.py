@@ -13,11 +13,11 @@ class Citation(NamedTuple):
     Attributes
     ----------
     does : str
-        What it estimates, in one line.
+        Summary in one line.
     code : str
         The function that computes it: ``uq.stats.order_statistics.quantile``.
     sources : tuple of str
-        What its docstring cites.
+        References of its docstring.
     """
 
     does: str
@@ -26,7 +26,7 @@ class Citation(NamedTuple):
 
 
 def cited(function: Callable[..., Any]) -> Citation:
-    """Return what a function estimates, and what its docstring cites."""
+    """Return summary and references of an estimator from its docstring."""
     while isinstance(function, partial):
         function = function.func
     docstring = inspect.getdoc(function) or ""

@@ -18,9 +18,9 @@ from uq.text.keys import Json, Options, Path, value_at
 
 
 def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of running estimates: of the element alone that a path names, if it does.
+    """Return the JSON of running estimates, of one element if the path names one.
 
-    Only the errors, if it asks for one: every design has them.
+    Only the errors if the path names one: every design has them.
     """
     named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
     if path[2:] and path[2] != "estimates":

@@ -17,7 +17,7 @@ from uq.text.keys import Json, Options, Path
 
 
 def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of the indices: of the target alone that a path names, if it names one."""
+    """Return the JSON of the indices, of one target if the path names one."""
     named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
     indices = sensitivities(result, options.get("method"), named, options.get("regime"))
     return sensitivity_json(indices)
@@ -41,13 +41,13 @@ def origin(result: Result, options: Options, path: Path, document: Json) -> Orig
 
 
 def estimator_of(method: str, key: str = "") -> Citation:
-    """Return what a method estimates, and whose estimator it is.
+    """Return question, estimator and references of a method.
 
     Parameters
     ----------
     method : str
     key : str
-        Of the kind of index; "" if not one of its own.
+        Key of the kind of index; "" for none.
     """
     estimator = METHODS[method]
     kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]

@@ -28,13 +28,13 @@ _PARTS: dict[str, Callable[..., Any]] = {
 
 
 def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of what inspections say."""
+    """Return the JSON of the posterior numbers."""
     texts = [options["by"]] if "by" in options else []
     return learnt_json(learnt(result, read_times("by", texts, result)))
 
 
 def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return where a number that inspections say comes from."""
+    """Return the origin of a posterior number."""
     by: list[Callable[..., Any]] = [posterior]
     if path[0] == "inputs":
         by += [inputs_learnt, quantiles if "quantiles" in path else moments_of_rows]

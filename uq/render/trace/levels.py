@@ -17,7 +17,7 @@ from uq.text.keys import Json, Options, Path
 
 
 def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of the shares: of the element alone that a path names, if it names one."""
+    """Return the JSON of the shares, of one element if the path names one."""
     named = output_in(split_name(path[1])[1]) if path[:1] == ("outputs",) and path[1:] else None
     return levels_json(by_level(result, named))
 

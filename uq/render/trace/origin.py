@@ -30,6 +30,6 @@ class Origin:
 
 
 def rows_behind(result: Result) -> Result:
-    """Return the independent rows of a result; all of them where that none is says why."""
+    """Return the independent rows of a result, or all rows if none is independent."""
     rows = result.independent
     return rows if len(rows) else result

@@ -29,7 +29,7 @@ class Run(NamedTuple):
 
 
 def runs_of(rows: Result) -> list[Run]:
-    """Return the numbers of some rows of a result as runs, block by block."""
+    """Return the numbers of rows as runs, block by block."""
     numbers, blocks = rows.dataset["sample"].values, rows.dataset["block"].values
     return [
         Run(label, *run)

@@ -20,7 +20,7 @@ from uq.text.keys import Json, Options, Path
 COUNTED = ("failed", "undefined", "censored", "never")
 
 WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
-"""What is said of weighted rows -> what computes it."""
+"""Quality of weighted rows -> its estimator."""
 
 Functions = tuple[Callable[..., Any], ...]
 
@@ -75,7 +75,7 @@ def in_summary(summary: Summary, rows: Result, path: Path) -> Origin:
     ----------
     summary : Summary
     rows : Result
-        Those that it describes.
+        The rows that it describes.
     path : tuple of str
     """
     if path[0] in ("regime", "categories"):
@@ -105,7 +105,7 @@ def _found(result: Result, options: Options, path: Path) -> Summary:
 
 
 def functions_of(described: Described, path: Path) -> Functions:
-    """Return the functions that compute what stands at a path of the JSON of an element."""
+    """Return the estimators of the number at a path in the JSON of an element."""
     for name, statistics in described.parts.items():
         for parent, members, entry in written(statistics):
             rest = path[len(parent) :]

@@ -21,7 +21,7 @@ from uq.text.keys import SUMMARY, Json, Options, Path, value_at
 
 
 def from_the_rows(verb: "Verb", number_origin: Origin, options: Options, path: Path) -> Any:
-    """Return what the verb says of the rows of an origin alone."""
+    """Return the number at a path, computed from the rows of its origin alone."""
     return value_at(verb.says(number_origin.rows, options, path), path)
 
 
