@@ -102,12 +102,12 @@ class FleetNumbers:
 
         def band(share: float) -> Estimate:
             p = self._unit_at(time, 1 - share)
-            kept = [self._kept(end) for end in p.numbers]
+            kept = [self._probability_allowed(end) for end in p.numbers]
             return replace(p, value=kept[0], low=kept[2], high=kept[1])
 
         return self._banded(estimates, band)
 
-    def _kept(self, p: float) -> float:
+    def _probability_allowed(self, p: float) -> float:
         return float(special.bdtr(self._allow, self._size, p)) if p == p else p
 
     def _banded(

@@ -129,8 +129,8 @@ class Units:
         Its rows are worlds, each the law of this time. Worlds with too few units have none.
         """
         lives = np.where(self.element.present, self.element.values, np.inf)
-        first = self.place.table(lives).min(axis=(1, 2), initial=np.inf, where=self._there)
-        enough = self._there.any(axis=2).sum(axis=1) >= (1 if self.are_alike else size)
+        first = self.place.table(lives).min(axis=(1, 2), initial=np.inf, where=self._mask)
+        enough = self._mask.any(axis=2).sum(axis=1) >= (1 if self.are_alike else size)
         first = np.where(enough, first, np.nan)
         element = self.element
         worlds = Element(
@@ -147,7 +147,7 @@ class Units:
         return Population(worlds, part)
 
     @property
-    def _there(self) -> Mask:
+    def _mask(self) -> Mask:
         return np.isfinite(self.place.table(np.where(self.element.present, 0.0, np.nan)))
 
 

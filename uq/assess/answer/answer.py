@@ -43,15 +43,15 @@ def answer(result: AnyResult) -> Answer:
     return conclude(Findings(result))
 
 
-_KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
+_ANSWERS: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
 
 
 def conclude(findings: Findings) -> Answer:
     """Return the answer of a result, computed once."""
-    if findings not in _KNOWN:
+    if findings not in _ANSWERS:
         draft = without_advice(findings)
-        _KNOWN[findings] = replace(draft, advice=tuple(advise(findings, draft)))
-    return _KNOWN[findings]
+        _ANSWERS[findings] = replace(draft, advice=tuple(advise(findings, draft)))
+    return _ANSWERS[findings]
 
 
 def without_advice(findings: Findings) -> Answer:

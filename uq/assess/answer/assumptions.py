@@ -29,8 +29,8 @@ def assumptions(result: Result) -> tuple[str, ...]:
     ]
     values = [name for name, how in fixed.items() if how == ASSUMED]
     groups = (
-        (f"{_some(assumed, laws, 'law')} assumed", assumed),
-        (f"{_some(values, fixed, 'fixed value')} assumed", values),
+        (f"{_counted_with_verb(assumed, laws, 'law')} assumed", assumed),
+        (f"{_counted_with_verb(values, fixed, 'fixed value')} assumed", values),
         ("No source says how well these laws are known", unstated),
     )
     return tuple(
@@ -40,7 +40,7 @@ def assumptions(result: Result) -> tuple[str, ...]:
     )
 
 
-def _some(names: Sized, total: Sized, noun: str) -> str:
+def _counted_with_verb(names: Sized, total: Sized, noun: str) -> str:
     verb = "is" if len(names) == 1 else "are"
     return f"{len(names)} of {counted(len(total), noun)} {verb}"
 

@@ -89,9 +89,9 @@ def promise_of(
         reason,
         element.is_lifetime,
         element.is_angle and not joint,
-        end_of(element),
+        end_verb(element),
         tuple(analysis.joint_bounds) if joint else (),
-        known_of(element),
+        support_of(element),
         _recurs(element),
         (0, 0) if joint else _ranks(element, bounds),
         int((element.present | element.failed).sum()),
@@ -118,7 +118,7 @@ def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterat
             yield BoundaryAtom(bool(upper), float(last), count / len(values))
 
 
-def known_of(element: Element) -> SampleSupport:
+def support_of(element: Element) -> SampleSupport:
     """Return the support of the sample: defined values of rows that did not fail."""
     sound = ~element.failed
     share = float(element.undefined[sound].mean()) if sound.any() else 0.0
@@ -140,7 +140,7 @@ def quantile_of(described: Described, p: float) -> Estimate:
     return statistic.best.estimate if statistic else NOTHING
 
 
-def end_of(element: Element) -> str:
+def end_verb(element: Element) -> str:
     """Return the verb for the end of a life."""
     return "succeed" if element.declared.success else "end"
 
@@ -182,7 +182,7 @@ def _why_no_bound(
     if needed:
         return f"it needs {needed:.0f} rows"
     if any(not isnan(bound) for bound in bounds):
-        return f"too few {end_of(element)}"
+        return f"too few {end_verb(element)}"
     if result.has_weights:
         return "the rows are weighted by inspections"
     if result.is_nested:

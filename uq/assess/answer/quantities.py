@@ -14,10 +14,10 @@ from uq.assess.answer.promised_bounds import (
     CONFIDENCE,
     COVERAGE,
     MIDDLE,
-    end_of,
-    known_of,
+    end_verb,
     promise_of,
     quantile_of,
+    support_of,
 )
 from uq.assess.answer.rankings import ranking_of
 from uq.assess.answer.solver_error import own_error_of
@@ -74,7 +74,10 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     context = Context(findings.rows, wanted, part, findings.rows.weights)
     return [
         _quantity(
-            findings, _with(summary.outputs[element.name], more.get(element.name)), context, element
+            findings,
+            _merged(summary.outputs[element.name], more.get(element.name)),
+            context,
+            element,
         )
         for element in findings.rows.elements(
             _by_importance(result, asked)
@@ -111,7 +114,7 @@ def _asks(wanted: AnalysisTable, asked: AnalysisTable, part: str) -> bool:
     return bool(getattr(wanted, part) != getattr(asked, part))
 
 
-def _with(described: Described, more: Described | None) -> Described:
+def _merged(described: Described, more: Described | None) -> Described:
     """Return an element with more statistics."""
     if more is None:
         return described
@@ -168,9 +171,9 @@ def _quantity(
             quantile_of(described, HIGH),
             fine,
             element.is_angle,
-            end_of(element),
+            end_verb(element),
             never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
-            known_of(element),
+            support_of(element),
             element.is_lifetime,
         ),
         tuple(_events(findings, described, element, unit)),
@@ -248,7 +251,7 @@ def _events(
         if element.is_lifetime:  # what ends at the time itself is not counted
             ended = element.values[~element.censored]
             at_it = element.law is None and (ended == statistic.at).any()
-            predicate = f"{end_of(element)} {'before' if at_it else 'within'} {at}"
+            predicate = f"{end_verb(element)} {'before' if at_it else 'within'} {at}"
         predicate += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{statistic.at!r})"
         undefined = statistic.facts.get("undefined") or 0.0

@@ -117,7 +117,7 @@ class TighterTolerance:
             return f"Tightening {words}: {self.reason}."
         law = f" ({self.law})" if self.law else ""
         first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
-        moved = f"move {self.statistic} from {first} to {self._then}"
+        moved = f"move {self.statistic} from {first} to {self._new_number}"
         return f"Half the scatter of {words}{law} would {moved}."
 
     @property
@@ -136,11 +136,13 @@ class TighterTolerance:
         """The change for the worse of another statistic."""
         if self.is_share:
             does = self.statistic.removeprefix(SHARE_OF)
-            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._then}."
-        return f"But {self.statistic} would {'rise' if self.rises else 'fall'} to {self._then}."
+            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._new_number}."
+        return (
+            f"But {self.statistic} would {'rise' if self.rises else 'fall'} to {self._new_number}."
+        )
 
     @property
-    def _then(self) -> str:
+    def _new_number(self) -> str:
         if not self.after.has_interval:
             return self.text(self.after)
         bare = self.unit.bare_between(self.after.low, self.after.high)

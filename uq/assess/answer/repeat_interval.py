@@ -45,12 +45,12 @@ class PredictionInterval:
         if self.subject and self.is_share:
             number = f"{percent_interval(self.low, self.high)} would {self.subject} (95 %)"
         elif self.subject:
-            number = f"{self.subject} would {self._lie} (95 %)"
+            number = f"{self.subject} would {self._verb_phrase} (95 %)"
         text = "; ".join(filter(None, (number, self.ranking)))
         return f"With another seed, {text}." if text else ""
 
     @property
-    def _lie(self) -> str:
+    def _verb_phrase(self) -> str:
         first, last = self.unit.text(self.low), self.unit.text(self.high)
         if first == last:  # to the digits shown
             return f"again be {first}"

@@ -135,7 +135,7 @@ def own_error_of(
     for side in (0, 1):
         if isfinite(bounds[side]) and not promise.joint:
             moved = off_by_error(element, error, (-1, 1)[side])
-            worse[side] = _again(promise, are_quantiles, moved, context)[side]
+            worse[side] = _bounds(promise, are_quantiles, moved, context)[side]
     accuracies = [statistic.facts["accuracy"] for statistic in described.parts.get("accuracy", ())]
     asked, missed = next(
         ((accuracy["asked"], accuracy["share"] or 0.0) for accuracy in accuracies), (nan, 0.0)
@@ -153,7 +153,7 @@ def own_error_of(
     )
 
 
-def _again(
+def _bounds(
     promise: ToleranceBound, are_quantiles: bool, element: Element, context: Context
 ) -> Sides:
     """Return the bounds of other values of the same rows."""

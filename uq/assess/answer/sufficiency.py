@@ -125,7 +125,7 @@ def enough_of(
         tuple(sorted(besides, key=lambda shortfall: -shortfall.factor)),
         errors,
         about[0].range.unit if about and about[0].range is not None else DisplayUnit(),
-        _again(about, regimes),
+        _prediction(about, regimes),
     )
     others = [
         shortfall
@@ -140,7 +140,7 @@ def enough_of(
     return replace(enough, others=tuple(sentences))
 
 
-def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInterval:
+def _prediction(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInterval:
     if regimes:
         first = regimes[0]
         ranking = None if first.is_of_single else first.ranking

@@ -132,10 +132,10 @@ class ToleranceBound:
             if isfinite(bound)
         ]
         if bounds and self.joint:
-            return f"{self._sure}, at least {covered} {' and '.join(bounds)}{self._others}."
+            return f"{self._confidence}, at least {covered} {' and '.join(bounds)}{self._others}."
         if bounds:
             each, joined = " each" * (len(bounds) > 1), f", and at least {covered} ".join(bounds)
-            return f"{self._sure}{each}, at least {covered} {joined}."
+            return f"{self._confidence}{each}, at least {covered} {joined}."
         share = " ".join(filter(None, (share, self.support.phrase(self._noun))))
         cautious: list[str] = []
         for i, quantile in enumerate(self.quantiles):
@@ -187,10 +187,10 @@ class ToleranceBound:
         """Return the opening of the promise of a single bound, up to the bound."""
         side = self._side(isfinite(self.upper))
         share = f"at least {100 * self.coverage:g} %"
-        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
+        return f"{self._confidence}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
 
     @property
-    def _sure(self) -> str:
+    def _confidence(self) -> str:
         return f"With {100 * self.confidence:g} % confidence"
 
     @property

@@ -1,4 +1,4 @@
-"""The numbers of the answer, and where they come from."""
+"""The numbers of the answer and their origins."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -36,7 +36,7 @@ from uq.stats.variance_components import nested_shares
 from uq.text.keys import Json, Options, Path, value_at
 from uq.text.numbers import grouped
 
-_OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
+_ERROR_ESTIMATORS: dict[str, tuple[Callable[..., Any], ...]] = {
     "lower": (off_by_error,),
     "upper": (off_by_error,),
     "share_of_variance": (error_share,),
@@ -46,7 +46,7 @@ _OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
 }
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the answer: of the quantity or the part alone that a path names."""
     findings = Findings(result)
     part, *names = path or ("",)
@@ -63,7 +63,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
 
 
 def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return where a number of the answer comes from."""
+    """Return the origin of a number of the answer."""
     part, *names = path
     if part in ("rows", "failed"):
         return Origin((cited(status_counts),), result)
@@ -82,7 +82,7 @@ def origin(result: Result, options: Options, path: Path, document: Json) -> Orig
         index = estimator_of(ranking["method"], ranking["index"])
         if "effects" in names:
             return Origin((cited(effects),), result)
-        return Origin((index,), result, notes=tuple(_one_of_each(result)))
+        return Origin((index,), result, notes=tuple(_notes(result)))
     if "earliest" in names:
         return Origin((cited(inputs_apart),), result)
     if "limit" in names:
@@ -101,7 +101,7 @@ def origin(result: Result, options: Options, path: Path, document: Json) -> Orig
     )
 
 
-def _one_of_each(result: Result) -> Iterator[str]:
+def _notes(result: Result) -> Iterator[str]:
     """Yield the note that an index rests on one row per sample, where samples have several rows."""
     if result.is_nested:
         used = len(result.first_rows)
@@ -120,7 +120,9 @@ def _estimators(
         promised = entry["promise"]["sentence"] if "promise" in entry else ""
         part, rest = ("range", ()) if promised else ("events", tuple(entry["events"]))
     if part == "own_error":
-        yield from map(cited, _OF_ERROR.get("".join(rest), (off_by_error, error_share, accuracy)))
+        yield from map(
+            cited, _ERROR_ESTIMATORS.get("".join(rest), (off_by_error, error_share, accuracy))
+        )
         keys *= any(end in rest for end in ("lower", "upper"))
         if keys and not entry["promise"]["reason"]:
             keys = [("tolerance", "lower")]

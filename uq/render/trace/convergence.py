@@ -1,4 +1,4 @@
-"""The numbers of `uq convergence`, and where they come from."""
+"""The numbers of `uq convergence` and their origins."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ from uq.stats.estimate import Estimate
 from uq.text.keys import Json, Options, Path, value_at
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of running estimates, of one element if the path names one.
 
     Only the errors if the path names one: every design has them.
@@ -30,7 +30,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
 
 
 def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return where a running estimate comes from."""
+    """Return the origin of a running estimate."""
     _, target, kind, *rest = path
     if kind != "estimates":
         return Origin((cited(enough),), result.independent)

@@ -1,4 +1,4 @@
-"""The numbers of `uq sensitivity`, and where they come from."""
+"""The numbers of `uq sensitivity` and their origins."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,7 +16,7 @@ from uq.result.result import Result
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the indices, of one target if the path names one."""
     named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
     indices = sensitivities(result, options.get("method"), named, options.get("regime"))
@@ -24,7 +24,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
 
 
 def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return where an index comes from."""
+    """Return the origin of an index."""
     if regime := options.get("regime"):
         result = result.within_regime(regime)
     rows = result.ranked.first_rows

@@ -1,4 +1,4 @@
-"""The numbers of the inputs that a report shows, and where they come from."""
+"""The numbers of the inputs that a report shows and their origins."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from uq.stats.estimate_json import number
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return quantiles of the inputs: of their laws as ``stated``, and as ``sampled``."""
     given, weights = laws_and_values(result), weights_of_samples(result)
     entries = {}
@@ -25,5 +25,5 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
 
 
 def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return where a number of an input comes from."""
+    """Return the origin of a number of an input."""
     return Origin((cited(compare),), result.independent)

@@ -1,4 +1,4 @@
-"""The numbers of `uq update`, and where they come from."""
+"""The numbers of `uq update` and their origins."""
 
 from collections.abc import Callable
 from typing import Any
@@ -27,7 +27,7 @@ _PARTS: dict[str, Callable[..., Any]] = {
 }
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the posterior numbers."""
     texts = [options["by"]] if "by" in options else []
     return learnt_json(learnt(result, read_times("by", texts, result)))

@@ -1,4 +1,4 @@
-"""The numbers of `uq summary`, and where they come from."""
+"""The numbers of `uq summary` and their origins."""
 
 from collections.abc import Callable
 from typing import Any
@@ -25,7 +25,7 @@ WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
 Functions = tuple[Callable[..., Any], ...]
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of a summary, with the statistics that only the report shows.
 
     Parameters
@@ -41,7 +41,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     -------
     dict
     """
-    summary = _found(result, options, path)
+    summary = _summary_of(result, options, path)
     whole = summary_json(summary)
     if path[:1] == (BOUNDARY,):
         whole |= boundary_json(boundary(result))
@@ -53,7 +53,7 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
 
 
 def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return where a number of a summary comes from."""
+    """Return the origin of a number of a summary."""
     if regime := options.get("regime"):
         result = result.within_regime(regime)
     if path[0] in ("samples", "status"):
@@ -65,11 +65,11 @@ def origin(result: Result, options: Options, path: Path, document: Json) -> Orig
         return Origin((cited(uncertainty_exponent),), compared_rows(result))
     if path[0] in WEIGHTS:
         return Origin((cited(WEIGHTS[path[0]]),), rows)
-    return in_summary(_found(result, {}, path), rows, path)
+    return summary_origin(_summary_of(result, {}, path), rows, path)
 
 
-def in_summary(summary: Summary, rows: Result, path: Path) -> Origin:
-    """Return where a share of a category or a number of an output comes from.
+def summary_origin(summary: Summary, rows: Result, path: Path) -> Origin:
+    """Return the origin of a share of a category or a number of an output.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def states_of(element: Element) -> dict[str, int]:
     return {"with a value": int(element.present.sum())} | nonzero
 
 
-def _found(result: Result, options: Options, path: Path) -> Summary:
+def _summary_of(result: Result, options: Options, path: Path) -> Summary:
     names, output = result.output_names, _output(path)
     if path[:1] == ("categories",):
         output = path[1].partition("[")[0] if path[1:] else ""

@@ -1,4 +1,4 @@
-"""One number of a result: where it comes from, and the same computed again."""
+"""Origin of one number of a result, and its recomputation."""
 
 import json
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256",
 
 @dataclass(frozen=True)
 class Trace:
-    """Where a number comes from.
+    """Origin of a number, and its recomputation.
 
     Attributes
     ----------
@@ -31,18 +31,18 @@ class Trace:
         None.
     estimators : tuple of Citation
     rows_used, rows : int
-        Number of the rows that it rests on, and of all.
+        Numbers of the rows behind it, and of all rows.
     runs : list of Run
-        Which.
+        The rows behind it.
     states : dict of str to int
-        How many of them have a value, failed and so on.
+        Number of these rows with a value, failed and so on.
     notes : tuple of str
     recorded : dict
         How the rows were drawn.
     versions : dict of str to str
         The code of the model, and the versions that computed the rows.
     versions_here : dict of str to str
-        Those that differ here, where the number is computed.
+        Versions that differ at the recomputation.
     """
 
     key: str
@@ -111,12 +111,12 @@ def traced(result: Result, key: str, model: str | None = None) -> Trace:
     options = parts.options | ({"model": model} if model else {})
     document, numbers = {}, {}
     try:
-        document = verb.says(result, options, path)
+        document = verb.json_of(result, options, path)
         numbers = numbers_in(value_at(document, path))
     except (KeyError, InputError):  # no such output
         pass
     if not path or not numbers:
-        raise no_such_key(parts, verb.says(result, options, ()), VERBS)
+        raise no_such_key(parts, verb.json_of(result, options, ()), VERBS)
     origin = verb.origin(result, options, path, document)
     here = {
         name: now for name, now in provenance().items() if result.dataset.attrs.get(name) != now
