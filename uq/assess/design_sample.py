@@ -130,7 +130,7 @@ def _directions(result: Result, order: NDArray[np.intp], unit: Floats) -> Floats
     sound = bool((changing.sum(axis=-1) == 1).all())
     moving = changing.copy()
     dependent = [parameters.index(name) for name in correlated_inputs(result)]
-    # Those that have changed are drawn again when another one does.
+    # Correlated inputs that have changed are drawn again when another one changes.
     among = changing[..., dependent]
     moving[..., dependent] = among.any(axis=-1, keepdims=True) & (among.cumsum(axis=2) > 0)
     for column, (name, times) in enumerate(scales.items()):

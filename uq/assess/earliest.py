@@ -42,7 +42,7 @@ class Apart:
     outwards : int
         With direction 0: 1 if they lie farther from the median of all rows, -1 if nearer.
     rank : Estimate
-        Mean rank of the earliest rows within all, from 0 to 1; that of all is 0.5. With direction
+        Mean rank of the earliest rows within all, from 0 to 1; 0.5 for all rows. With direction
         0, of the distances of the ranks from the middle.
     median, others : float
         Of the values, in the earliest rows and in the others.
@@ -140,7 +140,7 @@ def inputs_apart(
     differences, has_intervals = [], False
     for name, rank in ranked.items():
         away = np.abs(rank - 0.5)
-        # The range of ranks is 1, that of their distances 1/2.
+        # Ranks have a range of 1, their distances from the middle 1/2.
         for values, middle, size in ((rank, 0.5, 1.0), (away, float(away.mean()), 0.5)):
             low, high = mean_interval(values[mask], part, sure)
             has_intervals |= bool(np.isfinite(low))

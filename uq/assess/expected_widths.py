@@ -117,7 +117,7 @@ def _quantile(values: Floats, p: float, rows: int, factor: float) -> float | Non
     m = len(values)
     spread = np.sqrt(p * (1 - p))
     half = factor * spread / np.sqrt(rows)
-    # Too few neighbours in the pilot for a slope; what is rarer than one row is unknown.
+    # Too few neighbours in the pilot for a slope; events rarer than one row are unknown.
     reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
     if reach < half:
         return None

@@ -31,9 +31,9 @@ class Banded:
     Attributes
     ----------
     estimate : Estimate
-        The mean over what is own and chance, and over what is shared.
+        The mean over unit inputs and chance, and over shared inputs.
     low, high : Estimate
-        Its 5 and 95 % points over what is shared.
+        Its 5 and 95 % points over shared inputs.
     failed : Estimate or None
         The ends of the interval of `estimate` with the failed rows at best and at worst.
     """
@@ -54,7 +54,7 @@ class FleetNumbers:
     part : ndarray of int, shape (samples,), or None
         The replicate of each sample; None where samples are independent.
     varies : bool
-        Whether what samples share varies.
+        Whether shared inputs vary.
     """
 
     def __init__(self, units: Units, size: int, allow: int, part: Replicates, varies: bool):

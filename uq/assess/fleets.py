@@ -44,7 +44,7 @@ class Units:
     element : Element
         Its rows.
     place : Nesting
-        Of these rows.
+        Nesting of these rows.
     shared : Scale or None
         Law of the inputs that scale all lives of a world alike.
     varying : tuple of str
@@ -57,7 +57,7 @@ class Units:
     design : str
         Design of the samples.
     of_worlds : ndarray, shape (samples,), or None
-        Their weights, where inspections have weighted them.
+        Weights of the worlds, where inspections have weighted them.
     """
 
     element: Element

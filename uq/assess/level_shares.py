@@ -43,7 +43,7 @@ class ByLevel:
     another_regime : Estimate or None
         Probability that a repeat ends in another regime; None without regimes.
     switching : ndarray, shape (n,)
-        The same of each row; NaN where it is not known.
+        The same probability for each row; NaN if unknown.
     weights : Smoothed or None
         Of samples, where inspections have weighted them.
     """

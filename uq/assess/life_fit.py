@@ -42,7 +42,7 @@ ASSUMES = (
     "that lives follow this law: a test of {rows} rows that does not reject it is no proof, least"
     " of all beyond the range of the rows"
 )
-"""What every number of an accepted law rests on."""
+"""Assumption behind every number of an accepted law."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Fit:
     Attributes
     ----------
     rows : int
-        How many were used.
+        Number of rows used.
     p_value : float
         Of the Anderson-Darling test, its law from refits; NaN where there is no fit.
     refused : str
@@ -62,9 +62,9 @@ class Fit:
     b_lives : dict of str to Estimate
         ``B1``, ``B10``, ``B50`` [s].
     extrapolated : frozenset of str
-        Those earlier than the rows reach, 1/(n + 1).
+        B-lives earlier than the rows reach, 1/(n + 1).
     assumes : str
-        What all of these rest on.
+        Assumption behind all of these.
     """
 
     rows: int
@@ -151,7 +151,7 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
 
 
 def _sorted(x: Floats, ended: Mask) -> _Sample:
-    order = np.lexsort((~ended, x), axis=1)  # of rows at one time those that end come first
+    order = np.lexsort((~ended, x), axis=1)  # at equal times, ended rows before censored ones
     return _Sample(np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1))
 
 

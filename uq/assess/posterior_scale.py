@@ -52,7 +52,7 @@ class TermsOfLaws:
     law : ndarray, shape (q,)
         As for `terms_at`.
     scores : ndarray, shape (n, q)
-        The same of each row.
+        Normal scores of the quantiles in each row.
     """
 
     def __init__(self, law: Floats, scores: Floats):
@@ -140,7 +140,7 @@ def learnt_scale(
     Parameters
     ----------
     rows : Result
-        Those of an inspected unit; others have no such law.
+        Rows of an inspected unit; others have no posterior law.
     inputs : Inputs
         Of these rows.
     exponents : dict of str to float

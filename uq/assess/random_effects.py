@@ -37,7 +37,7 @@ NO_SPREAD = "samples do not differ by more than the noise of their units"
 ONE_UNIT = "a single unit cannot show what is shared and what is own"
 
 Exceeding = Callable[[float], Estimate]
-"""Probability -> the share of worlds in which that of a unit is larger."""
+"""Probability -> the share of worlds in which a unit has a larger one."""
 
 
 def noise_free(ended: Floats, nodes: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
@@ -48,7 +48,7 @@ def noise_free(ended: Floats, nodes: Floats, part: Replicates, weights: Floats |
     ended : ndarray, shape (samples, nodes)
         Falling along nodes.
     nodes : ndarray, shape (nodes,)
-        Standard normal quantiles of what worlds share; a single one if nothing is integrated.
+        Standard normal quantiles of integrated shared inputs; a single one if there are none.
     part : ndarray of int, shape (samples,), or None
     weights : ndarray, shape (samples,), or None
 
@@ -86,7 +86,7 @@ def certain(ended: Floats, part: Replicates, weights: Floats | None) -> Exceedin
     Parameters
     ----------
     ended : ndarray, shape (samples,)
-        Probability that the units of a sample have ended, over what they share and is integrated.
+        Probability that the units of a sample have ended, over the integrated shared inputs.
     part : ndarray of int, shape (samples,), or None
     weights : ndarray, shape (samples,), or None
 

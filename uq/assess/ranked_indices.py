@@ -27,7 +27,7 @@ def lines(values: Values, nulls: Mapping[IndexKind, Null]) -> list[tuple[str, li
     ----------
     values : dict of IndexKind to dict
     nulls : dict of IndexKind to Null
-        What inputs without effect reach; not known for pairs.
+        Limits of indices of inputs without effect; unknown for pairs.
 
     Returns
     -------

@@ -28,7 +28,7 @@ def switching(
     rows : Result
         Rows of a result with regimes.
     place : Nesting
-        Theirs.
+        Nesting of these rows.
     varying : collection of str
         The levels on which something varies.
     weights : ndarray, shape (samples,), optional

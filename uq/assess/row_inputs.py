@@ -24,14 +24,14 @@ class Inputs:
     Attributes
     ----------
     laws : dict of str to Law
-        Of a parameter that is a multiple of another, that of the factor.
+        Laws; for a multiple of another parameter, the law of the factor.
     tied : dict of str to str
-        Parameter -> the one that it equals.
+        Parameter -> the parameter that it equals.
     dependence : DependenceTable or None
     bounds : dict of str to tuple of float
-        Which a parameter shares with those tied to it.
+        Bounds, shared by tied parameters.
     values : dict of str to ndarray, shape (n,)
-        Of the rows.
+        Values of the rows.
     """
 
     laws: Mapping[str, Law]

@@ -75,7 +75,7 @@ def sampled_ranks(study: Study) -> Floats:
     Parameters
     ----------
     study : Study
-        With dependence; the order is that of its matrix.
+        With dependence, whose matrix sets the order.
     """
     values = drawn_inputs(study)
     assert study.dependence is not None

@@ -111,9 +111,9 @@ class _Exponents(NamedTuple):
     scaling : dict of str to float
         Input -> exponent, with those of the parameters that equal it.
     kept : dict of str to str
-        Those that do more, or on which others depend -> why they are not integrated.
+        Inputs that do more than scale, or on which others depend -> reason.
     idle : tuple of str
-        Those whose exponents cancel.
+        Inputs whose exponents cancel.
     """
 
     scaling: dict[str, float]

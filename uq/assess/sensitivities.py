@@ -44,7 +44,7 @@ class TargetIndices:
     refused : str
         Why there are none, or "".
     rows_factor : float
-        How many times the rows would give some; NaN where that is not known.
+        Factor on the sample size that would give some; NaN if unknown.
     """
 
     name: str
@@ -201,7 +201,7 @@ def indices_of_target(
             raise RefusedError(_no_variance(target))
         asked = _conditioned(target, sample) if method.conditional else sample
         method.refuse_few_groups(asked)  # in them even a continuous output may have two values
-        # Of those in which it happens there is no other side.
+        # Rows in which the event happens have no other side.
         few = () if method.conditional else few_hits(result, target, bool(method.intervals))
         indices = method.indices(asked)
     except RefusedError as refusal:
@@ -247,7 +247,7 @@ def _quantiles(target: IndexTarget, asked: tuple[float, ...]) -> dict[str, float
 def _check_method(design: str, method: str, dependent: str, in_regime: bool) -> None:
     usable = fed_by(DESIGNS[design], bool(dependent))
     if in_regime and DESIGNS[design].layout is not PLAIN:
-        usable = ()  # what inputs of a regime have in common is not what the design assumes
+        usable = ()  # within a regime, inputs depend otherwise than the design assumes
     if method in usable:
         return
     if method in fed_by(DESIGNS[design]):

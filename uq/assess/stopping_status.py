@@ -62,7 +62,7 @@ def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> 
     design : DesignTable
         With `until`.
     seen : InterimEstimate
-        That of a run that goes on.
+        Interim estimate of a run that goes on.
     samples : int
         Of each replicate, so far.
     """

@@ -86,7 +86,7 @@ class Described:
     parts : dict of str to tuple of Statistic
         Name in `uq.assess.statistics.table.STATISTICS` -> its statistics, in that order.
     fits : dict of str to Fit, optional
-        Law -> what became of it.
+        Law -> its fit or refusal.
     """
 
     units: str
@@ -123,7 +123,7 @@ class Summary:
     most_failed : int
         The largest number of rows that lack an element because they failed.
     notes : list of str
-        Sentences on what could not be estimated.
+        Sentences on missing estimates.
     weights : Smoothed, optional
         Of the rows, where inspections have weighted them.
     """
@@ -171,7 +171,7 @@ def summarise(
     result : Result
         A result.
     analysis : AnalysisTable, optional
-        What to report; by default what the study of the result asks for.
+        Statistics to report; by default those of the study of the result.
     regime : str, optional
         Describe only the rows in this regime; rows that failed without one count as failed.
     fits : bool
@@ -181,7 +181,7 @@ def summarise(
     weighting : Weighting, optional
         Makes the rows those of another study; none within a regime.
     parts : collection of str
-        Names in `STATISTICS` of those that are computed.
+        Names in `STATISTICS` of the statistics to compute.
 
     Returns
     -------
@@ -271,7 +271,7 @@ def category_shares(
 ) -> dict[str, Statistic]:
     """Return the share of each label of a category among the independent rows that did not fail.
 
-    The name is that of an output, or of one element of it.
+    The name is an output, or one element of it.
     """
     replicate = rows.replicates
 

@@ -34,7 +34,7 @@ class IndexTarget:
     event : bool
         Whether the values say if something happened, 1, or not, 0.
     notes : tuple of str
-        Sentences on what replaces the output.
+        Sentences on the transform of the output.
     """
 
     name: str
@@ -79,9 +79,9 @@ def targets(
     Yields
     ------
     IndexTarget
-        What `number_of` gives, and of a lifetime T the events T < t. If every target is asked for:
-        a value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
-        also the rate 1/T and the events; of others the events y > t, of an angle's magnitude.
+        The target of `number_of`, and for a lifetime T the events T < t. With `every`: a value or
+        angle as it is; the logarithm and the rank of a value or lifetime; for a lifetime also the
+        rate 1/T and the events; for others the events y > t, of an angle's magnitude.
     """
     for element in elements:
         if not (every and element.is_lifetime):

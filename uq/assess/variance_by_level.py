@@ -41,7 +41,7 @@ class LevelShares:
     left_out : int
         Samples with too few values.
     notes : tuple of str
-        What replaces the output.
+        Sentences on the transform of the output.
     integrated : tuple of str
         Inputs whose part of the variance is known exactly.
     """
@@ -82,7 +82,7 @@ def shares_of(
     table : ndarray, shape (samples, units, repeats)
         NaN where there is none.
     varying : collection of str
-        The levels on which something varies; the share of the others is what is known of them.
+        The levels with varying inputs; others have only the share in `known_variances`.
     errors : ndarray, shape (samples, units, repeats), optional
         Numerical error of each, as a standard deviation.
     replicate : ndarray of int, shape (samples,), optional
@@ -90,7 +90,7 @@ def shares_of(
     known_variances : dict of str to ndarray of shape (samples, units, repeats), optional
         Level -> variance that each row adds to it, of independent terms at their means in `table`.
     design : str, optional
-        By which samples were drawn, for advice.
+        Design of the samples, for advice.
     weights : ndarray, shape (samples,), optional
         Of samples.
 

@@ -51,7 +51,7 @@ def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
     answered = answer.quantities
     if answered and not enough.question and all(entry.rule in _AS_SETTLED for entry in advice):
         laws_measured = any(entry.rule == "known" for entry in advice)
-        advice = [entry for entry in advice if entry.rule != "known"]  # it says so, too
+        advice = [entry for entry in advice if entry.rule != "known"]  # `settled` states it
         nothing = "Nothing else" if advice else "Nothing"
         noisy = any(
             quantity.own_error is not None and quantity.own_error.share >= 1
@@ -177,7 +177,7 @@ def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
         return
     place = event.curve.most if more else event.curve.least
     local, overall = event.curve.shares[place], event.share
-    if mark_of(result, event.over) == ASSUMED:  # it is what it is
+    if mark_of(result, event.over) == ASSUMED:  # an assumed quantity cannot be adjusted
         return
     if local.low > overall.high if more else local.high < overall.low:
         where, key_name = f"{event.part(place)}: {share_text(local)} do there", "decided_by"

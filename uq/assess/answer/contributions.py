@@ -152,8 +152,8 @@ class Ranking:
         The variance that an index is a share of: ``its variance``; "" of other indices and of
         events.
     unexplained : Estimate
-        Share of the variance that no single input explains, where inputs are ranked by what each
-        explains alone.
+        Share of the variance that no single input explains, where inputs are ranked by first-order
+        indices.
     runner_up : float
         The largest index of the inputs ranked after the leader.
     totals : dict of str to float

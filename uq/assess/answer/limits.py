@@ -104,7 +104,7 @@ def limit_of(
     Returns
     -------
     Limit or None
-        None where it is rare in all parts. The range is that of the last parts, from the wanted end
+        None where it is rare in all parts. The range spans the last parts, from the wanted end
         of the input on, whose mean probabilities are all smaller with confidence, so that the mean
         over the range is. Tested in this order until one fails, at least one of them is larger in
         no more repetitions than a single one would be [1]_. Rows show means alone: within a part, a

@@ -19,7 +19,7 @@ class NumberTarget:
     Attributes
     ----------
     name : str
-        The same for a person, which ``--output`` takes too: ``P(life < 24 hours)``.
+        Its readable name, also accepted by ``--output``: ``P(life < 24 hours)``.
     units : str
         CF unit of the numbers; ``"1"`` for those of a logarithm, a rank or an event.
     meaning : str

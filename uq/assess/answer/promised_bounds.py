@@ -64,7 +64,7 @@ def promise_of(
     upper_piled = {atom.upper for atom in piled}
     sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
     bounds = [bound if matters else nan for bound, matters in zip(bounds, sides, strict=True)]
-    # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
+    # Quantiles of an angle refer to its magnitude, its joint bounds have a sign.
     signed = bool(joint) and element.is_angle
     quantiles = [
         described.find("quantiles", repr(p)) if matters and not signed else None
@@ -161,7 +161,7 @@ def _sides(
 ) -> tuple[bool, bool]:
     """Return whether a lower and an upper bound matter."""
     if element.is_lifetime:
-        early = bool(element.declared.success)  # the latest time of a success is what matters
+        early = bool(element.declared.success)  # for a success, the latest time matters
         return not early, early
     if wanted:
         return wanted == "above", wanted == "below"

@@ -48,7 +48,7 @@ from uq.text.symbols import readable
 LOW, HIGH = 0.05, 0.95
 """Probabilities of the ends of the likely range."""
 
-_NARROW = 0.003  # a range over its values, of which three digits show but few steps
+_NARROW = 0.003  # range over values below which three digits show few steps
 
 
 def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
@@ -205,7 +205,7 @@ def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking
     target = number_of(element)
     name = (target if METHODS[method].scale_free else lightened(target)).name
     verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
-    if element.is_angle:  # of all that is said, this alone is not of its magnitude
+    if element.is_angle:  # only the ranking refers to the signed value
         verb = ("lowers its signed value", "raises its signed value")
     try:
         ranking = ranking_of(findings, name, method, verb)
@@ -248,7 +248,7 @@ def _events(
             continue
         at = threshold(statistic.at, element.units)
         predicate = f"exceed {at}"
-        if element.is_lifetime:  # what ends at the time itself is not counted
+        if element.is_lifetime:  # an end at the threshold itself does not count
             ended = element.values[~element.censored]
             at_it = element.law is None and (ended == statistic.at).any()
             predicate = f"{end_verb(element)} {'before' if at_it else 'within'} {at}"
@@ -265,7 +265,7 @@ def event(findings: Findings, target: str, predicate: str, statistic: Statistic)
     ----------
     findings : Findings
     target : str
-        Its name as that of a target of indices.
+        Its name as a target of indices.
     predicate : str
         The event, in words.
     statistic : Statistic
@@ -280,7 +280,7 @@ def event(findings: Findings, target: str, predicate: str, statistic: Statistic)
         ranking = ranking_of(findings, target, method, verb)
     except InputError as refused:
         why = str(refused)
-        if not split_name(target)[2]:  # a regime, of which the rows that could rank have none
+        if not split_name(target)[2]:  # a regime that does not occur in the ranked rows
             why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
         return replace(outcome, ranking=Ranking(target, method, reason=why))
     outcome = replace(outcome, ranking=ranking)

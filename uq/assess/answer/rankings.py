@@ -95,7 +95,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
         factor = (first.apart(second) / apart) ** 2
         reason, is_flat = f"the order of {names} is not settled", False
-        if factor <= 1:  # the rows tell apart what differs by more
+        if factor <= 1:  # the rows distinguish larger differences
             is_flat = kind.unit == "variance" and first.index.value < SMALL
             reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)

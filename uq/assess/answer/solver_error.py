@@ -43,7 +43,7 @@ class OwnError:
     asked, missed : float
         The accuracy that the settings ask for, and the share of the rows that miss it; NaN without.
     unstated : int
-        How many rows state no error.
+        Number of rows without a stated error.
     """
 
     bounds: Sides = (nan, nan)
@@ -167,7 +167,7 @@ def _bounds(
         for candidate in population(context.rows, [element.output])
         if candidate.name == element.name
     )
-    drawn = replace(next(alike), values=element.values)  # with the law of what scales its lives
+    drawn = replace(next(alike), values=element.values)  # with the law of its scaling inputs
     values = {
         statistic.key[-1]: statistic.best.estimate.value for statistic in quantiles(drawn, context)
     }

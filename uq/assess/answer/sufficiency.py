@@ -37,7 +37,7 @@ class Enough:
     errors : Errors or None
         Errors of the subject, if the numerical error exceeds the sampling error.
     unit : DisplayUnit
-        Of these errors.
+        Unit of these errors.
     again : PredictionInterval
         Prediction interval for another seed.
     others : tuple of str

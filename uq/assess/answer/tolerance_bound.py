@@ -84,7 +84,7 @@ class ToleranceBound:
     support : SampleSupport
         Values that it describes.
     recurs : bool
-        Whether rows have equal values, so that many may have that of a bound.
+        Whether rows have equal values, so that many may equal a bound.
     ranks : tuple of int
         Places of the bounds among all rows, the smallest first; 0 without one.
     rows : int

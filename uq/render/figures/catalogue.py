@@ -26,7 +26,7 @@ class FigureSubject:
     keywords : dict
         Passed on to the function that draws it.
     part : str
-        Which of several figures it is: ``1 of 2``.
+        Its number among several figures: ``1 of 2``.
     """
 
     name: str = ""
@@ -51,7 +51,7 @@ class Entry:
     subjects : callable
         Findings -> subjects: a function of `uq.render.figures.subjects`.
     caption : str
-        With ``{what}``, ``{event}`` and ``{method}``: an output or a target in words, and an event.
+        With ``{what}``, ``{event}`` and ``{method}``: output or target, event, and method in words.
     section : str
         Of the report; "" if the report does not show it.
     applies : tuple of callable

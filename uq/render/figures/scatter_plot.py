@@ -173,7 +173,7 @@ def _conditional(
     seen = np.isfinite(line) & ~empty
     line = np.where(seen & ~_fragments(seen), line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
-    # A gap between neighbouring rows interrupts the line: nothing is known in between.
+    # A gap between neighbouring rows interrupts the line: it holds no information.
     inside = np.sort(x)
     edges = np.array(axes.get_xlim())
     along, width = (np.log, np.log(edges)) if axes.get_xscale() == "log" else (np.array, edges)

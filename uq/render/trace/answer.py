@@ -50,7 +50,7 @@ def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the answer: of the quantity or the part alone that a path names."""
     findings = Findings(result)
     part, *names = path or ("",)
-    alone = not result.is_nested  # a level that decides changes what is said of the regimes
+    alone = not result.is_nested  # variance components change the sentences on regimes
     if part == "quantities" and names and alone:
         answered = tuple(quantities(findings, names[0]))
         return answer_json(Answer("", 0, 0, answered, (), ()))

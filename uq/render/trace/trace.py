@@ -38,7 +38,7 @@ class Trace:
         Number of these rows with a value, failed and so on.
     notes : tuple of str
     recorded : dict
-        How the rows were drawn.
+        Attributes of the design of the rows.
     versions : dict of str to str
         The code of the model, and the versions that computed the rows.
     versions_here : dict of str to str

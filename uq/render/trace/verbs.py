@@ -35,7 +35,7 @@ class Verb(NamedTuple):
     origin : callable
         Result, options, path of a number, and the JSON it is in -> `Origin`.
     options : tuple of str
-        Those of the command that change its numbers; of a name that ends with a dot, more follows.
+        Options of the command that change its numbers; names that end with a dot are prefixes.
     again : callable
         Verb, origin, options, path -> the entry at the path, from the rows of the origin.
     """
