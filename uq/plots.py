@@ -10,7 +10,7 @@ from pathlib import Path
 from uq.assess.findings import Findings
 from uq.errors import InputError
 from uq.files.paths import refuse_standard_output
-from uq.render.figures import subjects as of
+from uq.render.figures import subjects
 from uq.render.figures.catalogue import Entry, drawables
 from uq.render.figures.convergence_plot import convergence as convergence
 from uq.render.figures.convergence_plot import index_convergence as index_convergence
@@ -36,69 +36,71 @@ from uq.render.figures.shares_plot import shares as shares
 from uq.result.result import Result
 
 FIGURES: dict[str, Entry] = {
-    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,), needs=("summary",)),
+    "lifetime": Entry(
+        lifetime, subjects.outputs, applies=(subjects.is_lifetime,), needs=("summary",)
+    ),
     "histogram": Entry(
         histogram,
-        of.outputs,
-        applies=(of.is_no_lifetime,),
-        in_report=(of.in_one_regime,),
+        subjects.outputs,
+        applies=(subjects.is_no_lifetime,),
+        in_report=(subjects.in_one_regime,),
         needs=("summary",),
     ),
     "regimes": Entry(
-        histogram_by_regime, of.outputs, "{what}, by regime", applies=(of.in_regimes,)
+        histogram_by_regime, subjects.outputs, "{what}, by regime", applies=(subjects.in_regimes,)
     ),
     "quantiles": Entry(
-        quantile_table, of.outputs, "Quantiles: {what}", section="", needs=("summary",)
+        quantile_table, subjects.outputs, "Quantiles: {what}", section="", needs=("summary",)
     ),
-    "shares": Entry(shares, of.categories, "Shares: {what}", section=""),
+    "shares": Entry(shares, subjects.categories, "Shares: {what}", section=""),
     "events": Entry(
         event_probability,
-        of.decided_events,
+        subjects.decided_events,
         "Probability that {event}, over the input that decides it",
     ),
     "scatter": Entry(
         scatter,
-        of.outputs,
+        subjects.outputs,
         "{what}, against the inputs with which it varies most",
-        applies=(of.has_plain_rows,),
+        applies=(subjects.has_plain_rows,),
     ),
     "convergence": Entry(
         convergence,
-        of.outputs,
+        subjects.outputs,
         "Convergence: {what}",
         section="convergence",
-        applies=(of.has_running_estimate,),
+        applies=(subjects.has_running_estimate,),
         needs=("running",),
     ),
     "pairs": Entry(
         pairs,
-        of.the_result,
+        subjects.the_result,
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
-        applies=(of.in_regimes, of.has_several_inputs, of.has_plain_rows),
+        applies=(subjects.in_regimes, subjects.has_several_inputs, subjects.has_plain_rows),
     ),
     "indices": Entry(
         index_bars,
-        of.targets,
+        subjects.targets,
         "Sensitivity indices by {method}: {what}",
         section="",
         file=("method", "name"),
     ),
     "index-curves": Entry(
         index_curves,
-        of.curves,
+        subjects.curves,
         "Sensitivity indices by {method}, along its dimension: {what}",
     ),
     "convergence-indices": Entry(
         index_convergence,
-        of.crossed_targets,
+        subjects.crossed_targets,
         "Convergence of the total indices: {what}",
         section="convergence",
         needs=("running",),
     ),
     "inputs": Entry(
         inputs,
-        of.inputs,
+        subjects.inputs,
         "Inputs: stated laws and sampled values",
         section="inputs",
     ),

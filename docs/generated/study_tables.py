@@ -126,7 +126,7 @@ def statistics() -> str:
 def figures() -> str:
     """Tabulate the figures of a result."""
     lines = [
-        (f"`{name}`", _first_line(entry.of, "Yield"), _first_line(entry.draw, "Draw"))
+        (f"`{name}`", _first_line(entry.subjects, "Yield"), _first_line(entry.draw, "Draw"))
         for name, entry in FIGURES.items()
     ]
     return table(("figure", "of", "shows"), lines)

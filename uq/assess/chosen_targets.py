@@ -48,23 +48,23 @@ def chosen(
     """
     asked = METHODS[method]
     if output is None:
-        found = False
+        has_suitable = False
         for name in result.shown_outputs(result.analysis):
             for target in targets_of(result, name):
                 if _suits(asked, target):
                     yield target if asked.scale_free else lightened(target)
-                    found = True
+                    has_suitable = True
             if asked.aggregates:
                 yield from wholes(_elements(result, name))
-        if not found and result.failed.all():
+        if not has_suitable and result.failed.all():
             raise InputError("every row failed: there is nothing to explain")
-        if not found and not asked.takes_numbers:
+        if not has_suitable and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a time of a lifetime in"
                 " [analysis] thresholds; name that of a value with such a threshold t:"
                 " --output 'P(y > t)'"
             )
-        if not found:
+        if not has_suitable:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
         return
     named = [
@@ -78,7 +78,7 @@ def chosen(
         if is_whole(inside) and form == "P":
             raise InputError(f"'{output}': an event is that of one element; name it instead of [:]")
         if is_whole(inside) and not asked.aggregates:
-            able = ", ".join(name for name, one in METHODS.items() if one.aggregates)
+            able = ", ".join(name for name, candidate in METHODS.items() if candidate.aggregates)
             raise InputError(
                 f"'{method}' has no index of all elements together (methods that do: {able})"
             )
@@ -111,20 +111,24 @@ def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
     if is_whole(inside):
         every = list(wholes(_elements(result, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
-    found = list(targets_of(result, output_in(inside), every=True))
-    name = _as_stored(name, output_in(inside), found)
+    candidates = list(targets_of(result, output_in(inside), every=True))
+    name = _as_stored(name, output_in(inside), candidates)
     if form:
-        return [target for target in found if target.name == name]
-    own = [target for target in found if split_name(target.name)[0] == ""]
+        return [target for target in candidates if target.name == name]
+    untransformed = [target for target in candidates if split_name(target.name)[0] == ""]
     has_whole = aggregated and name in result.dataset and len(_elements(result, name)) > 1
     whole = _named(result, whole_name(name), aggregated) if has_whole else []
-    return [*(own or targets_of(result, name)), *whole]
+    return [*(untransformed or targets_of(result, name)), *whole]
 
 
-def _as_stored(name: str, element: str, found: Sequence[IndexTarget]) -> str:
-    """Return a name with that of its element, of which some targets are, as the result has it."""
-    one = found[0].element if found else None
-    return name if one is None or "[" not in element else name.replace(element, one.name)
+def _as_stored(name: str, element: str, candidates: Sequence[IndexTarget]) -> str:
+    """Return a name in which the element is spelt as in the result."""
+    stored_element = candidates[0].element if candidates else None
+    return (
+        name
+        if stored_element is None or "[" not in element
+        else name.replace(element, stored_element.name)
+    )
 
 
 def output_in(inside: str) -> str:
@@ -155,5 +159,5 @@ def targets_of(result: Result, name: str, every: bool = False) -> Iterator[Index
     """
     if result.is_category(name.partition("[")[0]):
         return category_targets(result, name)
-    known = result.elements([name]) if name in result.dataset else result.named_elements(name)
-    return targets.targets(known, result.analysis.thresholds, every)
+    elements = result.elements([name]) if name in result.dataset else result.named_elements(name)
+    return targets.targets(elements, result.analysis.thresholds, every)

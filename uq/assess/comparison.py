@@ -23,7 +23,7 @@ from uq.study.file import AnalysisTable
 
 @dataclass(frozen=True)
 class Side:
-    """One of two results: its title, and a summary of what either study asks for."""
+    """One of two results: its title and the summary that both studies ask for."""
 
     title: str
     summary: Summary
@@ -82,13 +82,20 @@ def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
     """
     first = Result.of(first)
     second = Result.of(second)
-    found = comparison(first, second)
-    pairs = {(name, label): one for name, of in found.shares.items() for label, one in of.items()}
-    for name, output in found.outputs.items():
-        pairs |= {(name, one.first.label): one for one in output.statistics}
+    compared = comparison(first, second)
+    pairs = {
+        (name, label): statistic
+        for name, statistics in compared.shares.items()
+        for label, statistic in statistics.items()
+    }
+    for name, output in compared.outputs.items():
+        pairs |= {(name, statistic.first.label): statistic for statistic in output.statistics}
     lines = [
-        [*(side.estimate.finite.value for side in (one.first, one.second)), *one.difference.numbers]
-        for one in pairs.values()
+        [
+            *(side.estimate.finite.value for side in (statistic.first, statistic.second)),
+            *statistic.difference.numbers,
+        ]
+        for statistic in pairs.values()
     ]
     columns = ["first", "second", "difference", "low", "high"]
     index = pd.MultiIndex.from_tuples(list(pairs), names=["output", "estimate"])
@@ -96,31 +103,31 @@ def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
 
 
 def comparison(first: Result, second: Result) -> Comparison:
-    """Return the findings of `compare`, and what was changed."""
+    """Return the differences of `compare` and the changes of the study."""
     _refuse(first, second)
     results = (first, second)
     analyses = [result.analysis for result in results]
     outputs = _outputs(results, analyses)
     asked = _asked(analyses, outputs)
-    found = [summarise(result, asked) for result in results]
+    summaries = [summarise(result, asked) for result in results]
     pair = Pair(first, second)
     elements = [
         {element.name: element for element in population(rows, outputs)} for rows in pair.rows
     ]
     changed = changes(*results)
     return Comparison(
-        first=Side(str(first.dataset.attrs["title"]), found[0]),
-        second=Side(str(second.dataset.attrs["title"]), found[1]),
+        first=Side(str(first.dataset.attrs["title"]), summaries[0]),
+        second=Side(str(second.dataset.attrs["title"]), summaries[1]),
         changed=changed,
         only=only_change(first, second, changed),
         pairing=pair.kinship.name.lower().partition("_")[0],
-        shares=compared_shares(pair, found),
+        shares=compared_shares(pair, summaries),
         outputs={
-            name: compared_output(pair, [one[name] for one in elements], found)
+            name: compared_output(pair, [by_name[name] for by_name in elements], summaries)
             for name in elements[0]
             if name in elements[1]
         },
-        notes=list(_notes(pair, found, elements)),
+        notes=list(_notes(pair, summaries, elements)),
     )
 
 
@@ -154,26 +161,28 @@ def _outputs(results: tuple[Result, ...], analyses: list[AnalysisTable]) -> list
 
 
 def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
-    """Return what either study asks for."""
+    """Return the union of the analyses of both studies."""
 
     def both(*parts: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(sorted({number for part in parts for number in part}))
 
     thresholds = {
-        name: both(*(one.thresholds.get(name, ()) for one in analyses))
+        name: both(*(analysis.thresholds.get(name, ()) for analysis in analyses))
         for name in outputs
-        if any(name in one.thresholds for one in analyses)
+        if any(name in analysis.thresholds for analysis in analyses)
     }
-    quantiles = both(*(one.quantiles for one in analyses))
+    quantiles = both(*(analysis.quantiles for analysis in analyses))
     asked = {"outputs": tuple(outputs), "quantiles": quantiles, "thresholds": thresholds}
     return AnalysisTable().model_copy(update=asked)
 
 
-def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]]) -> Iterator[str]:
+def _notes(
+    pair: Pair, summaries: list[Summary], elements: list[dict[str, Element]]
+) -> Iterator[str]:
     yield pair.kinship.value
-    for which, one in zip("AB", found, strict=True):
-        yield from (f"{which}: {note}" for note in one.notes)
-    if any(one.most_failed for one in found):
+    for which, summary in zip("AB", summaries, strict=True):
+        yield from (f"{which}: {note}" for note in summary.notes)
+    if any(summary.most_failed for summary in summaries):
         yield "Differences are between the rows that did not fail."
     for which, mine, other in zip("AB", elements, elements[::-1], strict=True):
         if alone := [name for name in mine if name not in other]:

@@ -29,12 +29,12 @@ class Surviving:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """What it integrates."""
+        """Inputs that are integrated."""
         return self.law.inputs
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of all lives that this causes."""
+        """Standard deviation of the logarithms of lives due to the integrated inputs."""
         return self.law.spread
 
     def below(self, lives: Floats, time: float) -> Floats:
@@ -45,7 +45,7 @@ class Surviving:
 
 
 def learnt_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats, Floats] | None:
-    """Return how rows follow the law of an input that all units share, if theirs are of this input.
+    """Return the means of Legendre terms of a shared input in each row, or None without one.
 
     Parameters
     ----------

@@ -97,14 +97,14 @@ def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
     """
     result = Result.of(result)
     result.refuse_weights("the error of sampling")
-    found, names = summarise(result).outputs, result.output_names
+    outputs, names = summarise(result).outputs, result.output_names
     rows = result.independent
-    plain = [name for name in names if name not in {error_name(one) for one in names}]
+    plain = [name for name in names if name not in {error_name(name) for name in names}]
     lines = {}
     for element in rows.named_elements(output) if output else rows.elements(plain):
-        if element.name not in found:
+        if element.name not in outputs:
             continue
-        lines[element.name] = compared(rows, element, found[element.name])
+        lines[element.name] = compared(rows, element, outputs[element.name])
     columns = ["estimate", "sampling", "own", "warning"]
     return pd.DataFrame(
         list(lines.values()), index=pd.Index(list(lines), name="output"), columns=columns
@@ -116,7 +116,7 @@ class Errors(NamedTuple):
 
     estimate: str
     sampling: float
-    own: float
+    numerical: float
     warning: str
 
 
@@ -131,19 +131,23 @@ def compared(result: Result, element: Element, described: Described) -> Errors:
     described : Described
         Its statistics.
     """
-    label, one = "mean", described.find("mean")
-    if one is None or np.isnan(one.estimate.value) or one.estimate.reason:
-        label, one = "median", described.find("quantiles", "0.5")
-    known = one is not None and one.estimate.has_interval
-    sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
-    own = _own_error(result, element)
-    words = _WARNING.format(own=own, units=element.units, sampling=sampling)
-    return Errors(label, sampling, own, words if own > sampling else "")
+    label, statistic = "mean", described.find("mean")
+    if statistic is None or np.isnan(statistic.estimate.value) or statistic.estimate.reason:
+        label, statistic = "median", described.find("quantiles", "0.5")
+    has_interval = statistic is not None and statistic.estimate.has_interval
+    sampling = (
+        (statistic.estimate.high - statistic.estimate.low) / 2
+        if statistic and has_interval
+        else np.nan
+    )
+    numerical = _own_error(result, element)
+    words = _WARNING.format(numerical=numerical, units=element.units, sampling=sampling)
+    return Errors(label, sampling, numerical, words if numerical > sampling else "")
 
 
 _WARNING = (
-    "the rows' own error ({own:.3g} {units}) is larger than that of sampling ({sampling:.3g}): more"
-    " rows do not help, finer settings or longer averages do"
+    "the rows' own error ({numerical:.3g} {units}) is larger than that of sampling"
+    " ({sampling:.3g}): more rows do not help, finer settings or longer averages do"
 )
 
 
@@ -180,13 +184,13 @@ Line = tuple[str, str, tuple[float, float, float], str, str]
 
 
 def estimates_from(result: Result, targets: list[str]) -> Iterator[Line]:
-    """Yield what some rows give: output, label, value with interval; of an index kind and input."""
+    """Yield output, label and estimate of each statistic, for an index also kind and input."""
     for name, output in summarise(result).outputs.items():
-        for one in output.statistics:
-            if one.is_read_by(Reader.RUNNING):
-                yield name, one.label, one.estimate.finite.numbers, "", ""
+        for statistic in output.statistics:
+            if statistic.is_read_by(Reader.RUNNING):
+                yield name, statistic.label, statistic.estimate.finite.numbers, "", ""
     if method := method_shown(result):
-        for name, found in sensitivities(result, method, targets).targets.items():
-            for kind, values in found.kinds().items():
+        for name, target_indices in sensitivities(result, method, targets).targets.items():
+            for kind, values in target_indices.kinds().items():
                 for label, index in values.items():
                     yield name, f"{kind.key} {label}", index.numbers, kind.key, label

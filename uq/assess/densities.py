@@ -21,13 +21,13 @@ def log_ratio(old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Flo
     integrated : collection of str
         Inputs that do not take part.
     """
-    found = np.zeros(len(next(iter(old.values.values()))))
+    ratio = np.zeros(len(next(iter(old.values.values()))))
     for name in changed_laws(old, new):
         if name not in integrated:
-            found += _log_density(new, name) - _log_density(old, name)
+            ratio += _log_density(new, name) - _log_density(old, name)
     if depends_otherwise(old, new):
-        found += _log_copula(new, integrated) - _log_copula(old, integrated)
-    return found
+        ratio += _log_copula(new, integrated) - _log_copula(old, integrated)
+    return ratio
 
 
 def changed_laws(old: Inputs, new: Inputs) -> list[str]:
@@ -54,9 +54,9 @@ def share_without_rows(old: Inputs, new: Inputs, name: str) -> float:
     return share if share > OUTSIDE_AT_MOST else 0.0
 
 
-def _same(one: object, other: object) -> bool:
+def _same(law: object, other: object) -> bool:
     ignored = {"source", "file", "column"}
-    return one.model_dump(exclude=ignored) == other.model_dump(exclude=ignored)  # type: ignore[attr-defined]
+    return law.model_dump(exclude=ignored) == other.model_dump(exclude=ignored)  # type: ignore[attr-defined]
 
 
 def _log_density(inputs: Inputs, name: str) -> Floats:
@@ -64,7 +64,7 @@ def _log_density(inputs: Inputs, name: str) -> Floats:
     ends = inputs.bounds[name]
     if law.times is not None:
         ends = factor_ends(inputs.values[law.times], ends)
-    return log_density_between(law, inputs.own(name), *ends)
+    return log_density_between(law, inputs.law_values(name), *ends)
 
 
 def _log_copula(inputs: Inputs, integrated: Collection[str]) -> Floats:

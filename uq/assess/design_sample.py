@@ -130,12 +130,12 @@ def _directions(result: Result, order: NDArray[np.intp], unit: Floats) -> Floats
     sound = bool((changing.sum(axis=-1) == 1).all())
     moving = changing.copy()
     dependent = [parameters.index(name) for name in correlated_inputs(result)]
-    # Those that have changed are drawn again when another one does.
+    # Correlated inputs that have changed are drawn again when another one changes.
     among = changing[..., dependent]
     moving[..., dependent] = among.any(axis=-1, keepdims=True) & (among.cumsum(axis=2) > 0)
-    for own, (name, times) in enumerate(scales.items()):
+    for column, (name, times) in enumerate(scales.items()):
         values = result.dataset[name].values[order]
-        still = ~(moving[..., own] | moving[..., parameters.index(times or name)])
+        still = ~(moving[..., column] | moving[..., parameters.index(times or name)])
         sound &= bool((values[..., 1:] == values[..., :-1])[still].all())
     if not sound:
         raise InputError(

@@ -24,7 +24,7 @@ SHARE = 0.05
 """The part of the rows that counts as the earliest."""
 
 FEWEST = 10
-"""Of fewer rows nothing is said."""
+"""Minimum number of early rows for a comparison."""
 
 Places = NDArray[np.intp]
 
@@ -42,7 +42,7 @@ class Apart:
     outwards : int
         With direction 0: 1 if they lie farther from the median of all rows, -1 if nearer.
     rank : Estimate
-        Mean rank of the earliest rows within all, from 0 to 1; that of all is 0.5. With direction
+        Mean rank of the earliest rows within all, from 0 to 1; 0.5 for all rows. With direction
         0, of the distances of the ranks from the middle.
     median, others : float
         Of the values, in the earliest rows and in the others.
@@ -79,7 +79,7 @@ class RegimeOfFirst:
 
 
 def ranks(column: Floats) -> Floats:
-    """Return the rank of each value, from 0 to 1; equal values share theirs."""
+    """Return the rank of each value, from 0 to 1; equal values share their mean rank."""
     # Not scipy.stats.rankdata: a summary starts without loading scipy.stats.
     _, place, counts = np.unique(column, return_inverse=True, return_counts=True)
     below = np.cumsum(counts) - counts / 2
@@ -91,12 +91,12 @@ def earliest_rows(element: Element) -> Places:
 
     Fewer where fewer end, or where a row was censored before: it may have ended earlier.
     """
-    known = np.flatnonzero(element.present)
-    ended = known[~element.censored[known] & np.isfinite(element.values[known])]
+    present = np.flatnonzero(element.present)
+    ended = present[~element.censored[present] & np.isfinite(element.values[present])]
     first_censored = element.values[element.censored & element.present].min(initial=np.inf)
     ended = ended[element.values[ended] <= first_censored]
     order = ended[np.argsort(element.values[ended], kind="stable")]
-    return order[: max(int(np.ceil(SHARE * len(known))), min(FEWEST, len(known) // 2))]
+    return order[: max(int(np.ceil(SHARE * len(present))), min(FEWEST, len(present) // 2))]
 
 
 def inputs_apart(
@@ -137,10 +137,10 @@ def inputs_apart(
         part = part.view(np.ndarray)
     sure = 1 - (1 - CONFIDENCE) / (2 * max(len(ranked), 1))
     columns = independent_inputs(result)
-    found, has_intervals = [], False
+    differences, has_intervals = [], False
     for name, rank in ranked.items():
         away = np.abs(rank - 0.5)
-        # The range of ranks is 1, that of their distances 1/2.
+        # Ranks have a range of 1, their distances from the middle 1/2.
         for values, middle, size in ((rank, 0.5, 1.0), (away, float(away.mean()), 0.5)):
             low, high = mean_interval(values[mask], part, sure)
             has_intervals |= bool(np.isfinite(low))
@@ -148,32 +148,32 @@ def inputs_apart(
                 mean = float(values[mask].mean())
                 ends = mean_interval(values[mask], part)
                 sign = 1 if mean > middle else -1
-                own = columns[name]
-                one = Apart(
+                column = columns[name]
+                difference = Apart(
                     name,
                     sign if values is rank else 0,
                     0 if values is rank else sign,
                     Estimate(mean, float(ends[0]), float(ends[1])),
-                    float(np.median(own[mask])),
-                    float(np.median(own[~mask])),
+                    float(np.median(column[mask])),
+                    float(np.median(column[~mask])),
                 )
-                found.append((abs(mean - middle) / size, one))
+                differences.append((abs(mean - middle) / size, difference))
                 break
     if not has_intervals:
         return None
-    return [one for _, one in sorted(found, key=lambda pair: -pair[0])]
+    return [difference for _, difference in sorted(differences, key=lambda pair: -pair[0])]
 
 
 def regimes_of_first(
     result: Result, first: Places, replicate: Replicates = None
 ) -> list[RegimeOfFirst]:
-    """Return the regimes that some rows are in more often than all, the most frequent first.
+    """Return regimes more frequent in the given rows than in all rows, the most frequent first.
 
-    If there are none, that in which most of them are; nothing where all rows are in one regime.
+    If there are none, their most frequent regime; nothing where all rows are in one regime.
     """
-    found = sorted(_regimes(result, first, replicate), key=lambda one: -one.share.value)
-    more = [one for one in found if one.is_more_frequent]
-    return more or [one for one in found[:1] if one.overall < 1]
+    regimes = sorted(_regimes(result, first, replicate), key=lambda regime: -regime.share.value)
+    more = [regime for regime in regimes if regime.is_more_frequent]
+    return more or [regime for regime in regimes[:1] if regime.overall < 1]
 
 
 def _regimes(result: Result, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
@@ -182,9 +182,9 @@ def _regimes(result: Result, first: Places, replicate: Replicates) -> Iterator[R
     mask = np.zeros(len(result), dtype=bool)
     mask[first] = True
     part = replicates_of_some(replicate, mask)
-    known = [(code, label) for code, label in flags(result.dataset["regime"]) if code >= 0]
-    sure = 1 - (1 - CONFIDENCE) / max(len(known), 1)
-    for code, label in known:
+    regimes = [(code, label) for code, label in flags(result.dataset["regime"]) if code >= 0]
+    sure = 1 - (1 - CONFIDENCE) / max(len(regimes), 1)
+    for code, label in regimes:
         inside = result.dataset["regime"].values == code
         overall = float(inside.mean())
         low, _ = share_interval(inside[mask], part, sure)

@@ -100,10 +100,10 @@ def effects(
     part = None if replicate is None else replicate[kept]
     columns, logarithmic = {}, {}
     for name, column in inputs.items():
-        own = column[kept]
-        if len(own) and np.isfinite(own).all() and not is_constant(own):
-            logarithmic[name] = _suits_logarithm(own)
-            columns[name] = np.log(own) if logarithmic[name] else own
+        selected = column[kept]
+        if len(selected) and np.isfinite(selected).all() and not is_constant(selected):
+            logarithmic[name] = _suits_logarithm(selected)
+            columns[name] = np.log(selected) if logarithmic[name] else selected
     y, unit = sized(values[kept])  # squares neither overflow nor vanish
     if not columns or len(y) < ROWS_PER_INPUT * (len(columns) + 1) or is_constant(y):
         return {}
@@ -118,7 +118,7 @@ def effects(
     residual = y - with_mean @ slopes
     spare = 1 - np.einsum("ij,ij->i", orthogonal, orthogonal)
     influence = len(y) * (orthogonal * (residual / np.maximum(spare, 1e-9))[:, None]) @ inverse.T
-    found = {}
+    by_input = {}
     for i, name in enumerate(columns):
         if names is not None and name not in names:
             continue
@@ -128,10 +128,10 @@ def effects(
         value, low, high = (unit * float(number) / size for number in (slope, low, high))
         of_input = Estimate(value, low, high)
         turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
-        found[name] = Effect(
+        by_input[name] = Effect(
             of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])
         )
-    return found
+    return by_input
 
 
 def _suits_logarithm(column: Floats) -> bool:
@@ -143,7 +143,7 @@ def _suits_logarithm(column: Floats) -> bool:
 
 
 def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
-    """Whether what an input explains steps against its slope from one fifth to the next."""
+    """Whether the partial effect of an input steps against its slope between adjacent fifths."""
     edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
     piece = np.searchsorted(edges, x, side="right")
     counts = np.bincount(piece, minlength=PIECES)
@@ -154,14 +154,14 @@ def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
     for first in range(PIECES - 1):
         step = means[first + 1] - means[first]
         side = np.where(piece == first + 1, 1.0, np.where(piece == first, -1.0, 0.0))
-        found = _interval(step, step + side * around, part, _SURE)
-        if (sign > 0 and found[1] < 0) or (sign < 0 and found[0] > 0):
+        ends = _interval(step, step + side * around, part, _SURE)
+        if (sign > 0 and ends[1] < 0) or (sign < 0 and ends[0] > 0):
             return True
     return False
 
 
 def _interval(value: float, rows: Floats, part: Replicates, confidence: float = CONFIDENCE) -> Ends:
-    """Return the interval of an estimate from what each row says of it."""
+    """Return the interval of an estimate from the influence of each row."""
     estimates = rows if part is None else by_replicate(rows, part)
     if len(estimates) > 1 and is_constant(estimates):  # no row deviates
         return value, value

@@ -35,14 +35,14 @@ class EventCurve(NamedTuple):
     @property
     def least(self) -> int:
         """The part where it is least probable: an end, where that is compatible with the data."""
-        low = min(one.value for one in self.shares)
+        low = min(share.value for share in self.shares)
         compatible = [i for i in self._ends if self.shares[i].low <= low]
         return min(compatible or range(len(self.shares)), key=lambda i: self.shares[i].value)
 
     @property
     def most(self) -> int:
         """The part where it is most probable: an end, where that is compatible with the data."""
-        high = max(one.value for one in self.shares)
+        high = max(share.value for share in self.shares)
         compatible = [i for i in self._ends if self.shares[i].high >= high]
         return max(compatible or range(len(self.shares)), key=lambda i: self.shares[i].value)
 
@@ -79,7 +79,7 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
         curve within. None with fewer than two parts of `ROWS_PER_PART` rows.
     """
     kept = np.isfinite(hits)
-    values, own = x[kept], hits[kept] > 0
+    values, happened = x[kept], hits[kept] > 0
     part = replicates_of_some(replicate, kept)
     parts = min(MOST_PARTS, len(values) // ROWS_PER_PART)
     if parts < 2:
@@ -96,8 +96,8 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
     shares = []
     for i in range(len(edges) - 1):
         inside = place == i
-        low, high = share_interval(own[inside], replicates_of_some(part, inside))
-        value = float(own[inside].mean()) if inside.any() else np.nan
+        low, high = share_interval(happened[inside], replicates_of_some(part, inside))
+        value = float(happened[inside].mean()) if inside.any() else np.nan
         shares.append(Estimate(value, float(low), float(high)))
     return EventCurve(edges, shares, len(shares) == len(distinct))
 

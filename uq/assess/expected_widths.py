@@ -73,30 +73,31 @@ def expected_widths(pilot: Result) -> dict[str, Widths]:
     keys = [pilot.dataset[name].values for name in ("block", "group", "replicate")]
     groups = np.lexsort(keys).reshape(-1, len(labels))
     method = piloted_by(pilot.design)
-    found = {}
+    widths = {}
     outputs = pilot.shown_outputs(analysis)
     for whole, element in zip(
         pilot.elements(outputs), pilot.independent.elements(outputs), strict=True
     ):
-        own = factor if len(element.at_least) >= _ENOUGH_ROWS else None
+        usable = factor if len(element.at_least) >= _ENOUGH_ROWS else None
         limits = analysis.thresholds.get(element.output, ())
         sample = DesignSample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
-        found[element.name] = Widths(
+        widths[element.name] = Widths(
             units=element.units,
-            mean=own and _mean(element, rows, own),
+            mean=usable and _mean(element, rows, usable),
             quantiles={
-                p: own and _quantile(element.at_least, p, rows, own) for p in analysis.quantiles
+                p: usable and _quantile(element.at_least, p, rows, usable)
+                for p in analysis.quantiles
             },
-            thresholds={t: own and _share(element, t, rows, own) for t in limits},
+            thresholds={t: usable and _share(element, t, rows, usable) for t in limits},
             indices=_indices(sample, METHODS[method], samples * replicates, factor)
             if method
             else {},
         )
-    return found
+    return widths
 
 
 def _factor(independent: bool, replicates: int) -> float | None:
-    """Return half the width of an interval in standard errors."""
+    """Return the half-width of an interval in standard errors."""
     if independent:
         return float(normal(upper_probability()))
     return student(upper_probability(), replicates - 1) if replicates > 1 else None
@@ -116,7 +117,7 @@ def _quantile(values: Floats, p: float, rows: int, factor: float) -> float | Non
     m = len(values)
     spread = np.sqrt(p * (1 - p))
     half = factor * spread / np.sqrt(rows)
-    # Too few neighbours in the pilot for a slope; what is rarer than one row is unknown.
+    # Too few neighbours in the pilot for a slope; events rarer than one row are unknown.
     reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
     if reach < half:
         return None

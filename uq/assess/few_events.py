@@ -45,8 +45,8 @@ def few_hits(result: Result, target: IndexTarget, intervals: bool = True) -> tup
         return ()
     if not result.why_no_statistics:
         values = independent_rows(result.dataset.assign(hit=("row", values)))["hit"].values
-    known = values[np.isfinite(values)]
-    hits = known > known.min(initial=np.inf)
+    defined = values[np.isfinite(values)]
+    hits = defined > defined.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))
     if not 0 < rarer < ENOUGH_HITS * replicates:
         return ()  # without any the method refuses

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Findings:
-    """What is known of a result, each part computed when first needed.
+    """Results of an assessment, each computed once when first needed.
 
     Parameters
     ----------
@@ -50,10 +50,12 @@ class Findings:
 
     @cached_property
     def absent(self) -> frozenset[str]:
-        """The outputs that no independent row has."""
+        """The outputs without a value in any independent row."""
         names = self.rows.output_names
-        there = (one.output for one in self.rows.elements(names) if one.present.any())
-        return frozenset(names) - frozenset(there)
+        occurring = (
+            element.output for element in self.rows.elements(names) if element.present.any()
+        )
+        return frozenset(names) - frozenset(occurring)
 
     @cached_property
     def input_ranks(self) -> dict[str, Floats]:
@@ -62,17 +64,17 @@ class Findings:
 
     @cached_property
     def summary(self) -> Summary:
-        """What `uq.assess.summary.summarise` returns."""
+        """The summary (`uq.assess.summary.summarise`)."""
         return summarise(self.result)
 
     @cached_property
     def boundary(self) -> Statistic | None:
-        """What `uq.assess.regime_boundary.boundary` returns."""
+        """The boundary between regimes (`uq.assess.regime_boundary.boundary`)."""
         return boundary(self.result)
 
     @cached_property
     def running(self) -> "pd.DataFrame":
-        """What `uq.running_estimates` returns; where it refuses, no lines, and why in ``attrs``."""
+        """The `uq.running_estimates`; if refused, no lines, and the reason in ``attrs``."""
         import pandas as pd
 
         from uq.assess.convergence import COLUMNS, running_estimates
@@ -86,7 +88,7 @@ class Findings:
 
     @cached_property
     def levels(self) -> ByLevel:
-        """What `uq.assess.level_shares.by_level` returns."""
+        """The variance components (`uq.assess.level_shares.by_level`)."""
         return by_level(self.result)
 
     @cached_property
@@ -94,11 +96,11 @@ class Findings:
         """The fleet of each life, of as many units as a sample has; empty where that is one."""
         units = self.rows.nesting.units
         shown = self.rows.shown_outputs(self.rows.analysis) if units > 1 else ()
-        lives = [one for one in self.rows.elements(shown) if one.is_lifetime]
-        return list(chain.from_iterable(_fleets(self.result, units, one) for one in lives))
+        lives = [element for element in self.rows.elements(shown) if element.is_lifetime]
+        return list(chain.from_iterable(_fleets(self.result, units, life) for life in lives))
 
     def sensitivities(self, method: str) -> Sensitivities:
-        """Return what `uq.assess.sensitivities.sensitivities` finds by a method.
+        """Return the indices of all targets by a method (`uq.assess.sensitivities.sensitivities`).
 
         Raises
         ------
@@ -117,12 +119,14 @@ class Findings:
         InputError
             When the method does not apply to this result, or there is no such target.
         """
-        known = self._sensitivities[method].targets if method in self._sensitivities else {}
-        if target in known:
-            return known[target]
+        cached = self._sensitivities[method].targets if method in self._sensitivities else {}
+        if target in cached:
+            return cached[target]
         if (method, target) not in self._indices:
-            found = sensitivities(self.result, method, target).targets
-            self._indices |= {(method, name): one for name, one in found.items()}
+            computed = sensitivities(self.result, method, target).targets
+            self._indices |= {
+                (method, name): target_indices for name, target_indices in computed.items()
+            }
         return self._indices[method, target]
 
 

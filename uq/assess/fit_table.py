@@ -79,8 +79,8 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
 def _line(fit: Fit) -> dict[str, Any]:
     numbers = {
         f"{name}{end}": number
-        for name, one in {**fit.parameters, **fit.b_lives}.items()
-        for end, number in zip(_ENDS, one.numbers, strict=True)
+        for name, estimate in {**fit.parameters, **fit.b_lives}.items()
+        for end, number in zip(_ENDS, estimate.numbers, strict=True)
     }
     extrapolated = {f"{name}_extrapolated": name in fit.extrapolated for name in fit.b_lives}
     return {name: getattr(fit, name) for name in _FACTS} | numbers | extrapolated

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fleet:
-    """What a result says of fleets of some size.
+    """Times and numbers of failures in fleets of one size.
 
     Attributes
     ----------
@@ -72,12 +72,12 @@ class Fleet:
 
     @property
     def ended(self) -> str:
-        """What a unit has done at the end of its life, in words."""
+        """Participle for the end of a life: ``succeeded`` or ``ended``."""
         return "succeeded" if self.is_success else "ended"
 
     @property
     def sentences(self) -> list[str]:
-        """What is integrated, what is missing, and what is assumed."""
+        """Sentences on integrated inputs, missing numbers and assumptions."""
         exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
         worth = [worth_in_words(self.weights)] if self.weights else []
         return [*exactly, *worth, *self.notes]
@@ -136,34 +136,39 @@ def fleet(
     ['first', 'failed', 'at_most_allowed']
     """
     result = Result.of(result)
-    times = [float(by)] if isinstance(by, int | float) else [float(one) for one in by]
-    found = fleet_of(result, size, times, allow, output, plain=plain)
-    lines = [("first", p, one) for p, one in found.first.items()]
-    for time, (failed, at_most) in found.by.items():
+    times = [float(by)] if isinstance(by, int | float) else [float(time) for time in by]
+    estimates = fleet_of(result, size, times, allow, output, plain=plain)
+    lines = [("first", p, banded) for p, banded in estimates.first.items()]
+    for time, (failed, at_most) in estimates.by.items():
         lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
     import pandas as pd
 
     table = pd.DataFrame([_line(*line) for line in lines]).set_index("quantity")
-    table.attrs = {"output": found.output, "size": size, "allow": allow, "samples": found.samples}
-    table.attrs.update(quality(found.weights))
+    table.attrs = {
+        "output": estimates.output,
+        "size": size,
+        "allow": allow,
+        "samples": estimates.samples,
+    }
+    table.attrs.update(quality(estimates.weights))
     return table
 
 
-def _line(quantity: str, at: float, one: Banded) -> dict[str, object]:
-    found: dict[str, object] = {"quantity": quantity, "at": at}
-    found |= dict(zip(("value", "low", "high"), one.estimate.numbers, strict=True))
-    for name, end in (("band_low", one.low), ("band_high", one.high)):
-        found |= dict(zip((name, f"{name}_low", f"{name}_high"), end.numbers, strict=True))
-    if one.failed is not None:
-        found |= {"failed_low": one.failed.low, "failed_high": one.failed.high}
-    found["reason"] = "; ".join(reasons(one))
-    found["assumes"] = one.low.assumes or one.high.assumes
-    return found
+def _line(quantity: str, at: float, banded: Banded) -> dict[str, object]:
+    line: dict[str, object] = {"quantity": quantity, "at": at}
+    line |= dict(zip(("value", "low", "high"), banded.estimate.numbers, strict=True))
+    for name, end in (("band_low", banded.low), ("band_high", banded.high)):
+        line |= dict(zip((name, f"{name}_low", f"{name}_high"), end.numbers, strict=True))
+    if banded.failed is not None:
+        line |= {"failed_low": banded.failed.low, "failed_high": banded.failed.high}
+    line["reason"] = "; ".join(reasons(banded))
+    line["assumes"] = banded.low.assumes or banded.high.assumes
+    return line
 
 
-def reasons(one: Banded) -> list[str]:
+def reasons(banded: Banded) -> list[str]:
     """Return why numbers are missing, each reason once."""
-    ends = (one.estimate, one.low, one.high)
+    ends = (banded.estimate, banded.low, banded.high)
     return list(dict.fromkeys(end.reason for end in ends if end.reason))
 
 
@@ -176,7 +181,7 @@ def fleet_of(
     *,
     plain: bool = False,
 ) -> Fleet:
-    """Return what `fleet` tabulates."""
+    """Return the numbers that `fleet` tabulates."""
     if why := result.why_no_statistics:
         raise InputError(f"no fleet: the rows of a '{result.design_name}' design {why}")
     if size < 1 or allow < 0:
@@ -198,19 +203,23 @@ def fleet_of(
             )
     part = _part_of_samples(rows, units.place)
     idle = without_effect(inputs_of(rows), element.declared)
-    of = FleetNumbers(units, size, allow, part, SHARED in rows.levels_that_vary(idle))
-    first = {p: of.first(p) for p in analysis.quantiles}
-    ended = {time: (of.failed(time), of.at_most_allowed(time)) for time in times}
+    fleet_numbers = FleetNumbers(units, size, allow, part, SHARED in rows.levels_that_vary(idle))
+    first = {p: fleet_numbers.first(p) for p in analysis.quantiles}
+    ended = {
+        time: (fleet_numbers.failed(time), fleet_numbers.at_most_allowed(time)) for time in times
+    }
     place = units.place
-    enough = int(of.first_of.element.present.sum())
+    enough = int(fleet_numbers.first_of.element.present.sum())
     notes = []
     if enough < place.samples:
         notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
     notes += filter(None, [units.why_not_more, why_no_intervals(result)])
-    assumed = {one.assumes for both in of.ends for one in both if one.assumes}
-    notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
+    assumed = {end.assumes for both in fleet_numbers.ends for end in both if end.assumes}
+    notes += [
+        f"the 5 and 95 % points assume {assumption.removeprefix('that ')}" for assumption in assumed
+    ]
     design = size_in_words(place.samples, place.units, place.repeats)
     names = units.integrated
     of_life = bool(element.declared.success), element.declared.unit
@@ -220,17 +229,17 @@ def fleet_of(
 
 
 def the_life(rows: Result, output: str | None) -> Element:
-    """Return the element of a life that is meant: the only one, unless it is named."""
+    """Return the named life, or the only one."""
     outputs = rows.outputs
-    shown = [one for one in rows.shown_outputs(rows.analysis) if outputs[one].is_lifetime]
+    shown = [name for name in rows.shown_outputs(rows.analysis) if outputs[name].is_lifetime]
     asked = [output] if output is not None else shown
-    found = [element for one in asked for element in rows.lifetimes(one)]
-    if not found:
+    lives = [element for name in asked for element in rows.lifetimes(name)]
+    if not lives:
         raise InputError("uq fleet: the study shows no life")
-    if len(found) > 1:
-        names = choices([one.name for one in found])
+    if len(lives) > 1:
+        names = choices([life.name for life in lives])
         raise InputError(f"uq fleet: several lives; name one with --output ({names})")
-    return found[0]
+    return lives[0]
 
 
 def _refuse(units: Units, size: int) -> None:

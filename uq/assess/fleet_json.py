@@ -8,26 +8,26 @@ from uq.assess.summary_json import quality_json
 from uq.stats import estimate_json
 
 
-def fleet_json(found: Fleet) -> dict[str, Any]:
+def fleet_json(fleet: Fleet) -> dict[str, Any]:
     """Return numbers of fleets in plain data."""
-    return quality_json(found.weights) | {
-        "output": found.output,
-        "size": found.size,
-        "allow": found.allow,
-        "samples": found.samples,
-        "integrated": list(found.integrated),
-        "first": {"quantiles": {repr(p): _plain(one) for p, one in found.first.items()}},
+    return quality_json(fleet.weights) | {
+        "output": fleet.output,
+        "size": fleet.size,
+        "allow": fleet.allow,
+        "samples": fleet.samples,
+        "integrated": list(fleet.integrated),
+        "first": {"quantiles": {repr(p): _plain(banded) for p, banded in fleet.first.items()}},
         "by": {
             repr(time): {"failed": _plain(failed), "at_most_allowed": _plain(at_most)}
-            for time, (failed, at_most) in found.by.items()
+            for time, (failed, at_most) in fleet.by.items()
         },
-        "notes": found.notes,
+        "notes": fleet.notes,
     }
 
 
-def _plain(one: Banded) -> dict[str, Any]:
-    entry = estimate_json.whole(one.estimate) | estimate_json.failed(one.failed)
-    for name, end in (("band_low", one.low), ("band_high", one.high)):
+def _plain(banded: Banded) -> dict[str, Any]:
+    entry = estimate_json.whole(banded.estimate) | estimate_json.failed(banded.failed)
+    for name, end in (("band_low", banded.low), ("band_high", banded.high)):
         entry[name] = estimate_json.number(end.value)
         entry |= estimate_json.flag(f"{name}_", end, "value")
         for which in ("low", "high"):

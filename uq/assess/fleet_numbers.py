@@ -17,7 +17,7 @@ from uq.stats.intervals import Replicates, replicates_of_some
 from uq.stats.roots import root
 
 LOW, HIGH = 0.05, 0.95
-"""Of worlds, at the ends of a band."""
+"""Shares of worlds below the ends of a band."""
 
 ALIKE = "samples share nothing that varies"
 _FARTHEST = 8.2  # probit of a probability
@@ -31,9 +31,9 @@ class Banded:
     Attributes
     ----------
     estimate : Estimate
-        The mean over what is own and chance, and over what is shared.
+        The mean over unit inputs and chance, and over shared inputs.
     low, high : Estimate
-        Its 5 and 95 % points over what is shared.
+        Its 5 and 95 % points over shared inputs.
     failed : Estimate or None
         The ends of the interval of `estimate` with the failed rows at best and at worst.
     """
@@ -54,7 +54,7 @@ class FleetNumbers:
     part : ndarray of int, shape (samples,), or None
         The replicate of each sample; None where samples are independent.
     varies : bool
-        Whether what samples share varies.
+        Whether shared inputs vary.
     """
 
     def __init__(self, units: Units, size: int, allow: int, part: Replicates, varies: bool):
@@ -65,76 +65,80 @@ class FleetNumbers:
         self._cases = [units]
         if units.element.failed.any():
             lost = (with_failed_at(units.element, life) for life in (0.0, np.inf))
-            self._cases += [replace(units, element=one) for one in lost]
-        self._first = [one.fleet(size, 0, part) for one in self._cases]
-        self._beyond = [one.fleet(size, allow, part) for one in self._cases]
-        self._alone = [one.fleet(1, 0, part) for one in self._cases]
+            self._cases += [replace(units, element=element) for element in lost]
+        self._first = [case.fleet(size, 0, part) for case in self._cases]
+        self._beyond = [case.fleet(size, allow, part) for case in self._cases]
+        self._alone = [case.fleet(1, 0, part) for case in self._cases]
         self.first_of = self._first[0]
         self._spreads: dict[float, random_effects.Exceeding] = {}
 
     def first(self, probability: float) -> Banded:
         """Return a quantile of the time at which the first ends."""
-        found = [self._within_horizon(one.quantile(probability)) for one in self._first]
+        estimates = [
+            self._within_horizon(population.quantile(probability)) for population in self._first
+        ]
         reached = -expm1(log1p(-probability) / self._size)
-        value = found[0].value
+        value = estimates[0].value
 
         def band(share: float) -> Estimate:
             return self._time_of(share, reached, value)
 
-        return self._banded(found, band, is_life=True)
+        return self._banded(estimates, band, is_life=True)
 
     def failed(self, time: float) -> Banded:
         """Return the number that has ended before a time."""
-        found = [_times(one.below(time), self._size) for one in self._alone]
+        estimates = [_times(population.below(time), self._size) for population in self._alone]
 
         def band(share: float) -> Estimate:
             return _times(self._unit_at(time, share), self._size)
 
-        return self._banded(found, band)
+        return self._banded(estimates, band)
 
     def at_most_allowed(self, time: float) -> Banded:
         """Return the probability that no more have ended before a time than allowed."""
         if self._allow >= self._size:
             return Banded(*3 * (Estimate(1.0, 1.0, 1.0),))
-        found = [_complement(one.below(time)) for one in self._beyond]
+        estimates = [_complement(population.below(time)) for population in self._beyond]
 
         def band(share: float) -> Estimate:
             p = self._unit_at(time, 1 - share)
-            kept = [self._kept(one) for one in p.numbers]
+            kept = [self._probability_allowed(end) for end in p.numbers]
             return replace(p, value=kept[0], low=kept[2], high=kept[1])
 
-        return self._banded(found, band)
+        return self._banded(estimates, band)
 
-    def _kept(self, p: float) -> float:
+    def _probability_allowed(self, p: float) -> float:
         return float(special.bdtr(self._allow, self._size, p)) if p == p else p
 
     def _banded(
         self,
-        found: Sequence[Estimate],
+        estimates: Sequence[Estimate],
         band: Callable[[float], Estimate],
         is_life: bool = False,
     ) -> Banded:
-        one, *lost = found
-        if self._varies and not isnan(one.value):
+        estimate, *lost = estimates
+        if self._varies and not isnan(estimate.value):
             low, high = _in_order(band(LOW), band(HIGH))
         else:
-            low = high = Estimate() if self._varies else replace(one, reason=one.reason or ALIKE)
+            low = high = (
+                Estimate() if self._varies else replace(estimate, reason=estimate.reason or ALIKE)
+            )
         self.ends.append((low, high))
         if not lost:
-            return Banded(one, low, high)
+            return Banded(estimate, low, high)
         least, most = sorted(lost, key=lambda end: end.value)
-        return Banded(one, low, high, bounds(one, least, most, is_life))
+        return Banded(estimate, low, high, bounds(estimate, least, most, is_life))
 
-    def _within_horizon(self, found: Estimate) -> Estimate:
-        """Return a time, or why it is not known where rows were censored before it."""
+    def _within_horizon(self, estimate: Estimate) -> Estimate:
+        """Return a time, or the reason why it is unknown: rows were censored before it."""
         element = self._units.element
         if not element.censored.any():
-            return found
+            return estimate
         horizon = element.values[element.censored].min()
-        if found.value >= horizon:
+        if estimate.value >= horizon:
             return Estimate(reason="rows were censored before that time")
-        beyond = found.high >= horizon
-        return replace(found, high=np.inf, beyond=("high",)) if beyond else found
+        beyond = estimate.high >= horizon
+        return replace(estimate, high=np.inf, beyond=("high",)) if beyond else estimate
 
     def _exceeding(self, time: float) -> random_effects.Exceeding:
         """Return the spread over worlds of P(a unit has ended before a time)."""
@@ -158,7 +162,7 @@ class FleetNumbers:
         weights = None if units.of_worlds is None else units.of_worlds[kept]
         if units.end_together:
             return random_effects.certain(world.below(time)[kept], part, weights)
-        return random_effects.known(units.ended(time)[kept, 0], units.nodes, part, weights)
+        return random_effects.noise_free(units.ended(time)[kept, 0], units.nodes, part, weights)
 
     def _unit_at(self, time: float, share: float) -> Estimate:
         """Return the point of P(a unit has ended) below which it is in a share of worlds."""
@@ -190,46 +194,48 @@ class FleetNumbers:
         def at(name: str) -> float:
             def excess(x: float) -> float:
                 seen.append(self._exceeding(exp(x))(probability))
-                if isnan(found := float(getattr(seen[-1], name))):
+                if isnan(value := float(getattr(seen[-1], name))):
                     raise _UnknownError
-                return found - share
+                return value - share
 
             try:
                 side = 1.0 if excess(start) < 0 else -1.0
-                there = first_step(start, 0.1 * side, lambda x: (excess(x) >= 0) == (side > 0))
-                if there is None:
+                bracket = first_step(start, 0.1 * side, lambda x: (excess(x) >= 0) == (side > 0))
+                if bracket is None:
                     return never if side > 0 else 0.0 if name == "value" else nan
-                return exp(root(excess, there, _SETTLED))
+                return exp(root(excess, bracket, _SETTLED))
             except _UnknownError:
                 return nan
 
-        found = at("value"), at("high"), at("low")
+        numbers = at("value"), at("high"), at("low")
         reason, assumes = (
-            next(filter(None, (getattr(one, name) for one in seen)), "")
+            next(filter(None, (getattr(estimate, name) for estimate in seen)), "")
             for name in ("reason", "assumes")
         )
-        return _around(Estimate(*found, reason, assumes))
+        return _around(Estimate(*numbers, reason, assumes))
 
 
 class _UnknownError(ArithmeticError):
-    """The spread over worlds is not known there."""
+    """The distribution over worlds is unknown at this time."""
 
 
-def _around(one: Estimate) -> Estimate:
+def _around(estimate: Estimate) -> Estimate:
     """Return an estimate inside its interval: on a plateau the roots found need not be in order."""
-    low, high = np.minimum(one.low, one.value), np.maximum(one.high, one.value)
-    return one if isnan(one.value) else replace(one, low=float(low), high=float(high))
+    low, high = np.minimum(estimate.low, estimate.value), np.maximum(estimate.high, estimate.value)
+    return (
+        estimate if isnan(estimate.value) else replace(estimate, low=float(low), high=float(high))
+    )
 
 
 def _in_order(low: Estimate, high: Estimate) -> tuple[Estimate, Estimate]:
-    """Return the ends of a band, which on a plateau may be found to cross."""
+    """Return the ends of a band in order: on a plateau the computed roots may cross."""
     return (high, low) if low.value > high.value else (low, high)
 
 
-def _times(one: Estimate, factor: float) -> Estimate:
-    value, low, high = (factor * number for number in one.numbers)
-    return replace(one, value=value, low=low, high=high)
+def _times(estimate: Estimate, factor: float) -> Estimate:
+    value, low, high = (factor * number for number in estimate.numbers)
+    return replace(estimate, value=value, low=low, high=high)
 
 
-def _complement(one: Estimate) -> Estimate:
-    return replace(one, value=1 - one.value, low=1 - one.high, high=1 - one.low)
+def _complement(estimate: Estimate) -> Estimate:
+    return replace(estimate, value=1 - estimate.value, low=1 - estimate.high, high=1 - estimate.low)

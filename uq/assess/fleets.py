@@ -44,20 +44,20 @@ class Units:
     element : Element
         Its rows.
     place : Nesting
-        Of these rows.
+        Nesting of these rows.
     shared : Scale or None
-        What scales all lives of a world alike.
+        Law of the inputs that scale all lives of a world alike.
     varying : tuple of str
-        What differs between the units of a world and is not integrated. With nothing of this kind,
+        Inputs that differ between the units of a world and are not integrated. Without any,
         the probability of a unit's life is known in each world.
     why_not_more : str
         A sentence on the inputs that scale lives but are not integrated, or "".
     worlds_repeat : bool
-        Whether what worlds share, but for what is integrated, is the same in some of them.
+        Whether some worlds have equal values of all shared inputs that are not integrated.
     design : str
-        By which they were drawn.
+        Design of the samples.
     of_worlds : ndarray, shape (samples,), or None
-        Their weights, where inspections have weighted them.
+        Weights of the worlds, where inspections have weighted them.
     """
 
     element: Element
@@ -71,7 +71,7 @@ class Units:
 
     @property
     def integrated(self) -> tuple[str, ...]:
-        """All that is integrated."""
+        """All integrated inputs."""
         return tuple(name for law in (self.element.law, self.shared) if law for name in law.inputs)
 
     @property
@@ -81,12 +81,12 @@ class Units:
 
     @property
     def end_together(self) -> bool:
-        """Whether all units of a world end together, at a time known but for what scales it."""
+        """Whether all units of a world end together, at a time scaled by integrated inputs only."""
         return self.are_alike and self.shared is not None and self.element.law is None
 
     @property
     def nodes(self) -> Floats:
-        """Standard normal quantiles of what is integrated once per world, shape (nodes,)."""
+        """Standard normal quantiles of the inputs integrated once per world, shape (nodes,)."""
         if self.shared is None:
             return np.zeros(1)
         law = self.element.law
@@ -117,11 +117,11 @@ class Units:
         """Return the mean over repeats, shape (samples, units); of units that are alike, one."""
         table = self.place.table(np.where(self.element.present, numbers, np.nan))
         axes = (1, 2) if self.are_alike else 2
-        known = np.isfinite(table)
-        count = known.sum(axis=axes)
-        sums = np.where(known, table, 0.0).sum(axis=axes)
-        found = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
-        return found[:, None] if self.are_alike else found
+        present = np.isfinite(table)
+        count = present.sum(axis=axes)
+        sums = np.where(present, table, 0.0).sum(axis=axes)
+        means = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
+        return means[:, None] if self.are_alike else means
 
     def fleet(self, size: int, allow: int, part: Replicates) -> Population:
         """Return the population of the times by which more than `allow` of `size` have ended.
@@ -129,8 +129,8 @@ class Units:
         Its rows are worlds, each the law of this time. Worlds with too few units have none.
         """
         lives = np.where(self.element.present, self.element.values, np.inf)
-        first = self.place.table(lives).min(axis=(1, 2), initial=np.inf, where=self._there)
-        enough = self._there.any(axis=2).sum(axis=1) >= (1 if self.are_alike else size)
+        first = self.place.table(lives).min(axis=(1, 2), initial=np.inf, where=self._mask)
+        enough = self._mask.any(axis=2).sum(axis=1) >= (1 if self.are_alike else size)
         first = np.where(enough, first, np.nan)
         element = self.element
         worlds = Element(
@@ -147,7 +147,7 @@ class Units:
         return Population(worlds, part)
 
     @property
-    def _there(self) -> Mask:
+    def _mask(self) -> Mask:
         return np.isfinite(self.place.table(np.where(self.element.present, 0.0, np.nan)))
 
 
@@ -167,9 +167,9 @@ class _MoreThan:
     def _turns(self) -> Floats:
         units, element = self.units, self.units.element
         table = units.place.table(np.where(element.present, element.values, np.nan))
-        found = turns(table, self.size, self.allow, units.are_alike)
+        times = turns(table, self.size, self.allow, units.are_alike)
         place = units.place
-        return found[place.sample, place.unit, place.repeat]
+        return times[place.sample, place.unit, place.repeat]
 
     @property
     def spread(self) -> float:
@@ -179,11 +179,11 @@ class _MoreThan:
         units = self.units
         if units.shared is not None and units.element.law is None:
             each = self._turns * units.shared.below(units.element.values, time)
-            found = np.bincount(units.place.sample, each, units.place.samples).astype(float)
+            probability = np.bincount(units.place.sample, each, units.place.samples).astype(float)
         else:
             ended = units.ended(time)
-            found = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights
-        return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
+            probability = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights
+        return np.where(np.isnan(lives), 0.0, np.clip(probability, 0.0, 1.0))
 
 
 def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
@@ -199,7 +199,7 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
         Whether lives are taken as computed.
     """
     place, levels = rows.nesting, rows.levels
-    own = shared = None
+    inner = shared = None
     inputs, why = inputs_of(rows), ""
     scales = element.declared.scales and not plain
     if scales and element.censored.any():
@@ -207,38 +207,40 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
     elif scales:
         inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
         outside = integrated(rows, element.declared, inputs, {SHARED})
-        own, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
-        if own and shared and shared.spread >= _WIDEST * own.spread:
-            kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(own.inputs)))
+        inner, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
+        if inner and shared and shared.spread >= _WIDEST * inner.spread:
+            kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(inner.inputs)))
             shared = None
         why = not_integrated(kept)
     idle = without_effect(inputs, element.declared)
-    known = idle if own is None else (*own.inputs, *idle)
-    varying = _unknown(levels, inputs.tied, known)
+    integrated_inputs = idle if inner is None else (*inner.inputs, *idle)
+    varying = _unknown(levels, inputs.tied, integrated_inputs)
     if rows.is_random:
         varying = (*varying, "the model's own chance")
-    known = idle if shared is None else (*shared.inputs, *idle)
-    repeats = _repeats(inputs, [name for name in levels if levels[name] == SHARED], known, place)
+    integrated_inputs = idle if shared is None else (*shared.inputs, *idle)
+    repeats = _repeats(
+        inputs, [name for name in levels if levels[name] == SHARED], integrated_inputs, place
+    )
     design = rows.design_name
     weights = rows.sample_weights("fleets")
-    return Units(replace(element, law=own), place, shared, varying, why, repeats, design, weights)
+    return Units(replace(element, law=inner), place, shared, varying, why, repeats, design, weights)
 
 
 def _repeats(
-    inputs: Inputs, shared: Collection[str], known: Collection[str], place: Nesting
+    inputs: Inputs, shared: Collection[str], integrated_inputs: Collection[str], place: Nesting
 ) -> bool:
-    """Return whether what worlds share, but for what is integrated, is the same in some of them."""
-    names = {inputs.tied.get(name, name) for name in shared} - {*known}
+    """Return whether some worlds have equal values of all shared inputs that are not integrated."""
+    names = {inputs.tied.get(name, name) for name in shared} - {*integrated_inputs}
     values = [inputs.values[name] for name in sorted(names)]
     return bool(values) and len(np.unique(values, axis=1).T) < place.samples
 
 
 def _unknown(
-    levels: Mapping[str, str], tied: Mapping[str, str], known: tuple[str, ...]
+    levels: Mapping[str, str], tied: Mapping[str, str], integrated_inputs: tuple[str, ...]
 ) -> tuple[str, ...]:
     """Return the inputs of units that are not integrated."""
     return tuple(
         name
         for name, level in levels.items()
-        if level != SHARED and tied.get(name, name) not in known
+        if level != SHARED and tied.get(name, name) not in integrated_inputs
     )

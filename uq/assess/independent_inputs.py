@@ -33,7 +33,7 @@ def independent_inputs(result: Result) -> dict[str, Floats]:
 
 
 def correlated_inputs(result: Result) -> dict[str, tuple[str, ...]]:
-    """Return the inputs with stated rank correlations: name -> those it is correlated with."""
+    """Return the inputs with stated rank correlations: name -> correlated inputs."""
     stated = result.study.dependence
     if stated is None:
         return {}
@@ -59,7 +59,7 @@ _DIVIDED = "what correlated inputs explain in common is divided among them"
 
 
 def notes_on_inputs(result: Result) -> list[str]:
-    """Return sentences on what the indices of tied or dependent inputs mean."""
+    """Return sentences on the meaning of indices of tied or dependent inputs."""
     notes, tied = [], defaultdict[str, list[str]](list)
     for name, entry in result.study.uncertain.items():
         if isinstance(entry, Tied):

@@ -29,7 +29,7 @@ class ChangedEntry(NamedTuple):
 
 
 class InputMoments(NamedTuple):
-    """Mean and standard deviation of an input, in its unit; 0 where it is one number."""
+    """Mean and standard deviation of an input in its unit; sd 0 for a fixed value."""
 
     mean: float
     sd: float
@@ -66,15 +66,17 @@ Side = tuple[Result, StudyFile]
 def _frame(sides: list[Side]) -> Iterator[ChangedEntry]:
     frames = [dict(_entries(*side)) for side in sides]
     for place in dict.fromkeys((*frames[0], *frames[1])):
-        one, other = (shown(f[place]) if place in f else "default" for f in frames)
-        if one != other:
-            yield ChangedEntry(*place, one, other)
+        first, other = (shown(f[place]) if place in f else "default" for f in frames)
+        if first != other:
+            yield ChangedEntry(*place, first, other)
     ranks = [
         study.dependence.model_dump(exclude={"source"}) if study.dependence else None
         for _, study in sides
     ]
     if ranks[0] != ranks[1]:
-        parameters = (", ".join(one["parameters"]) if one else "none" for one in ranks)
+        parameters = (
+            ", ".join(correlation["parameters"]) if correlation else "none" for correlation in ranks
+        )
         yield ChangedEntry("dependence", "rank correlations", *parameters)
 
 
@@ -91,9 +93,9 @@ def _inputs(sides: list[Side]) -> Iterator[ChangedEntry]:
     first, second = (result.dataset for result, _ in sides)
     for name, variable in first.data_vars.items():
         if variable.attrs.get("role") in ("input", "fixed") and name in second:
-            one, other = (_stated(*side, str(name)) for side in sides)
-            if one != other:
-                yield ChangedEntry("input", str(name), one[0], other[0])
+            stated, other = (_stated(*side, str(name)) for side in sides)
+            if stated != other:
+                yield ChangedEntry("input", str(name), stated[0], other[0])
 
 
 def _stated(result: Result, study: StudyFile, name: str) -> tuple[str, Any]:
@@ -112,9 +114,9 @@ def _stated(result: Result, study: StudyFile, name: str) -> tuple[str, Any]:
     return stated, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
 
 
-def only_change(first: Result, second: Result, found: list[ChangedEntry]) -> OnlyChange | None:
+def only_change(first: Result, second: Result, entries: list[ChangedEntry]) -> OnlyChange | None:
     """Return the only input that differs, if nothing else but the design does."""
-    decisive = [change for change in found if change.kind != "design"]
+    decisive = [change for change in entries if change.kind != "design"]
     if [change.kind for change in decisive] != ["input"]:
         return None
     name = decisive[0].name

@@ -90,13 +90,13 @@ def rows_needed(rows: Result, analysis: AnalysisTable) -> dict[str, Needed]:
         Some of its rows.
     analysis : AnalysisTable
     """
-    found = {}
+    by_key = {}
     if analysis.tolerance:
-        found["tolerance"] = Needed(order_statistics.rows_for_bound(*analysis.tolerance), 1)
+        by_key["tolerance"] = Needed(order_statistics.rows_for_bound(*analysis.tolerance), 1)
     if bounds := len(list(_wanted(rows, analysis.joint_bounds))):
         needed = order_statistics.rows_for_bound(*(analysis.tolerance or USUAL), bounds=bounds)
-        found["joint_bounds"] = Needed(needed, bounds)
-    return found
+        by_key["joint_bounds"] = Needed(needed, bounds)
+    return by_key
 
 
 def _wanted(rows: Result, asked: Mapping[str, str]) -> Iterator[tuple[Element, str]]:

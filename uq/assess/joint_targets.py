@@ -34,12 +34,12 @@ def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[IndexTa
         return
     first, name = elements[0], whole_name(elements[0].output)
     usual = _common(elements)
-    found = _together(elements, usual)
+    target = _together(elements, usual)
     if first.is_lifetime or not usual:
-        yield found
+        yield target
     else:
         note = f"{_HEAVY}: these are indices of their {FORMS[usual]}s; ask for {name} for their own"
-        yield replace(found, notes=(*found.notes, note))
+        yield replace(target, notes=(*target.notes, note))
     if not every or first.is_angle:
         return
     for form in ("log", "rank", "rate") if first.is_lifetime else ("", "log", "rank"):
@@ -54,22 +54,22 @@ _HEAVY = "some elements have a heavy tail"
 
 def _common(elements: Sequence[Element]) -> str:
     """Return the form that serves all elements."""
-    forms = {split_name(lightened(number_of(one)).name)[0] for one in elements}
+    forms = {split_name(lightened(number_of(element)).name)[0] for element in elements}
     if len(forms) == 1:
         return forms.pop()
-    no_logarithm = any(transformed(one, "log").refused for one in elements)
+    no_logarithm = any(transformed(element, "log").refused for element in elements)
     return "rank" if "rank" in forms or no_logarithm else "log"
 
 
 def _together(elements: Sequence[Element], form: str) -> IndexTarget:
     parts = [
-        transformed(one, form) if form else IndexTarget(one.name, one, one.values)
-        for one in elements
+        transformed(element, form) if form else IndexTarget(element.name, element, element.values)
+        for element in elements
     ]
     name = whole_name(elements[0].output)
-    values = np.column_stack([one.values for one in parts])
-    lacking = [one.name for one in parts if not np.isfinite(one.values).any()]
-    refused = next((one.refused for one in parts if one.refused), "")
+    values = np.column_stack([part.values for part in parts])
+    lacking = [part.name for part in parts if not np.isfinite(part.values).any()]
+    refused = next((part.refused for part in parts if part.refused), "")
     if lacking and not refused:
         others = "; ask for the other elements by name" if len(lacking) < len(parts) else ""
         refused = f"no row has a {lacking[0]}{others}"
@@ -78,7 +78,7 @@ def _together(elements: Sequence[Element], form: str) -> IndexTarget:
 
 
 def _weights(elements: Sequence[Element], values: np.ndarray) -> tuple[str, ...]:
-    """Return what the elements count, in a sentence; none where nothing varies."""
+    """Return a sentence on the weights of the elements; none where nothing varies."""
     if len(values) == 0 or not (variance := sized(values)[0].var(axis=0)).any():
         return ()
     most = int(variance.argmax())

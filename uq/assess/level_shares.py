@@ -31,7 +31,7 @@ NO_ERROR_OF = "the numerical error is that of the output, not of its {form}"
 
 @dataclass(frozen=True)
 class ByLevel:
-    """What a result says of its levels.
+    """Variance components of the targets of a result.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class ByLevel:
     another_regime : Estimate or None
         Probability that a repeat ends in another regime; None without regimes.
     switching : ndarray, shape (n,)
-        The same of each row; NaN where it is not known.
+        The same probability for each row; NaN if unknown.
     weights : Smoothed or None
         Of samples, where inspections have weighted them.
     """
@@ -64,7 +64,7 @@ class ByLevel:
 
     def inputs_on(self, level: str) -> list[str]:
         """Return the inputs on a level."""
-        return [name for name, own in self.inputs.items() if own == level]
+        return [name for name, input_level in self.inputs.items() if input_level == level]
 
 
 def by_level(result: Result, output: str | None = None, *, plain: bool = False) -> ByLevel:
@@ -96,31 +96,31 @@ def by_level(result: Result, output: str | None = None, *, plain: bool = False) 
     worth = rows.sample_weights("shares of levels")
     weights = None if worth is None else of_samples(worth)
     replicate = None if rows.has_independent_samples else place.replicate
-    known = rows.output_names
-    shown = [one for one in rows.shown_outputs(rows.analysis) if not is_error(one, known)]
-    found = {}
+    output_names = rows.output_names
+    shown = [name for name in rows.shown_outputs(rows.analysis) if not is_error(name, output_names)]
+    shares = {}
     for name in shown if output is None else [output]:
         for target in targets_of(rows, name):
             light = target if target.event else lightened(target, SHARES_OF)
             scales = Scales({}) if plain else _scales(rows, light)
-            found[light.name] = _shares(rows, light, place, scales, replicate, weights)
-    switches = "regime" in known and output is None
+            shares[light.name] = _shares(rows, light, place, scales, replicate, weights)
+    switches = "regime" in output_names and output is None
     mean, each = switching(rows, place, varying, worth) if switches else (None, np.empty(0))
     size = place.samples, place.units, place.repeats
-    return ByLevel(*size, rows.levels, found, mean, each, weights)
+    return ByLevel(*size, rows.levels, shares, mean, each, weights)
 
 
 def _scales(rows: Result, target: IndexTarget) -> Scales:
-    """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
+    """Return the inputs integrated exactly: for logarithms of lives, those that only scale them."""
     element = target.element
     if element is None or target.event or target.refused or not element.declared.scales:
         return Scales({})
-    found = scales_by_level(rows, element)
-    if split_name(target.name)[0] == "log" or not found.inputs:
-        return found
-    names = " and ".join(found.inputs)
+    scales = scales_by_level(rows, element)
+    if split_name(target.name)[0] == "log" or not scales.inputs:
+        return scales
+    names = " and ".join(scales.inputs)
     why = f"{names} not integrated: the lives are replaced by their ranks"
-    return Scales({}, why, found.idle)
+    return Scales({}, why, scales.idle)
 
 
 def _shares(
@@ -142,15 +142,15 @@ def _shares(
         return LevelShares({name: Estimate(reason=reason) for name in SOURCES}, notes=target.notes)
     errors, why_none = _errors(rows, target)
     table = place.table(np.where(np.isfinite(values), values, np.nan))
-    own = None if errors is None else place.table(errors)
+    error_table = None if errors is None else place.table(errors)
     varying = rows.levels_that_vary((*scales.inputs, *scales.idle))
-    known = {level: place.table(variance) for level, variance in scales.variances.items()}
+    variances = {level: place.table(variance) for level, variance in scales.variances.items()}
     worth = None if weights is None else weights.weights
-    found = shares_of(table, varying, own, replicate, known, rows.design_name, worth)
+    shares = shares_of(table, varying, error_table, replicate, variances, rows.design_name, worth)
     if errors is None:
-        found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
+        shares = replace(shares, shares={**shares.shares, SOLVER: Estimate(reason=why_none)})
     notes = (*target.notes, *few, *filter(None, [scales.why_not_more]))
-    return replace(found, notes=notes, integrated=scales.inputs)
+    return replace(shares, notes=notes, integrated=scales.inputs)
 
 
 def _why_not_weighted(weights: Smoothed | None) -> str:
@@ -172,9 +172,9 @@ def _too_few_effective(hits: Floats, place: Nesting, weights: Smoothed | None) -
     """Return why an event has too few hits in rows of equal weight, or ""."""
     if weights is None:
         return ""
-    known = np.isfinite(hits)
-    share = float(np.average(hits[known], weights=weights.weights[place.sample[known]]))
-    rows = known.sum() * weights.effective / weights.rows
+    defined = np.isfinite(hits)
+    share = float(np.average(hits[defined], weights=weights.weights[place.sample[defined]]))
+    rows = defined.sum() * weights.effective / weights.rows
     rarer = min(share, 1 - share) * rows
     if not 0 < rarer < FEWEST_HITS:
         return ""  # without any, no two rows differ

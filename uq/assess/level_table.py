@@ -49,30 +49,35 @@ def levels(result: AnyResult, output: str | None = None, *, plain: bool = False)
     1.0
     """
     result = Result.of(result)
-    found = by_level(result, output, plain=plain)
+    decomposition = by_level(result, output, plain=plain)
     data: dict[str, Any] = {}
     for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
-        data[name] = _over(found.outputs.values(), end, float)
+        data[name] = _over(decomposition.outputs.values(), end, float)
     for name in ("reason", "assumes"):
-        data[name] = _over(found.outputs.values(), name, str)
-    data["variance"] = ("output", [one.variance for one in found.outputs.values()])
-    data["samples_left_out"] = ("output", [one.left_out for one in found.outputs.values()])
-    integrated = [" ".join(one.integrated) for one in found.outputs.values()]
+        data[name] = _over(decomposition.outputs.values(), name, str)
+    data["variance"] = ("output", [target.variance for target in decomposition.outputs.values()])
+    data["samples_left_out"] = (
+        "output",
+        [target.left_out for target in decomposition.outputs.values()],
+    )
+    integrated = [" ".join(target.integrated) for target in decomposition.outputs.values()]
     data["integrated"] = ("output", np.array(integrated, dtype=str))
-    if found.another_regime is not None:
-        data["another_regime"] = ("sample", found.switching)
-        for end, value in zip(("mean", "low", "high"), found.another_regime.numbers, strict=True):
+    if decomposition.another_regime is not None:
+        data["another_regime"] = ("sample", decomposition.switching)
+        for end, value in zip(
+            ("mean", "low", "high"), decomposition.another_regime.numbers, strict=True
+        ):
             data["another_regime_mean" + f"_{end}" * (end != "mean")] = value
     attrs: dict[str, Any] = {
-        "samples": found.samples,
-        "units_per_sample": found.units,
-        "repeats": found.repeats,
+        "samples": decomposition.samples,
+        "units_per_sample": decomposition.units,
+        "repeats": decomposition.repeats,
     }
-    attrs |= quality(found.weights)
-    coords = {"output": list(found.outputs), "level": list(SOURCES)}
+    attrs |= quality(decomposition.weights)
+    coords = {"output": list(decomposition.outputs), "level": list(SOURCES)}
     return xr.Dataset(data, coords, attrs)
 
 
 def _over(outputs: Any, name: str, kind: type) -> tuple[tuple[str, str], Any]:
-    cells = [[getattr(one.shares[source], name) for source in SOURCES] for one in outputs]
+    cells = [[getattr(target.shares[source], name) for source in SOURCES] for target in outputs]
     return ("output", "level"), np.array(cells, dtype=kind).reshape(-1, len(SOURCES))

@@ -42,7 +42,7 @@ ASSUMES = (
     "that lives follow this law: a test of {rows} rows that does not reject it is no proof, least"
     " of all beyond the range of the rows"
 )
-"""What every number of an accepted law rests on."""
+"""Assumption behind every number of an accepted law."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Fit:
     Attributes
     ----------
     rows : int
-        How many were used.
+        Number of rows used.
     p_value : float
         Of the Anderson-Darling test, its law from refits; NaN where there is no fit.
     refused : str
@@ -62,9 +62,9 @@ class Fit:
     b_lives : dict of str to Estimate
         ``B1``, ``B10``, ``B50`` [s].
     extrapolated : frozenset of str
-        Those earlier than the rows reach, 1/(n + 1).
+        B-lives earlier than the rows reach, 1/(n + 1).
     assumes : str
-        What all of these rest on.
+        Assumption behind all of these.
     """
 
     rows: int
@@ -139,8 +139,8 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
         return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
-        known = counted(never, "never ends", "never end")
-        return f"of {len(life)} rows {known}, and under this law all do"
+        endless = counted(never, "never ends", "never end")
+        return f"of {len(life)} rows {endless}, and under this law all do"
     if none := int((life <= 0).sum()):
         return f"{counted(none, 'row has', 'rows have')} no positive life; under this law all have"
     if ended.sum() < MIN_ENDED:
@@ -151,7 +151,7 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
 
 
 def _sorted(x: Floats, ended: Mask) -> _Sample:
-    order = np.lexsort((~ended, x), axis=1)  # of rows at one time those that end come first
+    order = np.lexsort((~ended, x), axis=1)  # at equal times, ended rows before censored ones
     return _Sample(np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1))
 
 
@@ -171,8 +171,8 @@ def _refits(
     place = np.searchsorted(share, rng.random(x.shape))
     limit = np.append(seen.x[0], np.inf)[place]
     drawn = _sorted(np.minimum(x, limit), x <= limit)
-    found = fit(family, *drawn)
-    return *found, _distance(family, *found, drawn)
+    fitted = fit(family, *drawn)
+    return *fitted, _distance(family, *fitted, drawn)
 
 
 @lru_cache(maxsize=4)
@@ -185,8 +185,8 @@ def _complete_refits(law: str, n: int) -> tuple[Floats, Floats, Floats]:
     u = np.random.default_rng(0).random((_refits_of(n), n))
     x = np.sort(family.standard.ppf(u), axis=1)
     drawn = _Sample(x, np.ones_like(x, dtype=bool))
-    found = fit(family, *drawn)
-    return *found, _distance(family, *found, drawn)
+    fitted = fit(family, *drawn)
+    return *fitted, _distance(family, *fitted, drawn)
 
 
 def _refits_of(rows: int) -> int:

@@ -45,14 +45,14 @@ def terms_at(law: Floats, scores: Floats) -> Floats:
 
 
 class TermsOfLaws:
-    """The terms in rows each of which has a law of the input.
+    """Legendre terms in rows that each have a posterior law of the input.
 
     Parameters
     ----------
     law : ndarray, shape (q,)
         As for `terms_at`.
     scores : ndarray, shape (n, q)
-        The same of each row.
+        Normal scores of the quantiles in each row.
     """
 
     def __init__(self, law: Floats, scores: Floats):
@@ -108,7 +108,7 @@ class LearntScale:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that it causes."""
+        """Standard deviation of the logarithms of lives due to the input."""
         return float(abs(self.exponent) * np.log(self.drawn).std())
 
     def below(self, lives: Floats, time: float) -> Floats:
@@ -128,19 +128,19 @@ class LearntScale:
         row = np.arange(len(score))
         low, high = self.scores[row, after - 1], self.scores[row, after]
         part = (score - low) / (high - low)
-        found = special.ndtr(_FINE[after - 1] + part * (_FINE[after] - _FINE[after - 1]))
-        return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, found))
+        share = special.ndtr(_FINE[after - 1] + part * (_FINE[after] - _FINE[after - 1]))
+        return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, share))
 
 
 def learnt_scale(
     rows: Result, inputs: Inputs, exponents: Mapping[str, float]
 ) -> LearntScale | None:
-    """Return the law that inspections left of the integrated input, if it scales lives.
+    """Return the posterior law of the integrated input, if it only scales lives.
 
     Parameters
     ----------
     rows : Result
-        Those of an inspected unit; others have no such law.
+        Rows of an inspected unit; others have no posterior law.
     inputs : Inputs
         Of these rows.
     exponents : dict of str to float
@@ -151,16 +151,16 @@ def learnt_scale(
         return None
     from scipy.interpolate import PchipInterpolator  # late: it takes a while to import
 
-    of = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
+    arguments = inputs.laws[name], inputs.bounds[name], exponents[name], inputs.values[name]
     scores = PchipInterpolator(SCORES, rows.dataset[SCALE_SCORES].values, axis=1)(_FINE)
     terms = None
     if LAW_SCORES in rows.dataset:
         terms = TermsOfLaws(rows.dataset[LAW_SCORES].values, rows.dataset[SCALE_SCORES].values)
-    return LearntScale((name,), *of, scores, terms)
+    return LearntScale((name,), *arguments, scores, terms)
 
 
 def learnt_input(rows: Result) -> str:
-    """Return the input whose law in each row is what inspections of a unit left, or ""."""
+    """Return the input with a posterior law in each row, or ""."""
     return str(rows.dataset[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows.dataset else ""
 
 

@@ -37,18 +37,18 @@ NO_SPREAD = "samples do not differ by more than the noise of their units"
 ONE_UNIT = "a single unit cannot show what is shared and what is own"
 
 Exceeding = Callable[[float], Estimate]
-"""Probability -> the share of worlds in which that of a unit is larger."""
+"""Probability -> the share of worlds in which a unit has a larger one."""
 
 
-def known(ended: Floats, nodes: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
-    """Return the share of worlds with larger probabilities, where these are known.
+def noise_free(ended: Floats, nodes: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
+    """Return the share of worlds with larger probabilities, which are known without noise.
 
     Parameters
     ----------
     ended : ndarray, shape (samples, nodes)
         Falling along nodes.
     nodes : ndarray, shape (nodes,)
-        Standard normal quantiles of what worlds share; a single one if nothing is integrated.
+        Standard normal quantiles of integrated shared inputs; a single one if there are none.
     part : ndarray of int, shape (samples,), or None
     weights : ndarray, shape (samples,), or None
 
@@ -86,7 +86,7 @@ def certain(ended: Floats, part: Replicates, weights: Floats | None) -> Exceedin
     Parameters
     ----------
     ended : ndarray, shape (samples,)
-        Probability that the units of a sample have ended, over what they share and is integrated.
+        Probability that the units of a sample have ended, over the integrated shared inputs.
     part : ndarray of int, shape (samples,), or None
     weights : ndarray, shape (samples,), or None
 
@@ -99,13 +99,13 @@ def certain(ended: Floats, part: Replicates, weights: Floats | None) -> Exceedin
 
 
 def _mean(share: Floats, part: Replicates, weights: Floats | None) -> Estimate:
-    found = weighted_share(share, weights, part)
-    alike = found.reason == EXACT
-    return Estimate(found.value, found.value, found.value) if alike else found
+    estimate = weighted_share(share, weights, part)
+    alike = estimate.reason == EXACT
+    return Estimate(estimate.value, estimate.value, estimate.value) if alike else estimate
 
 
 class Noisy:
-    """The spread over worlds of a probability that is known from some units of each.
+    """Distribution over worlds of a probability that is estimated from several units of each.
 
     Its law is normal on the scale of probits [1]_, fitted by maximum likelihood to the numbers of
     units that ended, as if these were binomial with as many units as give the scatter seen within
@@ -132,8 +132,8 @@ class Noisy:
     def __init__(
         self, ended: Floats, weights: Floats, part: Replicates, of_worlds: Floats | None = None
     ):
-        some = slice(None, None, -(-len(weights) // _MOST_NODES))  # the likelihood is smooth
-        ended, weights = ended[..., some], weights[some] / weights[some].sum()
+        thinned = slice(None, None, -(-len(weights) // _MOST_NODES))  # the likelihood is smooth
+        ended, weights = ended[..., thinned], weights[thinned] / weights[thinned].sum()
         units = np.isfinite(ended).sum(axis=1)
         worth = np.ones(len(ended)) if of_worlds is None else of_worlds
         kept = (units > 1).all(axis=1) & (worth > 0)
@@ -151,8 +151,8 @@ class Noisy:
         within = np.nanvar(ended, axis=1, ddof=1)
         binomial = worth @ (mean - mean**2 + within / units) @ weights / len(worth)
         noise = worth @ within @ weights / len(worth)
-        hits, of = worth @ (mean * units) @ weights, worth @ units @ weights
-        if min(hits, of - hits) * effective / len(worth) < FEWEST_WORLDS:
+        hits, total = worth @ (mean * units) @ weights, worth @ units @ weights
+        if min(hits, total - hits) * effective / len(worth) < FEWEST_WORLDS:
             self.refusal = FEW_ENDED
             return
         size = units * (binomial / max(noise, 1e-12) if binomial > 0 else 1.0)
@@ -184,12 +184,12 @@ class Noisy:
         each = self._posterior @ above
         slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
         pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
-        found = weighted_share(pulls, self._worth, self._part, hits=[])
-        if not isfinite(found.low):
-            found = replace(found, low=found.value, high=found.value)
+        estimate = weighted_share(pulls, self._worth, self._part, hits=[])
+        if not isfinite(estimate.low):
+            estimate = replace(estimate, low=estimate.value, high=estimate.value)
         least, most = self._bounds.exceeding(probability)
-        low, high = min(found.low, least), max(found.high, most)
-        return replace(found, low=low, high=high, assumes=ASSUMES)
+        low, high = min(estimate.low, least), max(estimate.high, most)
+        return replace(estimate, low=low, high=high, assumes=ASSUMES)
 
     def _fit(self, parameters: Floats) -> None:
         """Fit the law, by steps from the scatter of the scores that never increase the loss."""
@@ -201,13 +201,13 @@ class Noisy:
             scatter = scores.T @ (self._share[:, None] * scores) + 1e-12 * np.eye(2)
             step = np.linalg.solve(scatter, slope)
             while np.abs(step).max() > _SETTLED:
-                there = np.clip(parameters + step, *ends)
-                if (reached := self._loss(there)) < loss:
+                trial = np.clip(parameters + step, *ends)
+                if (reached := self._loss(trial)) < loss:
                     break
                 step /= 4
             else:
                 break
-            parameters, loss, scores = there, reached, self._scores(there)
+            parameters, loss, scores = trial, reached, self._scores(trial)
         if parameters[1] <= narrow + _STEP:
             self.refusal = NO_SPREAD
             return

@@ -27,18 +27,18 @@ def lines(values: Values, nulls: Mapping[IndexKind, Null]) -> list[tuple[str, li
     ----------
     values : dict of IndexKind to dict
     nulls : dict of IndexKind to Null
-        What inputs without effect reach; not known for pairs.
+        Limits of indices of inputs without effect; unknown for pairs.
 
     Returns
     -------
     list of tuple
     """
     ranked = ranking(values)
-    found = [(label, [one[label] for one in values.values()]) for label in ranked]
-    known = [nulls.get(kind, Null(nan)) for kind in values]
-    if any(isfinite(null.limit) for null in known):
-        found.append(("(an input without effect)", [Estimate(null.limit) for null in known]))
-    if any(isfinite(null.largest) for null in known):
+    entries = [(label, [by_label[label] for by_label in values.values()]) for label in ranked]
+    limits = [nulls.get(kind, Null(nan)) for kind in values]
+    if any(isfinite(null.limit) for null in limits):
+        entries.append(("(an input without effect)", [Estimate(null.limit) for null in limits]))
+    if any(isfinite(null.largest) for null in limits):
         label = f"(largest of {len(ranked)} such inputs)"
-        found.append((label, [Estimate(null.largest) for null in known]))
-    return found
+        entries.append((label, [Estimate(null.largest) for null in limits]))
+    return entries

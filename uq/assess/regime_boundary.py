@@ -47,11 +47,11 @@ def boundary(result: Result) -> Statistic | None:
     if len(np.unique(rows.dataset[REGIME])) < 2:
         return None
     if result.has_independent_samples:
-        found = _exponent(rows)
+        exponent = _exponent(rows)
     else:
-        found = Estimate(reason=DEPENDENT.format(design=result.design_name))
+        exponent = Estimate(reason=DEPENDENT.format(design=result.design_name))
     label = EXPONENT.replace("_", " ")
-    return Statistic((BOUNDARY, EXPONENT), label, found, by=(uncertainty_exponent,))
+    return Statistic((BOUNDARY, EXPONENT), label, exponent, by=(uncertainty_exponent,))
 
 
 def compared_rows(result: Result) -> Result:
@@ -71,9 +71,9 @@ def _exponent(rows: Result) -> Estimate:
     return uncertainty_exponent(table[:, ~np.array(listed)], rows.dataset[REGIME].values, kinds)
 
 
-def boundary_json(one: Statistic | None) -> dict[str, Any]:
-    """Return what is known of the boundary in plain data: nothing without several regimes."""
-    return {} if one is None else {BOUNDARY: {EXPONENT: entry(one)}}
+def boundary_json(statistic: Statistic | None) -> dict[str, Any]:
+    """Return the boundary in plain data; empty without several regimes."""
+    return {} if statistic is None else {BOUNDARY: {EXPONENT: entry(statistic)}}
 
 
 def still_uncertain(exponent: Estimate) -> Estimate:
@@ -82,9 +82,9 @@ def still_uncertain(exponent: Estimate) -> Estimate:
     return Estimate(value, low, high)
 
 
-def in_words(one: Statistic) -> str:
-    """Return what an exponent means for a user, in a clause."""
-    value, high, low = (1 - end for end in still_uncertain(one.estimate).numbers)
+def in_words(statistic: Statistic) -> str:
+    """Return the meaning of an uncertainty exponent, in a clause."""
+    value, high, low = (1 - end for end in still_uncertain(statistic.estimate).numbers)
     return (
         f"if all inputs are known twice as well, {percent(value)} ({percent_interval(low, high)})"
         " fewer outcomes are uncertain (50 % where the boundary between regimes is smooth, 0 %"

@@ -28,7 +28,7 @@ def switching(
     rows : Result
         Rows of a result with regimes.
     place : Nesting
-        Theirs.
+        Nesting of these rows.
     varying : collection of str
         The levels on which something varies.
     weights : ndarray, shape (samples,), optional
@@ -47,20 +47,24 @@ def switching(
         return Estimate(0.0, 0.0, 0.0), np.where(codes >= 0, 0.0, np.nan)
     unit = place.sample * place.units + place.unit if OWN in varying else place.sample
     each = _elsewhere(unit, codes)
-    known = np.isfinite(each)
-    if not known.any():
+    defined = np.isfinite(each)
+    if not defined.any():
         return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), each
-    value, of = float(each[known].mean()), _clusters(rows, place)
+    value, clusters = float(each[defined].mean()), _clusters(rows, place)
     if weights is not None:
-        return weighted_share(each[known], weights[place.sample[known]], of[known]), each
-    means = by_replicate(each[known], of[known])
-    low, high = scattered_share_interval(value, means, rows=int(known.sum()), samples=of.samples)
+        return weighted_share(
+            each[defined], weights[place.sample[defined]], clusters[defined]
+        ), each
+    means = by_replicate(each[defined], clusters[defined])
+    low, high = scattered_share_interval(
+        value, means, rows=int(defined.sum()), samples=clusters.samples
+    )
     return Estimate(value, float(low), float(high)), each
 
 
 def _clusters(rows: Result, place: Nesting) -> Clusters:
-    found = rows.replicates
-    return found if isinstance(found, Clusters) else Clusters(place.sample, place.samples)
+    replicates = rows.replicates
+    return replicates if isinstance(replicates, Clusters) else Clusters(place.sample, place.samples)
 
 
 def _elsewhere(unit: NDArray[np.integer], codes: NDArray[np.integer]) -> Floats:

@@ -58,7 +58,9 @@ def regimes(result: AnyResult) -> xr.Dataset:
     result.refuse_weights("a comparison of regimes")
     rows = result.independent
     shares = {
-        name: one for name, one in category_shares(rows, REGIME).items() if one.facts["count"]
+        name: statistic
+        for name, statistic in category_shares(rows, REGIME).items()
+        if statistic.facts["count"]
     }
     codes = {name: code for code, name in flags(rows.dataset["regime"]) if name in shares}
     members = [rows.dataset["regime"].values == code for code in codes.values()]
@@ -68,20 +70,22 @@ def regimes(result: AnyResult) -> xr.Dataset:
         if variable.attrs.get("role") == "input"
     }
     plain = rows.first_rows
-    own = {name: plain.dataset[name].values for name in inputs}
+    columns = {name: plain.dataset[name].values for name in inputs}
     quantiles = [[_quantiles(x[hits]) for x in inputs.values()] for hits in members]
-    far = {target.name: _distances(own, target) for target in category_targets(plain, "regime")}
+    far = {target.name: _distances(columns, target) for target in category_targets(plain, "regime")}
     unknown = [np.nan] * (len(inputs) + 1)
     distances = [far.get(f"P(regime={name})", unknown) for name in codes]
-    found = [
+    targets = [
         target
         for element in rows.elements(rows.shown_outputs(rows.analysis))
         if not (target := number_of(element)).refused
     ]
-    moments = [[_moments(target.values[hits]) for hits in members] for target in found]
-    split = [between_share(t.values, rows.dataset["regime"].values, rows.replicates) for t in found]
+    moments = [[_moments(target.values[hits]) for hits in members] for target in targets]
+    split = [
+        between_share(t.values, rows.dataset["regime"].values, rows.replicates) for t in targets
+    ]
 
-    sizes = (len(found), len(members), len(inputs))
+    sizes = (len(targets), len(members), len(inputs))
     distance = np.reshape(distances, (sizes[1], sizes[2] + 1))
     data: dict[str, Any] = {
         "input_quantile": (
@@ -90,31 +94,34 @@ def regimes(result: AnyResult) -> xr.Dataset:
         ),
         "distance": (("regime", "parameter"), distance[:, :-1]),
         "distance_dummy": ("regime", distance[:, -1]),
-        "between": ("output", [one.value for one in split]),
-        "between_low": ("output", [one.low for one in split]),
-        "between_high": ("output", [one.high for one in split]),
+        "between": ("output", [estimate.value for estimate in split]),
+        "between_low": ("output", [estimate.low for estimate in split]),
+        "between_high": ("output", [estimate.high for estimate in split]),
     }
     for i, name in enumerate(("rows", "mean", "sd")):
         data[name] = (("output", "regime"), np.reshape(moments, (*sizes[:2], 3))[..., i])
-    estimates = [one.estimate for one in shares.values()]
-    data["count"] = ("regime", np.array([one.facts["count"] for one in shares.values()], float))
+    estimates = [statistic.estimate for statistic in shares.values()]
+    data["count"] = (
+        "regime",
+        np.array([statistic.facts["count"] for statistic in shares.values()], float),
+    )
     for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
-        data[name] = ("regime", np.array([getattr(one, end) for one in estimates]))
+        data[name] = ("regime", np.array([getattr(estimate, end) for estimate in estimates]))
     between = boundary(result)
     if between is not None:
         for end, value in zip(("", "_low", "_high"), between.estimate.numbers, strict=True):
             data[f"{EXPONENT}{end}"] = ((), value, {"reason": between.estimate.reason})
     coords = {"regime": list(codes), "parameter": list(inputs), "probability": list(PROBABILITIES)}
-    return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
+    return xr.Dataset(data, {**coords, "output": [target.name for target in targets]})
 
 
 def _distances(inputs: dict[str, Floats], target: IndexTarget) -> list[float]:
     """Return the distance of each input, and the largest of inputs without effect."""
     try:
-        found = METHODS["regional"].indices(DesignSample.plain(target.values, inputs))
+        indices = METHODS["regional"].indices(DesignSample.plain(target.values, inputs))
     except RefusedError:
         return [np.nan] * (len(inputs) + 1)
-    return [*(index.value for index in found.values[KS].values()), found.nulls[KS].limit]
+    return [*(index.value for index in indices.values[KS].values()), indices.nulls[KS].limit]
 
 
 def _quantiles(values: Floats) -> Floats:
@@ -126,5 +133,5 @@ def _moments(values: Floats) -> tuple[float, float, float]:
     kept = values[np.isfinite(values)]
     if not len(kept):
         return 0, np.nan, np.nan
-    found = moments(kept)
-    return len(kept), found.mean.value, found.sd.value
+    estimates = moments(kept)
+    return len(kept), estimates.mean.value, estimates.sd.value

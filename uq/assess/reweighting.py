@@ -16,7 +16,7 @@ from uq.stats.intervals import Replicates
 
 
 class Weighting:
-    """Weights of the rows of a result that make them those of another study.
+    """Importance weights of the rows of a result under the laws of another study.
 
     Parameters
     ----------
@@ -40,27 +40,27 @@ class Weighting:
         self._rows, self._old, self._new, self._part = rows, old, new, part
         self.used: dict[str, Smoothed] = {}
         self.refused: dict[str, Smoothed] = {}
-        self.of = cache(self._of)
+        self.integrating = cache(self._integrating)
 
     @property
     def all_inputs(self) -> Smoothed:
         """The weights with nothing integrated."""
-        return self.of(())
+        return self.integrating(())
 
     def elements(self, outputs: Sequence[str]) -> Iterator[Element]:
-        """Yield the elements of some outputs whose weights can be trusted."""
+        """Yield the elements of the outputs whose weights are reliable."""
         for element in self._rows.elements(outputs):
             law = None
             if element.declared.scales and not element.censored.any():
                 law = integrated(self._rows, element.declared, self._new).law
-            found = self.of(law.inputs if law else ())
-            if found.refusal:
-                self.refused[element.name] = found
+            weights = self.integrating(law.inputs if law else ())
+            if weights.refusal:
+                self.refused[element.name] = weights
                 continue
-            self.used[element.name] = found
-            yield replace(element, law=law, weights=found.weights)
+            self.used[element.name] = weights
+            yield replace(element, law=law, weights=weights.weights)
 
-    def _of(self, inputs: tuple[str, ...]) -> Smoothed:
+    def _integrating(self, inputs: tuple[str, ...]) -> Smoothed:
         """Return the weights of rows in which these inputs are integrated."""
         for name in changed_laws(self._old, self._new):
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):

@@ -19,19 +19,19 @@ EVERYWHERE = (-inf, inf)
 
 @dataclass(frozen=True)
 class Inputs:
-    """The uncertain inputs of some rows, and their laws.
+    """Values and laws of the uncertain inputs of rows.
 
     Attributes
     ----------
     laws : dict of str to Law
-        Of a parameter that is a multiple of another, that of the factor.
+        Laws; for a multiple of another parameter, the law of the factor.
     tied : dict of str to str
-        Parameter -> the one that it equals.
+        Parameter -> the parameter that it equals.
     dependence : DependenceTable or None
     bounds : dict of str to tuple of float
-        Which a parameter shares with those tied to it.
+        Bounds, shared by tied parameters.
     values : dict of str to ndarray, shape (n,)
-        Of the rows.
+        Values of the rows.
     """
 
     laws: Mapping[str, Law]
@@ -45,8 +45,8 @@ class Inputs:
         """Parameters with rank correlations."""
         return () if self.dependence is None else self.dependence.parameters
 
-    def own(self, name: str) -> Floats:
-        """Return what the law of a parameter gives: its values, or those of its factor."""
+    def law_values(self, name: str) -> Floats:
+        """Return the values that follow the law of a parameter: its values or its factors."""
         law, values = self.laws[name], self.values[name]
         return values if law.times is None else factor_of(law, values, self.values[law.times])
 
@@ -57,7 +57,7 @@ class Inputs:
 
 
 def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> Inputs:
-    """Return the inputs of some rows of a result.
+    """Return the uncertain inputs of rows.
 
     Parameters
     ----------
@@ -67,14 +67,17 @@ def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> I
     """
     study, text = (rows.study, rows.dataset.attrs["study"]) if study is None else (study, text)
     laws = laws_of(text)
-    tied = {name: one.equals for name, one in study.uncertain.items() if isinstance(one, Tied)}
+    tied = {name: law.equals for name, law in study.uncertain.items() if isinstance(law, Tied)}
     admissible = {
         name: tuple(map(float, rows.dataset[name].attrs.get("admissible", EVERYWHERE)))
         for name in study.uncertain
     }
     bounds = {}
     for name in laws:
-        ends = [admissible[one] for one in (name, *(a for a, b in tied.items() if b == name))]
+        ends = [
+            admissible[parameter]
+            for parameter in (name, *(a for a, b in tied.items() if b == name))
+        ]
         bounds[name] = (max(low for low, _ in ends), min(high for _, high in ends))
     return Inputs(laws, tied, study.dependence, bounds, _Columns(rows, study.uncertain))
 

@@ -14,7 +14,7 @@ Sizes = list[tuple[int, Estimate]]
 
 
 class Converging(NamedTuple):
-    """The convergence of one output, or of what stands for it.
+    """Running estimates of one output, or of its transform.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ def converging(result: Result, output: str | None = None) -> dict[str, Convergin
     running, errors = running_estimates(result, output), enough(result, output).to_dict("index")
     return {
         str(name): Converging(
-            {str(label): _sizes(own) for label, own in lines.groupby("estimate", sort=False)},
+            {str(label): _sizes(group) for label, group in lines.groupby("estimate", sort=False)},
             errors.get(name),
         )
         for name, lines in running.groupby("output", sort=False)

@@ -75,7 +75,7 @@ def sampled_ranks(study: Study) -> Floats:
     Parameters
     ----------
     study : Study
-        With dependence; the order is that of its matrix.
+        With dependence, whose matrix sets the order.
     """
     values = drawn_inputs(study)
     assert study.dependence is not None
@@ -131,7 +131,7 @@ def laws_and_values(result: Result) -> dict[str, tuple[Law, Floats]]:
     dict of str to tuple of Law and ndarray
         For a parameter that is another times a factor, those of the factor.
     """
-    plain = _one_row_of_each(result)
+    plain = _first_rows(result)
     if len(plain) == 0:
         return {}
     values = independent_inputs(plain)
@@ -142,8 +142,8 @@ def laws_and_values(result: Result) -> dict[str, tuple[Law, Floats]]:
 
 def weights_of_samples(result: Result) -> Floats | None:
     """Return the weights of the rows of `laws_and_values`, None where they have none."""
-    return _one_row_of_each(result).row_weights
+    return _first_rows(result).row_weights
 
 
-def _one_row_of_each(result: Result) -> Result:
+def _first_rows(result: Result) -> Result:
     return result.independent.first_rows

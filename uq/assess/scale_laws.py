@@ -58,17 +58,17 @@ class IndependentScale:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that it causes."""
+        """Standard deviation of the logarithms of lives due to the inputs."""
         return float(self.drawn.std())
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.term.below(np.log(time) - np.log(lives) + self.drawn)
-        return np.where(np.isnan(lives), 0.0, found)
+            share = self.term.below(np.log(time) - np.log(lives) + self.drawn)
+        return np.where(np.isnan(lives), 0.0, share)
 
     def longer(self, z: Floats) -> Iterator[Floats]:
-        """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
+        """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in self.term.at(z):
             yield at - self.drawn
 
@@ -111,7 +111,7 @@ class ConditionalScale:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that it causes."""
+        """Standard deviation of the logarithms of lives due to the inputs."""
         drawn = self.drawn if self.other is None else self.drawn / self.other
         return float(abs(self.exponent) * np.log(drawn).std())
 
@@ -129,7 +129,7 @@ class ConditionalScale:
         return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
 
     def longer(self, z: Floats) -> Iterator[Floats]:
-        """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
+        """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in np.sign(self.exponent) * z:
             u = special.ndtr(self.mean + self.deviation * at)
             u = np.clip(u, 2.0**-54, 1 - 2.0**-53)
@@ -143,7 +143,7 @@ class ConditionalScale:
     @property
     def moments(self) -> tuple[Floats, Floats]:
         """Mean growth of the logarithm of each life, and its variance, shapes (n,)."""
-        nodes, weights = (one[0] for one in normal_rule(np.array([-np.inf, np.inf]), _NODES))
+        nodes, weights = (array[0] for array in normal_rule(np.array([-np.inf, np.inf]), _NODES))
         mean = square = np.zeros(self.drawn.shape)
         for weight, longer in zip(weights, self.longer(nodes), strict=True):
             mean, square = mean + weight * longer, square + weight * longer**2

@@ -25,7 +25,7 @@ NOT_POSITIVE = "it is not always positive"
 
 @dataclass(frozen=True)
 class Integrated:
-    """What is integrated of the lives of an output, and why not more.
+    """Law of the integrated inputs of the lives of an output, and why others are not integrated.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Integrated:
 def integrated(
     rows: Result, output: Output, inputs: Inputs, levels: Collection[str] | None = None
 ) -> Integrated:
-    """Return the law of what scales the lives of an output, given all that does not.
+    """Return the law of the inputs that only scale the lives of an output, given all others.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def integrated(
     if rows.design.imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
     if rows.has_weights:
-        own = rows.stands_for_any_unit
-        learnt = {name for name in exponents if not own or inputs.laws[name].level == SHARED}
+        any_unit = rows.stands_for_any_unit
+        learnt = {name for name in exponents if not any_unit or inputs.laws[name].level == SHARED}
         kept |= dict.fromkeys(learnt, "inspections have changed its law")
     for name in exponents:
         if problem := _problem(name, inputs) or _sign_problem(name, inputs):
@@ -78,7 +78,7 @@ def integrated(
         for name, exponent in exponents.items()
         if name not in kept and inputs.laws[name].times is None
     }
-    free = {name: one for name, one in terms.items() if name not in inputs.correlated}
+    free = {name: term for name, term in terms.items() if name not in inputs.correlated}
     bound = {
         name: _conditional(name, exponent, inputs)
         for name, exponent in exponents.items()
@@ -86,7 +86,7 @@ def integrated(
     }
     reach = {name: law.deviation * law.spread for name, law in bound.items()}
     widest = max(bound, key=lambda name: reach[name], default="")
-    if free and np.hypot.reduce([one.spread for one in free.values()]) >= reach.get(widest, 0.0):
+    if free and np.hypot.reduce([term.spread for term in free.values()]) >= reach.get(widest, 0.0):
         kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
         return Integrated(_independent(free, exponents, inputs, kept), kept)
     kept |= dict.fromkeys({*free, *bound} - {widest}, f"{widest} scatters lives more")
@@ -104,16 +104,16 @@ def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
 
 
 class _Exponents(NamedTuple):
-    """What inputs do to a life that scales.
+    """Exponents of the inputs in a life that scales.
 
     Attributes
     ----------
     scaling : dict of str to float
         Input -> exponent, with those of the parameters that equal it.
     kept : dict of str to str
-        Those that do more, or on which others depend -> why they are not integrated.
+        Inputs that do more than scale, or on which others depend -> reason.
     idle : tuple of str
-        Those whose exponents cancel.
+        Inputs whose exponents cancel.
     """
 
     scaling: dict[str, float]
@@ -122,21 +122,23 @@ class _Exponents(NamedTuple):
 
 
 def _exponents(inputs: Inputs, scales: Mapping[str, float]) -> _Exponents:
-    found: dict[str, float] = {}
+    exponents: dict[str, float] = {}
     for name, exponent in scales.items():
         if name in inputs.laws or name in inputs.tied:
             leader = inputs.tied.get(name, name)
-            found[leader] = found.get(leader, 0.0) + exponent
+            exponents[leader] = exponents.get(leader, 0.0) + exponent
     kept = {}
-    for leader in found:
+    for leader in exponents:
         members = [leader, *(name for name, other in inputs.tied.items() if other == leader)]
         if other := next((name for name in members if name not in scales), ""):
             same = "it" if other == leader else f"{other} has the same value and"
             kept[leader] = f"{same} does more than scale lives"
         elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
             kept[leader] = f"{other} is a multiple of it"
-    idle = tuple(name for name, one in found.items() if not one and name not in kept)
-    return _Exponents({name: one for name, one in found.items() if one}, kept, idle)
+    idle = tuple(name for name, exponent in exponents.items() if not exponent and name not in kept)
+    return _Exponents(
+        {name: exponent for name, exponent in exponents.items() if exponent}, kept, idle
+    )
 
 
 def without_effect(inputs: Inputs, output: Output) -> tuple[str, ...]:
@@ -155,7 +157,7 @@ def _problem(name: str, inputs: Inputs) -> str:
         positive = (inputs.values[law.times] > 0).all()
         return "" if positive else "it is a multiple of an input that is not positive"
     if name in inputs.correlated:
-        listed = [one for one in inputs.correlated if inputs.laws[one].discrete]
+        listed = [other for other in inputs.correlated if inputs.laws[other].discrete]
         return f"it depends on listed values of {listed[0]}" if listed else ""
     return ""
 
@@ -194,7 +196,7 @@ def _independent(
 
 
 def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale:
-    """Return the law of an input given those that it depends on."""
+    """Return the conditional law of an input given its correlated inputs."""
     law, bounds, values = inputs.laws[name], inputs.bounds[name], inputs.values[name]
     if law.times is not None:
         nothing = np.zeros(len(values))
@@ -210,14 +212,14 @@ def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
     assert inputs.dependence is not None
     names = list(inputs.correlated)
     matrix = normal_correlations(inputs.dependence.rank_correlation)
-    own, rest = names.index(name), [i for i, one in enumerate(names) if one != name]
-    slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, own])
-    deviation = float(np.sqrt(1 - matrix[own, rest] @ slope))
+    position, rest = names.index(name), [i for i, other in enumerate(names) if other != name]
+    slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, position])
+    deviation = float(np.sqrt(1 - matrix[position, rest] @ slope))
     return dict(zip([names[i] for i in rest], slope.tolist(), strict=True)), deviation
 
 
 def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> Iterator[Element]:
-    """Yield the elements of some outputs, with the laws of their lives where these are known.
+    """Yield the elements of outputs, with the laws of their lives where inputs are integrated.
 
     Parameters
     ----------
@@ -242,7 +244,7 @@ def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> 
 
 
 def why_not_integrated(rows: Result, element: Element) -> str:
-    """Return a sentence on what scales the lives of an element but is not integrated, or ""."""
+    """Return a sentence on inputs that scale lives but are not integrated, or ""."""
     inputs = inputs_of(rows)
     exponents, _, _ = _exponents(inputs, element.declared.scales)
     if not exponents:

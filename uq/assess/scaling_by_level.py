@@ -18,7 +18,7 @@ from uq.sampling.levels import LEVELS
 
 @dataclass(frozen=True)
 class Scales:
-    """What is integrated of the logarithms of lives on each level.
+    """Laws of the inputs integrated in the logarithms of lives, by level.
 
     Attributes
     ----------
@@ -36,11 +36,11 @@ class Scales:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """What is integrated."""
+        """Integrated inputs."""
         return tuple(name for law in self.laws.values() for name in law.inputs)
 
     def mean_logarithms(self, logarithms: Floats) -> Floats:
-        """Return the means of the logarithms of lives over what is integrated, shape (n,)."""
+        """Return the means of the logarithms of lives over the integrated inputs, shape (n,)."""
         return sum((law.moments[0] for law in self.laws.values()), start=logarithms)
 
     @property
@@ -50,7 +50,7 @@ class Scales:
 
 
 def scales_by_level(rows: Result, element: Element) -> Scales:
-    """Return what only scales the lives of an element, on each level.
+    """Return the laws of the inputs that only scale the lives of an element, by level.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def scales_by_level(rows: Result, element: Element) -> Scales:
     if not element.declared.scales:
         return Scales({})
     inputs = inputs_of(rows)
-    found = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
-    kept = {name: why for one in found.values() for name, why in one.kept.items()}
-    laws = {level: one.law for level, one in found.items() if one.law is not None}
+    parts = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
+    kept = {name: why for part in parts.values() for name, why in part.kept.items()}
+    laws = {level: part.law for level, part in parts.items() if part.law is not None}
     return Scales(laws, not_integrated(kept), without_effect(inputs, element.declared))

@@ -36,7 +36,7 @@ class TargetIndices:
     Attributes
     ----------
     name : str
-        That of the target.
+        Name of the target.
     rows_used, groups_dropped : int
         Rows, and groups of rows, with and without a value in each row.
     indices : Indices
@@ -44,7 +44,7 @@ class TargetIndices:
     refused : str
         Why there are none, or "".
     rows_factor : float
-        How many times the rows would give some; NaN where that is not known.
+        Factor on the sample size that would give some; NaN if unknown.
     """
 
     name: str
@@ -55,14 +55,14 @@ class TargetIndices:
     rows_factor: float = nan
 
     def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
-        """Return the indices of single inputs, or those of pairs."""
+        """Return the indices of single inputs, or of pairs."""
         values = self.indices.values.items()
-        return {kind: found for kind, found in values if kind.of_pairs == of_pairs}
+        return {kind: indices for kind, indices in values if kind.of_pairs == of_pairs}
 
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """The indices of some targets by one method.
+    """Indices of targets by one method.
 
     Attributes
     ----------
@@ -144,22 +144,28 @@ def sensitivities(
         notes = (*notes, ONE_ROW)
     if sample.random and METHODS[method].noise:
         notes = (*notes, METHODS[method].noise)
-    found: dict[str, TargetIndices] = {}
+    targets: dict[str, TargetIndices] = {}
     whole: list[Mask] = []
     used: list[Mask] = []
     for target in chosen(result, method, output):
         quantiles = _quantiles(target, result.analysis.quantiles)
-        own = replace(sample, values=target.values, quantiles=quantiles)
-        found[target.name] = one = indices_of_target(result, METHODS[method], target, own, notes)
-        (whole if one.refused else used).append(own.whole)
+        target_sample = replace(sample, values=target.values, quantiles=quantiles)
+        targets[target.name] = target_indices = indices_of_target(
+            result, METHODS[method], target, target_sample, notes
+        )
+        (whole if target_indices.refused else used).append(target_sample.whole)
     if nested:
-        found = {name: _with_reason(one) for name, one in found.items()}
-    return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), found)
+        targets = {name: _with_reason(target_indices) for name, target_indices in targets.items()}
+    return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), targets)
 
 
-def _with_reason(one: TargetIndices) -> TargetIndices:
+def _with_reason(target_indices: TargetIndices) -> TargetIndices:
     """Return indices of one row a sample, with that reason where there are none."""
-    return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
+    return (
+        replace(target_indices, refused=f"{target_indices.refused}; {ONE_ROW}")
+        if target_indices.refused
+        else target_indices
+    )
 
 
 def indices_of_target(
@@ -195,14 +201,14 @@ def indices_of_target(
             raise RefusedError(_no_variance(target))
         asked = _conditioned(target, sample) if method.conditional else sample
         method.refuse_few_groups(asked)  # in them even a continuous output may have two values
-        # Of those in which it happens there is no other side.
+        # Rows in which the event happens have no other side.
         few = () if method.conditional else few_hits(result, target, bool(method.intervals))
-        found = method.indices(asked)
+        indices = method.indices(asked)
     except RefusedError as refusal:
         factor = refusal.rows_factor
         return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)
-    combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
-    return TargetIndices(target.name, *counts, replace(found, notes=combined))
+    combined = (*target.notes, *few, *filter(None, [caution]), *indices.notes, *notes)
+    return TargetIndices(target.name, *counts, replace(indices, notes=combined))
 
 
 def _conditioned(target: IndexTarget, sample: DesignSample) -> DesignSample:
@@ -216,7 +222,7 @@ def _conditioned(target: IndexTarget, sample: DesignSample) -> DesignSample:
 
 
 def _counts(*whole: Mask, rows: int) -> tuple[int, int]:
-    """Return the rows in groups that are whole for all of some targets, and the other groups."""
+    """Return the number of rows in groups complete for all targets, and of incomplete groups."""
     every = np.logical_and.reduce(whole)
     return int(every.sum()) * (rows // every.size), int((~every).sum())
 
@@ -241,7 +247,7 @@ def _quantiles(target: IndexTarget, asked: tuple[float, ...]) -> dict[str, float
 def _check_method(design: str, method: str, dependent: str, in_regime: bool) -> None:
     usable = fed_by(DESIGNS[design], bool(dependent))
     if in_regime and DESIGNS[design].layout is not PLAIN:
-        usable = ()  # what inputs of a regime have in common is not what the design assumes
+        usable = ()  # within a regime, inputs depend otherwise than the design assumes
     if method in usable:
         return
     if method in fed_by(DESIGNS[design]):
@@ -253,9 +259,9 @@ def _check_method(design: str, method: str, dependent: str, in_regime: bool) -> 
             f" (methods that do not: {', '.join(others)})"
         )
     if method not in METHODS:
-        known = sorted(METHODS)
+        names = sorted(METHODS)
         raise InputError(
-            f"no such method '{method}'{nearest(method, known)} (allowed: {', '.join(known)})"
+            f"no such method '{method}'{nearest(method, names)} (allowed: {', '.join(names)})"
         )
     raise InputError(
         f"method '{method}' needs a design of {' or '.join(designs_for(method))}; this result is of"

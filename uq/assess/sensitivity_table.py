@@ -42,36 +42,42 @@ def sensitivity(result: AnyResult, method: str | None = None) -> xr.Dataset:
     {'x1': 0.56, 'x2': 0.45, 'x3': 0.25}
     """
     result = Result.of(result)
-    found = sensitivities(result, method)
-    targets = list(found.targets.values())
+    computed = sensitivities(result, method)
+    targets = list(computed.targets.values())
     data: dict[str, Any] = {
-        name: ("output", [getattr(one, name) for one in targets])
+        name: ("output", [getattr(target, name) for target in targets])
         for name in ("groups_dropped", "refused")
     }
-    coords: dict[str, Any] = {"output": list(found.targets)}
+    coords: dict[str, Any] = {"output": list(computed.targets)}
     # The indices of quantiles have other names for a lifetime.
-    kinds = {kind: list(own) for one in targets for kind, own in one.indices.values.items()}
+    kinds = {
+        kind: list(by_label)
+        for target in targets
+        for kind, by_label in target.indices.values.items()
+    }
     for kind, labels in kinds.items():
         dim = "pair" if kind.of_pairs else "parameter"
         coords[dim] = labels
-        own = [one.indices.values.get(kind, {}) for one in targets]
-        table = [[one.get(label, NOTHING).numbers for label in labels] for one in own]
+        estimates = [target.indices.values.get(kind, {}) for target in targets]
+        table = [
+            [by_label.get(label, NOTHING).numbers for label in labels] for by_label in estimates
+        ]
         for end, numbers in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
             data[f"{kind.key}{end}"] = (("output", dim), numbers)
-    if any(one.indices.noise for one in targets):
-        shares = np.array([(one.indices.noise or NOTHING).numbers for one in targets])
+    if any(target.indices.noise for target in targets):
+        shares = np.array([(target.indices.noise or NOTHING).numbers for target in targets])
         for end, numbers in zip(_ENDS, shares.T, strict=True):
             data[f"noise{end}"] = ("output", numbers)
-    if any(one.indices.by_correlation for one in targets):
+    if any(target.indices.by_correlation for target in targets):
         names = coords["parameter"]
-        due = [[name in one.indices.by_correlation for name in names] for one in targets]
+        due = [[name in target.indices.by_correlation for name in names] for target in targets]
         data["by_correlation"] = (("output", "parameter"), due)
-    for kind in {kind: None for one in targets for kind in one.indices.nulls}:
-        nulls = [one.indices.nulls.get(kind, Null(np.nan)) for one in targets]
+    for kind in {kind: None for target in targets for kind in target.indices.nulls}:
+        nulls = [target.indices.nulls.get(kind, Null(np.nan)) for target in targets]
         data[f"dummy_{kind.key}"] = ("output", [null.limit for null in nulls])
         if np.isfinite([null.largest for null in nulls]).any():
             data[f"dummy_{kind.key}_any"] = ("output", [null.largest for null in nulls])
-    return xr.Dataset(data, coords, {"method": found.method})
+    return xr.Dataset(data, coords, {"method": computed.method})
 
 
 _ENDS = ("", "_low", "_high")

@@ -32,22 +32,22 @@ def sentence(design: "DesignTable", result: Result) -> str:
     until, samples = design.until, int(result.dataset.attrs["samples"])
     assert until is not None
     size, seen = _stop(design, result)
-    found, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
+    estimate, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
     if _has_none(seen):
         return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
-    known = f"{seen.what} {_in_words(found, unit)}"
+    stated = f"{seen.what} {_in_words(estimate, unit)}"
     if seen.lost:
-        known += f" (without {seen.lost})"
+        stated += f" (without {seen.lost})"
     wanted = _wanted(until.half_width, unit)
     if not seen.reached:
         needed = _needed(seen, samples)
         more = f": by the scatter of all rows it needs about {needed} samples" * bool(needed)
-        spent = f"the budget of {samples} samples is spent: {known}"
+        spent = f"the budget of {samples} samples is spent: {stated}"
         return f"{spent}; the {wanted} was not reached{more}"
     sizes = interim_sizes(design)
     first = "" if size == samples else f" with the first {size} of {samples} samples"
     return (
-        f"{known}: the {wanted} was reached at interim estimate {1 + sizes.index(size)} of at most"
+        f"{stated}: the {wanted} was reached at interim estimate {1 + sizes.index(size)} of at most"
         f" {len(sizes)}{first}. The confidence of {confidence(design):.2%} at each makes this a"
         " 95 % interval for a run that stops so; all other intervals assume a number of rows fixed"
         " beforehand"
@@ -62,7 +62,7 @@ def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> 
     design : DesignTable
         With `until`.
     seen : InterimEstimate
-        That of a run that goes on.
+        Interim estimate of a run that goes on.
     samples : int
         Of each replicate, so far.
     """
@@ -83,18 +83,18 @@ def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> 
 
 def _has_none(seen: InterimEstimate) -> bool:
     """Whether an estimate has no end of an interval, and is not exact either."""
-    found = seen.estimate
-    return isnan(found.low) and isnan(found.high) and found.reason != EXACT
+    estimate = seen.estimate
+    return isnan(estimate.low) and isnan(estimate.high) and estimate.reason != EXACT
 
 
 def _without_interval(seen: InterimEstimate) -> str:
     """State that an estimate has no interval that can become narrow, and why."""
-    found = seen.estimate
-    if found.value == inf:
-        return f"{seen.what} is {rounded_text(found)[0]}, which no interval narrows"
-    value = f"is {in_unit(found.value, unit_of(seen.units, found.value))} and "
-    why = f" ({found.reason})" * bool(found.reason)
-    return f"{seen.what} {value * isfinite(found.value)}has no interval{why}"
+    estimate = seen.estimate
+    if estimate.value == inf:
+        return f"{seen.what} is {rounded_text(estimate)[0]}, which no interval narrows"
+    value = f"is {in_unit(estimate.value, unit_of(seen.units, estimate.value))} and "
+    why = f" ({estimate.reason})" * bool(estimate.reason)
+    return f"{seen.what} {value * isfinite(estimate.value)}has no interval{why}"
 
 
 def _needed(seen: InterimEstimate, samples: int) -> str:
@@ -119,10 +119,10 @@ def _stop(design: "DesignTable", result: Result) -> tuple[int, InterimEstimate]:
     return size, seen
 
 
-def _in_words(found: Estimate, unit: ReadableUnit) -> str:
-    if isnan(found.value):
-        sides = {"at least": found.low, "at most": found.high}
+def _in_words(estimate: Estimate, unit: ReadableUnit) -> str:
+    if isnan(estimate.value):
+        sides = {"at least": estimate.low, "at most": estimate.high}
         ends = [f", {side} {in_unit(end, unit)}" for side, end in sides.items() if isfinite(end)]
         return "".join(["is not known", *ends])
-    value, both = rounded_text(found, unit.size)
+    value, both = rounded_text(estimate, unit.size)
     return f"is {value}, {beside(both, unit.name)}" if both else f"is {value}"

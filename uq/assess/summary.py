@@ -50,14 +50,17 @@ SOME_FAILED = (
 )
 
 
-def share_json(one: Statistic) -> dict[str, Any]:
+def share_json(statistic: Statistic) -> dict[str, Any]:
     """Return count and share of a category as JSON has them."""
-    share = {"count": one.facts["count"], "share": estimate_json.number(one.estimate.value)}
-    return share | estimate_json.ends(one.estimate) | estimate_json.failed(one.failed)
+    share = {
+        "count": statistic.facts["count"],
+        "share": estimate_json.number(statistic.estimate.value),
+    }
+    return share | estimate_json.ends(statistic.estimate) | estimate_json.failed(statistic.failed)
 
 
-def _compared_json(one: Statistic) -> dict[str, Any]:
-    return share_json(one) | {"value": estimate_json.number(one.estimate.value)}
+def _compared_json(statistic: Statistic) -> dict[str, Any]:
+    return share_json(statistic) | {"value": estimate_json.number(statistic.estimate.value)}
 
 
 SHARE = StatisticKind(entry=_compared_json)
@@ -83,7 +86,7 @@ class Described:
     parts : dict of str to tuple of Statistic
         Name in `uq.assess.statistics.table.STATISTICS` -> its statistics, in that order.
     fits : dict of str to Fit, optional
-        Law -> what became of it.
+        Law -> its fit or refusal.
     """
 
     units: str
@@ -97,7 +100,7 @@ class Described:
 
     def find(self, *key: str) -> Statistic | None:
         """Return the statistic with this key."""
-        return next((one for one in self.statistics if one.key == key), None)
+        return next((statistic for statistic in self.statistics if statistic.key == key), None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +123,7 @@ class Summary:
     most_failed : int
         The largest number of rows that lack an element because they failed.
     notes : list of str
-        Sentences on what could not be estimated.
+        Sentences on missing estimates.
     weights : Smoothed, optional
         Of the rows, where inspections have weighted them.
     """
@@ -136,14 +139,16 @@ class Summary:
 
     @property
     def regimes(self) -> Shares:
-        """Share of each regime, also of those that do not occur; empty without regimes."""
+        """Share of each declared regime, 0 if it does not occur; empty without regimes."""
         return self.shares.get(REGIME, {})
 
     @property
     def categories(self) -> dict[str, Shares]:
-        """The same of other categories, of those labels that occur."""
+        """Shares of the labels that occur, of categories other than the regime."""
         return {
-            name: {label: one for label, one in shares.items() if one.facts["count"]}
+            name: {
+                label: statistic for label, statistic in shares.items() if statistic.facts["count"]
+            }
             for name, shares in self.shares.items()
             if name != REGIME
         }
@@ -166,7 +171,7 @@ def summarise(
     result : Result
         A result.
     analysis : AnalysisTable, optional
-        What to report; by default what the study of the result asks for.
+        Statistics to report; by default those of the study of the result.
     regime : str, optional
         Describe only the rows in this regime; rows that failed without one count as failed.
     fits : bool
@@ -176,7 +181,7 @@ def summarise(
     weighting : Weighting, optional
         Makes the rows those of another study; none within a regime.
     parts : collection of str
-        Names in `STATISTICS` of those that are computed.
+        Names in `STATISTICS` of the statistics to compute.
 
     Returns
     -------
@@ -266,7 +271,7 @@ def category_shares(
 ) -> dict[str, Statistic]:
     """Return the share of each label of a category among the independent rows that did not fail.
 
-    The name is that of an output, or of one element of it.
+    The name is an output, or one element of it.
     """
     replicate = rows.replicates
 

@@ -43,60 +43,62 @@ def summary_json(summary: Summary) -> dict[str, Any]:
         "rows_used": summary.rows_used,
         "status": summary.status,
         "regime": _labels(summary.regimes),
-        "categories": {name: _labels(one) for name, one in summary.categories.items()},
-        "outputs": {name: _described(one) for name, one in summary.outputs.items()},
+        "categories": {name: _labels(shares) for name, shares in summary.categories.items()},
+        "outputs": {name: _described(described) for name, described in summary.outputs.items()},
         "notes": summary.notes,
     }
 
 
 def _labels(shares: Shares) -> dict[str, Any]:
-    return {label: share_json(one) for label, one in shares.items()}
+    return {label: share_json(statistic) for label, statistic in shares.items()}
 
 
 def quality_json(weights: Smoothed | None) -> dict[str, Any]:
-    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
-    return {name: estimate_json.number(one) for name, one in quality(weights).items()}
+    """Return effective sample size and tail shape of weights in plain data."""
+    return {name: estimate_json.number(number) for name, number in quality(weights).items()}
 
 
-def _described(one: Described) -> dict[str, Any]:
-    found: dict[str, Any] = {"units": one.units}
-    for name in dict.fromkeys((*JSON_ORDER, *one.parts)):
-        statistics = [s for s in one.parts[name] if s.is_read_by(Reader.JSON)]
+def _described(described: Described) -> dict[str, Any]:
+    document: dict[str, Any] = {"units": described.units}
+    for name in dict.fromkeys((*JSON_ORDER, *described.parts)):
+        statistics = [s for s in described.parts[name] if s.is_read_by(Reader.JSON)]
         if name in EMPTY:
-            found[name] = {} if statistics else EMPTY[name]
+            document[name] = {} if statistics else EMPTY[name]
         for parent, _, entry in written(statistics):
-            put(found, parent, entry)
-    fits = {law: _fit(fit) for law, fit in one.fits.items()}
-    return found | ({"fits": fits} if fits else {})
+            put(document, parent, entry)
+    fits = {law: _fit(fit) for law, fit in described.fits.items()}
+    return document | ({"fits": fits} if fits else {})
 
 
 def written(
     statistics: Iterable[Statistic],
 ) -> Iterator[tuple[tuple[str, ...], list[Statistic], dict[str, Any]]]:
-    """Yield path, statistics and JSON of those that are written together."""
+    """Yield path, statistics and JSON of each group of statistics with one entry."""
     for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
         members = list(group)
         yield parent, members, members[0].kind.write(members)
 
 
 def _fit(fit: Fit) -> dict[str, Any]:
-    found: dict[str, Any] = {"rows": fit.rows}
+    entry: dict[str, Any] = {"rows": fit.rows}
     if isfinite(fit.p_value):
-        found["p_value"] = fit.p_value
+        entry["p_value"] = fit.p_value
     if fit.refused:
-        return found | {"refused": fit.refused}
-    found["parameters"] = {name: estimate_json.numbers(one) for name, one in fit.parameters.items()}
-    found["assumes"] = fit.assumes
-    for name, one in fit.b_lives.items():
-        found[name] = estimate_json.numbers(one) | {"extrapolated": name in fit.extrapolated}
-    return found
+        return entry | {"refused": fit.refused}
+    entry["parameters"] = {
+        name: estimate_json.numbers(estimate) for name, estimate in fit.parameters.items()
+    }
+    entry["assumes"] = fit.assumes
+    for name, estimate in fit.b_lives.items():
+        entry[name] = estimate_json.numbers(estimate) | {"extrapolated": name in fit.extrapolated}
+    return entry
 
 
-def put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
-    """Add an entry to JSON at a path, which is made if it is not there."""
+def put(document: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
+    """Merge an entry into JSON at a path, creating the path if absent."""
     for part in path:
-        found = found.setdefault(part, {})
-    found |= entry
+        document = document.setdefault(part, {})
+    document |= entry
 
 
 def comparison_json(comparison: "Comparison") -> dict[str, Any]:
@@ -117,108 +119,116 @@ def comparison_json(comparison: "Comparison") -> dict[str, Any]:
         ``notes``: sentences.
     """
     shares = {
-        name: {label: _compared(one) for label, one in of.items()}
-        for name, of in comparison.shares.items()
+        name: {label: _compared(statistic) for label, statistic in statistics.items()}
+        for name, statistics in comparison.shares.items()
     }
     return {
         "a": _about(comparison.first),
         "b": _about(comparison.second),
         "changed": [
-            {"kind": one.kind, "name": one.name, "a": one.first, "b": one.second}
-            for one in comparison.changed
+            {"kind": change.kind, "name": change.name, "a": change.first, "b": change.second}
+            for change in comparison.changed
         ],
         "only": None if comparison.only is None else _only(comparison.only),
         "pairing": comparison.pairing,
         "regime": shares.pop(REGIME, {}),
         "categories": shares,
-        "outputs": {name: _output(one) for name, one in comparison.outputs.items()},
+        "outputs": {name: _output(output) for name, output in comparison.outputs.items()},
         "notes": comparison.notes,
     }
 
 
-def _about(one: "Side") -> dict[str, Any]:
-    facts = {name: getattr(one.summary, name) for name in ("samples", "rows_used", "status")}
-    return {"title": one.title} | facts
+def _about(side: "Side") -> dict[str, Any]:
+    facts = {name: getattr(side.summary, name) for name in ("samples", "rows_used", "status")}
+    return {"title": side.title} | facts
 
 
-def _only(one: OnlyChange) -> dict[str, Any]:
-    found = {
-        key: {"a": getattr(one.first, key), "b": getattr(one.second, key)}
+def _only(change: OnlyChange) -> dict[str, Any]:
+    moments = {
+        key: {"a": getattr(change.first, key), "b": getattr(change.second, key)}
         for key in InputMoments._fields
     }
-    return {"name": one.name, "units": one.units} | found
+    return {"name": change.name, "units": change.units} | moments
 
 
-def _output(one: "ComparedOutput") -> dict[str, Any]:
-    found: dict[str, Any] = {"units": one.units}
-    for name, pairs in one.parts.items():
+def _output(output: "ComparedOutput") -> dict[str, Any]:
+    document: dict[str, Any] = {"units": output.units}
+    for name, pairs in output.parts.items():
         if EMPTY.get(name) == {}:
-            found[name] = {}
+            document[name] = {}
         for pair in pairs:
             *parent, last = pair.first.key
-            put(found, parent, {last: _compared(pair)})
-    return found
+            put(document, parent, {last: _compared(pair)})
+    return document
 
 
-def _compared(one: "ComparedStatistic") -> dict[str, Any]:
-    same = {"identical": True} if one.identical else {}
-    if one.no_row_changes_sides:
+def _compared(statistic: "ComparedStatistic") -> dict[str, Any]:
+    same = {"identical": True} if statistic.identical else {}
+    if statistic.no_row_changes_sides:
         same = {"no_row_changes_sides": True}
-    found = {"a": one.first.kind.entry(one.first), "b": one.second.kind.entry(one.second)}
-    found["difference"] = estimate_json.numbers(one.difference) | same
-    if one.ratio is not None:
-        found["ratio"] = estimate_json.numbers(one.ratio) | same
-    return found
-
-
-def levels_json(found: "ByLevel") -> dict[str, Any]:
-    """Return shares of the variance in plain data."""
-    whole: dict[str, Any] = quality_json(found.weights) | {
-        "samples": found.samples,
-        "units": found.units,
-        "repeats": found.repeats,
-        "inputs": dict(found.inputs),
-        "outputs": {name: _shares(one) for name, one in found.outputs.items()},
+    entry = {
+        "a": statistic.first.kind.entry(statistic.first),
+        "b": statistic.second.kind.entry(statistic.second),
     }
-    if found.another_regime is not None:
-        whole["regime"] = {"another": estimate_json.whole(found.another_regime)}
+    entry["difference"] = estimate_json.numbers(statistic.difference) | same
+    if statistic.ratio is not None:
+        entry["ratio"] = estimate_json.numbers(statistic.ratio) | same
+    return entry
+
+
+def levels_json(levels: "ByLevel") -> dict[str, Any]:
+    """Return shares of the variance in plain data."""
+    whole: dict[str, Any] = quality_json(levels.weights) | {
+        "samples": levels.samples,
+        "units": levels.units,
+        "repeats": levels.repeats,
+        "inputs": dict(levels.inputs),
+        "outputs": {name: _shares(target) for name, target in levels.outputs.items()},
+    }
+    if levels.another_regime is not None:
+        whole["regime"] = {"another": estimate_json.whole(levels.another_regime)}
     return whole
 
 
-def _shares(one: "LevelShares") -> dict[str, Any]:
-    shares = {name: estimate_json.whole(share) for name, share in one.shares.items()}
-    more = {"variance": estimate_json.number(one.variance), "samples_left_out": one.left_out}
-    return shares | more | {"integrated": list(one.integrated), "notes": list(one.notes)}
+def _shares(target: "LevelShares") -> dict[str, Any]:
+    shares = {name: estimate_json.whole(share) for name, share in target.shares.items()}
+    more = {"variance": estimate_json.number(target.variance), "samples_left_out": target.left_out}
+    return shares | more | {"integrated": list(target.integrated), "notes": list(target.notes)}
 
 
-def twin_json(found: "TwoFidelities") -> dict[str, Any]:
+def twin_json(two_fidelities: "TwoFidelities") -> dict[str, Any]:
     """Return estimates with a twin in plain data."""
     outputs = {
-        name: {label: _sharpened(one) for label, one in estimates.items()}
-        for name, estimates in found.outputs.items()
+        name: {label: _sharpened(sharpened) for label, sharpened in estimates.items()}
+        for name, estimates in two_fidelities.outputs.items()
     }
-    return vars(found) | {"outputs": outputs}
+    return vars(two_fidelities) | {"outputs": outputs}
 
 
-def _sharpened(one: "Sharpened") -> dict[str, Any]:
-    plain = {"plain": estimate_json.numbers(one.plain), "reduction": one.reduction}
-    note = {"note": one.note} if one.note else {}
-    return estimate_json.numbers(one.estimate) | plain | estimate_json.failed(one.failed) | note
+def _sharpened(sharpened: "Sharpened") -> dict[str, Any]:
+    plain = {"plain": estimate_json.numbers(sharpened.plain), "reduction": sharpened.reduction}
+    note = {"note": sharpened.note} if sharpened.note else {}
+    return (
+        estimate_json.numbers(sharpened.estimate)
+        | plain
+        | estimate_json.failed(sharpened.failed)
+        | note
+    )
 
 
-def convergence_json(found: "Mapping[str, Converging]") -> dict[str, Any]:
+def convergence_json(running: "Mapping[str, Converging]") -> dict[str, Any]:
     """Return running estimates in plain data."""
-    return {"outputs": {name: _converging(one) for name, one in found.items()}}
+    return {"outputs": {name: _converging(converging) for name, converging in running.items()}}
 
 
-def _converging(one: "Converging") -> dict[str, Any]:
-    found: dict[str, Any] = {
+def _converging(converging: "Converging") -> dict[str, Any]:
+    entry: dict[str, Any] = {
         "estimates": {
             label: [{"samples": samples} | estimate_json.numbers(each) for samples, each in sizes]
-            for label, sizes in one.estimates.items()
+            for label, sizes in converging.estimates.items()
         }
     }
-    return found | errors_json(one.errors)
+    return entry | errors_json(converging.errors)
 
 
 def errors_json(errors: Mapping[Any, Any] | None) -> dict[str, Any]:

@@ -42,9 +42,9 @@ def summary(result: AnyResult, *, plain: bool = False) -> pd.DataFrame:
     return table_of(summarise(result, plain=plain))
 
 
-def table_of(found: Summary) -> pd.DataFrame:
+def table_of(summarised: Summary) -> pd.DataFrame:
     """Return a summary as a table."""
-    lines = {name: _line(one) for name, one in found.outputs.items()}
+    lines = {name: _line(described) for name, described in summarised.outputs.items()}
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
 
 
@@ -52,27 +52,29 @@ def _line(output: Described) -> dict[str, Any]:
     """Return one line of `summary`."""
     line: dict[str, Any] = {"units": output.units}
     for name in dict.fromkeys((*COLUMN_ORDER, *output.parts)):
-        for one in output.parts[name]:
-            column = one.label if one.column is None else one.column
-            if column and one.is_read_by(Reader.COLUMNS):
-                line |= _cells(column, one)
+        for statistic in output.parts[name]:
+            column = statistic.label if statistic.column is None else statistic.column
+            if column and statistic.is_read_by(Reader.COLUMNS):
+                line |= _cells(column, statistic)
     return line
 
 
-def _cells(column: str, one: Statistic) -> dict[str, float]:
+def _cells(column: str, statistic: Statistic) -> dict[str, float]:
     """Return the numbers of a statistic under the names of their columns."""
-    if one.kind.is_count:
-        count = one.estimate.value
+    if statistic.kind.is_count:
+        count = statistic.estimate.value
         return {column: int(count) if isfinite(count) else nan}
-    cells = {column: _number(one.estimate, "value")}
-    if one.kind.has_interval:
-        cells |= {f"{column}_{end}": _number(one.estimate, end) for end in ("low", "high")}
-    if one.failed is not None:
-        cells |= {f"{column}_failed_{end}": _number(one.failed, end) for end in ("low", "high")}
+    cells = {column: _number(statistic.estimate, "value")}
+    if statistic.kind.has_interval:
+        cells |= {f"{column}_{end}": _number(statistic.estimate, end) for end in ("low", "high")}
+    if statistic.failed is not None:
+        cells |= {
+            f"{column}_failed_{end}": _number(statistic.failed, end) for end in ("low", "high")
+        }
     return cells
 
 
 def _number(estimate: Estimate, end: str) -> float:
-    """Return a number, infinity for never, NaN where it is not known."""
+    """Return a number: infinity for never, NaN if unknown."""
     value = getattr(estimate, end)
     return value if isfinite(value) or (value == inf and end not in estimate.beyond) else nan

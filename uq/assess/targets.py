@@ -22,7 +22,7 @@ class IndexTarget:
     Attributes
     ----------
     name : str
-        That of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
+        Name of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
         ``rate(element)`` and ``P(element<t)``; for regimes ``P(regime=label)``; ``output[:]`` for
         all elements together.
     element : Element or None
@@ -34,7 +34,7 @@ class IndexTarget:
     event : bool
         Whether the values say if something happened, 1, or not, 0.
     notes : tuple of str
-        Sentences on what replaces the output.
+        Sentences on the transform of the output.
     """
 
     name: str
@@ -66,7 +66,7 @@ def targets(
     thresholds: Mapping[str, tuple[float, ...]],
     every: bool = False,
 ) -> Iterator[IndexTarget]:
-    """Yield targets of some elements.
+    """Yield the targets of elements.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ def targets(
     Yields
     ------
     IndexTarget
-        What `number_of` gives, and of a lifetime T the events T < t. If every target is asked for:
-        a value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
-        also the rate 1/T and the events; of others the events y > t, of an angle's magnitude.
+        The target of `number_of`, and for a lifetime T the events T < t. With `every`: a value or
+        angle as it is; the logarithm and the rank of a value or lifetime; for a lifetime also the
+        rate 1/T and the events; for others the events y > t, of an angle's magnitude.
     """
     for element in elements:
         if not (every and element.is_lifetime):
@@ -102,8 +102,8 @@ def number_of(element: Element) -> IndexTarget:
     """
     if not element.is_lifetime:
         return IndexTarget(element.name, element, element.values)
-    found = transformed(element, "log")
-    return transformed(element, "rank") if found.refused else found
+    logarithmic = transformed(element, "log")
+    return transformed(element, "rank") if logarithmic.refused else logarithmic
 
 
 _TRANSFORMS = {"log": logarithm, "rank": rank, "rate": rate}
@@ -139,19 +139,19 @@ def split_name(name: str) -> tuple[str, str, str]:
 
 def canonical(name: str) -> str:
     """Return the name of a target, of ``P(life < 24 hours)`` that is ``P(life<86400.0)``."""
-    found = _EVENT.fullmatch(name)
-    if found is None:
+    match = _EVENT.fullmatch(name)
+    if match is None:
         return name
     for read in (float, read_quantity):
         with suppress(ValueError):
-            return f"P({found[1]}{found[2]}{float(read(found[3]))!r})"
-    return f"P({found[1]}{found[2]}{found[3]})"
+            return f"P({match[1]}{match[2]}{float(read(match[3]))!r})"
+    return f"P({match[1]}{match[2]}{match[3]})"
 
 
 def threshold_text(name: str) -> str:
     """Return the threshold in the name of an event as written: ``24 hours``; "" without one."""
-    found = _EVENT.fullmatch(name)
-    return found[3] if found else ""
+    match = _EVENT.fullmatch(name)
+    return match[3] if match else ""
 
 
 def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> IndexTarget:
@@ -167,14 +167,14 @@ def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ind
 INDICES_OF = "these are indices of its {form}; ask for {name} for those of the output itself"
 
 
-def lightened(target: IndexTarget, said: str = INDICES_OF) -> IndexTarget:
-    """Return what replaces a value with a heavy tail, for methods that apportion a variance.
+def lightened(target: IndexTarget, template: str = INDICES_OF) -> IndexTarget:
+    """Return the transform of a heavy-tailed value, for methods that apportion a variance.
 
     Parameters
     ----------
     target : IndexTarget
-    said : str
-        What its note says of the ``form`` that replaces it, and of its ``name``.
+    template : str
+        Of its note, with the ``form`` that replaces the output and its ``name``.
 
     Returns
     -------
@@ -186,7 +186,7 @@ def lightened(target: IndexTarget, said: str = INDICES_OF) -> IndexTarget:
         return target
     assert target.element is not None
     form = _lighter_form(target.element)
-    note = said.format(form=FORMS[form], name=target.name)
+    note = template.format(form=FORMS[form], name=target.name)
     return transformed(target.element, form, (f"{why}: {note}",))
 
 
@@ -208,8 +208,8 @@ def _heaviness(target: IndexTarget) -> str:
 
 
 def _lighter_form(element: Element) -> str:
-    found = logarithm(element)
-    return "rank" if found.refused or heaviness(found.values) else "log"
+    logarithms = logarithm(element)
+    return "rank" if logarithms.refused or heaviness(logarithms.values) else "log"
 
 
 def _event(element: Element, threshold: float) -> IndexTarget:

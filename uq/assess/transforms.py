@@ -45,12 +45,12 @@ def tail_share(values: Floats) -> float:
     float
         0 where there are fewer than `FEWEST` values, or all are the same.
     """
-    known = values[np.isfinite(values)]
-    if len(known) < FEWEST or not np.ptp(known) > 0:
+    defined = values[np.isfinite(values)]
+    if len(defined) < FEWEST or not np.ptp(defined) > 0:
         return 0.0
-    scaled = known / np.abs(known).max()  # squares neither overflow nor vanish
+    scaled = defined / np.abs(defined).max()  # squares neither overflow nor vanish
     squares = np.sort((scaled - scaled.mean()) ** 2)
-    return float(squares[-int(np.ceil(LARGEST * len(known))) :].sum() / squares.sum())
+    return float(squares[-int(np.ceil(LARGEST * len(defined))) :].sum() / squares.sum())
 
 
 def heaviness(values: Floats) -> str:

@@ -50,13 +50,13 @@ class Sharpened:
     estimate : Estimate
         By control variates.
     reduction : float
-        Variance of the plain estimate over that of this one.
+        Variance reduction factor against the plain estimate.
     plain : Estimate
         From the rows of the result alone.
     failed : Estimate, optional
         Ends of the plain interval with the failed rows at best and at worst, where rows failed.
     note : str
-        Where few rows are hits, or misses: what that means for the estimate.
+        Consequence for the estimate where few rows are hits, or misses.
     """
 
     estimate: Estimate
@@ -68,7 +68,7 @@ class Sharpened:
 
 @dataclass(frozen=True)
 class TwoFidelities:
-    """What `two_fidelities` finds.
+    """Estimates by control variates (`two_fidelities`).
 
     Attributes
     ----------
@@ -111,9 +111,9 @@ def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
     """
     result = Result.of(result)
     lines = {
-        (name, label): (*one.estimate.numbers, *one.plain.numbers, one.reduction)
+        (name, label): (*sharpened.estimate.numbers, *sharpened.plain.numbers, sharpened.reduction)
         for name, estimates in with_twin(result, model).outputs.items()
-        for label, one in estimates.items()
+        for label, sharpened in estimates.items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "estimate"])
     columns = ["value", "low", "high", "plain", "plain_low", "plain_high", "reduction"]
@@ -136,17 +136,17 @@ def with_twin(result: Result, model: str | None = None) -> TwoFidelities:
     study = study.with_samples(int(result.dataset.attrs["samples"]))
     here, many = _here(study, result), _many(study, len(result))
     outputs = [name for name in result.shown_outputs(study.analysis) if name != twin]
-    found = {}
+    by_element = {}
     for element in result.elements(outputs):
         for control, others in zip(here, many, strict=True):
             same = control.name == element.name
             if same or (control.output == twin and control.place.items() <= element.place.items()):
-                found[element.name] = dict(_estimates(element, control, others, study))
+                by_element[element.name] = dict(_estimates(element, control, others, study))
     return TwoFidelities(
         twin if isinstance(twin, str) else toml(twin),
         len(result),
         len(many[0].values),
-        {name: estimates for name, estimates in found.items() if estimates},
+        {name: estimates for name, estimates in by_element.items() if estimates},
     )
 
 
@@ -157,22 +157,22 @@ def _estimates(
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present]).mean
         if not alone.reason:
-            found = controlled_mean(
+            controlled = controlled_mean(
                 element.values, present, controls=_filled(control), many=_filled(many)
             )
-            yield "mean", Sharpened(*found, alone)
+            yield "mean", Sharpened(*controlled, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         if element.unknown_sides(threshold).any() or not kept.any():
             continue
         sides = (element.above(threshold) > 0, element.below(threshold) > 0)
         for sign, hits in zip(SIDES.values(), sides, strict=True):
-            found = controlled_share(
+            controlled = controlled_share(
                 hits, kept, control=control.for_thresholds, many=many.for_thresholds
             )
             failed = failed_share_bounds(hits, element.failed, None)
             note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
             plain = share_of(hits[kept], None)
-            yield f"P({sign}{threshold!r})", Sharpened(*found, plain, failed, note)
+            yield f"P({sign}{threshold!r})", Sharpened(*controlled, plain, failed, note)
 
 
 def _note_on_few(hits: int, rows: int) -> str:
@@ -211,9 +211,9 @@ def _many(study: Study, start: int) -> list[Element]:
     per_sample = rows(study) // study.design.samples
     longer = study.with_samples(study.design.samples + -(-wanted // per_sample))
     parts = [
-        _twin_of(longer, some.x, some.seed)
+        _twin_of(longer, block.x, block.seed)
         for first in range(start, rows(longer), _BLOCK)
-        for some in [row_block(longer, first, min(first + _BLOCK, rows(longer)))]
+        for block in [row_block(longer, first, min(first + _BLOCK, rows(longer)))]
     ]
     return [_joined(pieces) for pieces in zip(*parts, strict=True)]
 

@@ -41,7 +41,7 @@ class LevelShares:
     left_out : int
         Samples with too few values.
     notes : tuple of str
-        What replaces the output.
+        Sentences on the transform of the output.
     integrated : tuple of str
         Inputs whose part of the variance is known exactly.
     """
@@ -54,16 +54,16 @@ class LevelShares:
 
     @property
     def sentences(self) -> list[str]:
-        """Why shares or intervals are missing, and what replaces the output."""
+        """Sentences on missing shares or intervals, and on transforms of the output."""
         reasons: dict[str, list[str]] = {}
-        for name, one in self.shares.items():
-            if one.reason:
-                reasons.setdefault(one.reason, []).append(name)
-        said = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
+        for name, share in self.shares.items():
+            if share.reason:
+                reasons.setdefault(share.reason, []).append(name)
+        sentences = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
         if self.left_out:
-            said.append(f"left out: {samples_have(self.left_out)} too few values")
+            sentences.append(f"left out: {samples_have(self.left_out)} too few values")
         exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
-        return [*exactly, *self.notes, *said]
+        return [*exactly, *self.notes, *sentences]
 
 
 def shares_of(
@@ -71,7 +71,7 @@ def shares_of(
     varying: Collection[str],
     errors: Floats | None = None,
     replicate: Any = None,
-    known: Mapping[str, Floats] = MappingProxyType({}),
+    known_variances: Mapping[str, Floats] = MappingProxyType({}),
     design: str = "monte-carlo",
     weights: Floats | None = None,
 ) -> LevelShares:
@@ -82,15 +82,15 @@ def shares_of(
     table : ndarray, shape (samples, units, repeats)
         NaN where there is none.
     varying : collection of str
-        The levels on which something varies; the share of the others is what is known of them.
+        The levels with varying inputs; others have only the share in `known_variances`.
     errors : ndarray, shape (samples, units, repeats), optional
         Numerical error of each, as a standard deviation.
     replicate : ndarray of int, shape (samples,), optional
         Where only replicates are independent.
-    known : dict of str to ndarray of shape (samples, units, repeats), optional
+    known_variances : dict of str to ndarray of shape (samples, units, repeats), optional
         Level -> variance that each row adds to it, of independent terms at their means in `table`.
     design : str, optional
-        By which samples were drawn, for advice.
+        Design of the samples, for advice.
     weights : ndarray, shape (samples,), optional
         Of samples.
 
@@ -100,32 +100,38 @@ def shares_of(
     """
     names = tuple(level for level in LEVELS if level in varying)
     places = _places(names, table.shape)
-    places += tuple((level,) for level in LEVELS if level in known and level not in names)
+    places += tuple((level,) for level in LEVELS if level in known_variances and level not in names)
     of_each = (
-        None if one is None else _reduced(np.broadcast_to(one[:, None, None], table.shape), names)
-        for one in (replicate, weights)
+        None
+        if array is None
+        else _reduced(np.broadcast_to(array[:, None, None], table.shape), names)
+        for array in (replicate, weights)
     )
-    replicate, weights = (None if one is None else one[:, 0, 0] for one in of_each)
+    replicate, weights = (None if array is None else array[:, 0, 0] for array in of_each)
     errors = None if errors is None else _reduced(errors, names)
     empty = int(np.isnan(table).all(axis=(1, 2)).sum())
     table, size = sized(_reduced(table, names))  # neither squares nor their sums overflow
     errors = None if errors is None else errors / size
     added = np.zeros((3, *table.shape))
     for place, levels in enumerate(places):
-        for level in known.keys() & set(levels):
-            added[place] += _reduced(known[level], names) / size / size
-    found = nested_shares(table, errors, replicate, added, weights)
-    shares = {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
-    if found.variance > 0:
+        for level in known_variances.keys() & set(levels):
+            added[place] += _reduced(known_variances[level], names) / size / size
+    components = nested_shares(table, errors, replicate, added, weights)
+    shares = {SHARED: components.outer, OWN: components.middle, CHANCE: components.inner}
+    if components.variance > 0:
         shares = dict.fromkeys(LEVELS, NONE)
-        for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
+        for levels, share in zip(
+            places, components[:3] if len(places) > 1 else [ALL], strict=False
+        ):
             shares |= _of_levels(levels, share, design)
-    left_out = found.left_out if SHARED in names else empty
-    return LevelShares(shares | {SOLVER: found.error}, found.variance * size * size, left_out)
+    left_out = components.left_out if SHARED in names else empty
+    return LevelShares(
+        shares | {SOLVER: components.error}, components.variance * size * size, left_out
+    )
 
 
 def _reduced(table: Any, names: Collection[str]) -> Any:
-    """Return what is independent, its units and their repeats, without levels on which none vary.
+    """Return the table over independent samples, units and repeats, without constant levels.
 
     Without chance, the repeats of a unit are one row; without anything own, units are repeats; with
     nothing shared, samples do not matter. Of two levels the inner one takes the place of units.
@@ -146,9 +152,9 @@ def _reduced(table: Any, names: Collection[str]) -> Any:
 
 
 def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, ...], ...]:
-    """Return which levels are told apart: those in each place of a reduced table, outermost first.
+    """Return the levels confounded in each dimension of a reduced table, outermost first.
 
-    Levels in one place cannot be separated.
+    Levels in one dimension cannot be separated.
     """
     _, units, repeats = shape
     if names == tuple(LEVELS) and repeats == 1 < units:
@@ -165,7 +171,7 @@ def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, 
 
 
 def _of_levels(levels: tuple[str, ...], share: Estimate, design: str) -> dict[str, Estimate]:
-    """Return the shares of levels from the share of their place."""
+    """Return the shares of levels from the share of their dimension."""
     if len(levels) == 1:
         return {levels[0]: share}
     advice = {key: several(key, design) for key in ("units", "repeats")}

@@ -29,7 +29,7 @@ SAME = "what if: which inputs are the same cannot be changed"
 
 @dataclass(frozen=True)
 class WhatIf:
-    """The answer to a what-if.
+    """Summary of a result under other laws of its inputs.
 
     Attributes
     ----------
@@ -79,9 +79,9 @@ def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
        sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     result = Result.of(result)
-    found = answer(result, changes)
-    table = table_of(found.summary)
-    table.attrs = {"effective_rows": found.effective_rows, "pareto_k": found.pareto_k}
+    answered = answer(result, changes)
+    table = table_of(answered.summary)
+    table.attrs = {"effective_rows": answered.effective_rows, "pareto_k": answered.pareto_k}
     return table
 
 
@@ -91,7 +91,7 @@ def answer(
     asked: AnalysisTable | None = None,
     parts: Collection[str] = STATISTICS,
 ) -> WhatIf:
-    """Return what `what_if` tabulates, or that part of it which is asked for."""
+    """Return the summary that `what_if` tabulates, or the requested part of it."""
     result.refuse_weights("what if")
     if why := result.why_no_statistics:
         raise InputError(f"what if: the rows of a '{result.design_name}' design {why}")
@@ -103,39 +103,39 @@ def answer(
     if not weighting.used and weighting.refused:
         first = next(iter(weighting.refused.values()))
         raise (InputError if first.impossible else RunError)(first.refusal)
-    for name, one in weighting.refused.items():
-        summary.notes.append(f"{name}: {one.refusal}")
+    for name, weights in weighting.refused.items():
+        summary.notes.append(f"{name}: {weights.refusal}")
     used = weighting.used.values()
     return WhatIf(
         summary,
-        min((one.effective for one in used), default=0.0),
-        max((one.k for one in used), default=0.0),
+        min((weights.effective for weights in used), default=0.0),
+        max((weights.k for weights in used), default=0.0),
     )
 
 
-def what_if_json(found: WhatIf) -> dict[str, Any]:
+def what_if_json(answered: WhatIf) -> dict[str, Any]:
     """Return the answer in plain data: as `uq summary --json`, with the quality of the weights."""
-    quality = {"effective_rows": found.effective_rows, "pareto_k": number(found.pareto_k)}
-    return quality | summary_json(found.summary)
+    quality = {"effective_rows": answered.effective_rows, "pareto_k": number(answered.pareto_k)}
+    return quality | summary_json(answered.summary)
 
 
 def read_changes(texts: Sequence[str]) -> dict[str, Any]:
     """Read changes from the command line, such as ``uncertain.initial_gap.sd=1e-5``."""
-    found = {}
+    changes = {}
     for text in texts:
         name, equals, value = text.partition("=")
         name = name.strip()
-        if name in found:
+        if name in changes:
             raise InputError(f"--set {shown(text)}: {name} is changed twice")
         try:
             if not (name and equals):
                 raise ValueError
-            found[name] = read_toml(f"x = {value}")["x"]
+            changes[name] = read_toml(f"x = {value}")["x"]
         except (ValueError, OverflowError, RecursionError):
             raise InputError(
                 f"--set {shown(text)}: must be uncertain.NAME.KEY=VALUE, the value as in TOML"
             ) from None
-    return found
+    return changes
 
 
 def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
@@ -162,23 +162,25 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         data[table][rest] = value
         return
     name, _, argument = rest.partition(".")
-    known = data["uncertain"]
+    uncertain = data["uncertain"]
     if table != "uncertain" or not name:
         raise InputError(
             f"what if: '{place}' cannot be changed; only uncertain.NAME.KEY, uncertain.NAME and"
             " dependence.rank_correlation can"
         )
-    if name not in known:
-        raise InputError(f"what if: '{name}' is not uncertain in this study{nearest(name, known)}")
+    if name not in uncertain:
+        raise InputError(
+            f"what if: '{name}' is not uncertain in this study{nearest(name, uncertain)}"
+        )
     if argument == "equals":
         raise InputError(SAME)
-    kept = {k: v for k, v in known[name].items() if k in ("times", "level", "source")}
+    kept = {k: v for k, v in uncertain[name].items() if k in ("times", "level", "source")}
     if not argument:
-        known[name] = kept | value if isinstance(value, dict) else value
+        uncertain[name] = kept | value if isinstance(value, dict) else value
     elif argument == "distribution":
-        known[name] = kept | {argument: value}
+        uncertain[name] = kept | {argument: value}
     else:
-        known[name][argument] = value
+        uncertain[name][argument] = value
 
 
 def _faults(rows: Result, study: StudyFile, inputs: Inputs) -> list[InputFault]:

@@ -47,8 +47,10 @@ class Checker:
         for event in conclusions.events:
             yield from (f"{event.name}: {text}" for text in self.alone(event))
         for regime in conclusions.regimes:
-            hits = (labels(self.rows["regime"]).values == regime.said).astype(float)
-            yield from (f"{regime.said}: {text}" for text in denied_event(self.rows, regime, hits))
+            hits = (labels(self.rows["regime"]).values == regime.predicate).astype(float)
+            yield from (
+                f"{regime.predicate}: {text}" for text in denied_event(self.rows, regime, hits)
+            )
         for advice in conclusions.advice:
             yield from (
                 f"{advice.rule}: {text}" for text in denied_advice(self.ds, advice, conclusions)
@@ -176,14 +178,14 @@ class Checker:
     def repeated(self, quantity):
         """Compare the scatter among seeds with that of the rows drawn again, with replacement."""
         prediction = quantity.repeated
-        if not prediction.what:
+        if not prediction.subject:
             return
         if prediction.is_share:
             numbers, per = np.nan_to_num(self.hits(quantity, quantity.first)).astype(float), 100
             estimate = np.mean
         else:
             numbers, per = self.values(quantity), 1 / prediction.unit.per
-            p = numbers_in(prediction.what)[0] / 100
+            p = numbers_in(prediction.subject)[0] / 100
             if round(p, 6) not in (0.05, 0.95):
                 yield prediction.sentence
                 return
@@ -195,7 +197,7 @@ class Checker:
         again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]
         wide = 2 * 1.96 * 2**0.5 * np.std(again) * per
         shown = numbers_in(
-            prediction.sentence.split(prediction.what)[0 if prediction.is_share else 1]
+            prediction.sentence.split(prediction.subject)[0 if prediction.is_share else 1]
         )
         if "would again be" in prediction.sentence:
             if wide > 0.02 * abs(shown[0]):

@@ -20,9 +20,9 @@ def denied_by_each_other(conclusions):
     for advice in conclusions.advice:
         for event in lead.events:
             flat = event.ranking is not None and event.ranking.denies_a_leader
-            if flat and advice.rule == "tighten" and event.said in advice.text:
+            if flat and advice.rule == "tighten" and event.predicate in advice.text:
                 yield f"{event.decided_by} {advice.text}"
-            if advice.rule == "measure" and f"how many {event.said}" in advice.text:
+            if advice.rule == "measure" and f"how many {event.predicate}" in advice.text:
                 named = event.ranking and event.ranking.leader and event.ranking.leader.inputs
                 if not set(advice.inputs) <= set(named or ()):
                     yield f"{event.decided_by} {advice.text}"

@@ -91,7 +91,7 @@ def denied_advice(ds, advice, conclusions):
     shares = [
         event.share.value
         for event in conclusions.quantities[0].events
-        if event.said in tolerance.what
+        if event.predicate in tolerance.statistic
     ]
     if shares and abs(first - 100 * shares[0]) > 0.06:
         yield tolerance.sentence
@@ -127,8 +127,10 @@ def denied_advice(ds, advice, conclusions):
 def _before(lead, tolerance):
     """Return the same number of the answer."""
     if tolerance.is_share:
-        return next(event.share.value for event in lead.events if event.said in tolerance.what)
-    return lead.promise.quantiles["95 %" in tolerance.what].value
+        return next(
+            event.share.value for event in lead.events if event.predicate in tolerance.statistic
+        )
+    return lead.promise.quantiles["95 %" in tolerance.statistic].value
 
 
 def _denied_law(ds, tolerance):
@@ -151,7 +153,7 @@ def _denied_law(ds, tolerance):
 
 def _denied_besides(ds, advice, lead):
     """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
-    for sure in [tolerance for tolerance in advice.own if tolerance.promise is not None]:
+    for sure in [tolerance for tolerance in advice.effects if tolerance.promise is not None]:
         document, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
         plain = uq.trace(ds, sure.key.partition("]/")[2])  # the same key, of the study's own laws
         end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
@@ -189,7 +191,7 @@ def _not_alike(advice):
         gains = [abs(tolerance.after.value - tolerance.before.value) for tolerance in (best, each)]
         wide = max((tolerance.after.high - tolerance.after.low) for tolerance in (best, each))
         if (
-            each.what != best.what
+            each.statistic != best.statistic
             or gains[1] > gains[0]
             or gains[0] - gains[1] > gains[0] / 3 + wide
         ):

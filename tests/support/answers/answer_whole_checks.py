@@ -51,7 +51,7 @@ def denied_enough(ds, conclusions):
     sufficiency, lead = conclusions.enough, conclusions.lead
     if conclusions.regimes_first:
         low, high = found_again(conclusions.regimes[0].share, False)
-        if sufficiency.again.what and not np.allclose(
+        if sufficiency.again.subject and not np.allclose(
             (sufficiency.again.low, sufficiency.again.high), (low, high)
         ):
             yield sufficiency.sentence

@@ -2,6 +2,7 @@
 
 from html.parser import HTMLParser
 
+from uq.result.result import Result
 from uq.render.html.page import page
 from uq.result.result import Result
 

@@ -117,7 +117,7 @@ def test_where_fewer_than_five_per_cent_end_these_are_the_earliest():
     lives = np.full(1000, np.inf)
     lives[::50] = np.linspace(1, 2, 20)
     earliest = answer(with_lives(lives)).lead.earliest
-    assert (earliest.size, earliest.of) == (20, 1000) and "2 % (20 rows)" in earliest.sentence
+    assert (earliest.size, earliest.total) == (20, 1000) and "2 % (20 rows)" in earliest.sentence
     nothing = answer(with_lives(np.full(100, np.inf))).lead
     assert nothing.earliest is None
 
@@ -129,7 +129,7 @@ def test_replicates_show_what_differs_and_one_design_alone_does_not():
     earliest = answer(ds).lead.earliest
     assert earliest.inputs[0].name == "x4"
     rows = independent_rows(ds)
-    assert earliest.of == rows.sizes["row"]
+    assert earliest.total == rows.sizes["row"]
     assert answer(lived(law, 512, "sobol")).lead.earliest.sentence == ""
 
 

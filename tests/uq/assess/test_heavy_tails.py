@@ -7,6 +7,7 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.expected_widths import expected_widths
 from uq.assess.findings import Findings
@@ -98,7 +99,7 @@ def test_reports_say_what_the_indices_are_of():
     (method,) = sensitivity_of(Findings(Result(ds)))
     (subject,) = method.subjects
     assert subject.words == "Logarithm of the meaning of work"
-    assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.what
+    assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.index_meaning
 
 
 def test_plans_and_convergence_name_and_judge_the_same_number():

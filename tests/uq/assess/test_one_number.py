@@ -43,7 +43,7 @@ def test_a_bound_is_the_same_in_table_and_answer(life):
     assert promise["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
     quantile = summarised(life)["outputs"]["life"]["quantiles"]["0.05"]
     for advice in answer(life).advice:
-        for remedy in advice.own:
+        for remedy in advice.effects:
             if remedy.promised:  # the end of an interval is not called a bound
                 assert "With 95 % confidence" not in remedy.promised
                 assert remedy.before.low == pytest.approx(quantile["low"], rel=1e-12)

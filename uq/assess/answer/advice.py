@@ -20,54 +20,57 @@ from uq.text.keys import key_of
 from uq.text.numbers import counted, grouped
 
 _AS_SETTLED = ("known", "source", "tighten", "keep", "chance")
-"""Rules of advice that is given also where everything is settled."""
+"""Rules of advice that is given even if everything is settled."""
 
 
-def advise(findings: Findings, found: Answer) -> Iterator[Advice]:
-    """Yield what to do, the most urgent first; nothing where inspections have weighted the rows.
+def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
+    """Yield advice, the most urgent first; none where inspections have weighted the rows.
 
     Parameters
     ----------
     findings : Findings
-    found : Answer
+    answer : Answer
         Without advice.
     """
     if findings.result.has_weights:
         return
-    enough = found.enough
-    told = [
-        *_mend(findings, found.quantities),
+    enough = answer.enough
+    advice = [
+        *_mend(findings, answer.quantities),
         *([Advice("finer", enough.finer)] if enough.finer else []),
-        *_unknown(found),
-        *_leave_to_chance(found.levels),
-        *_measure(findings, found),
+        *_unknown(answer),
+        *_leave_to_chance(answer.levels),
+        *_measure(findings, answer),
         *(
             []
-            if found.regimes_first
-            else [*_tighten(findings, found)] or _keep(findings.result, found)
+            if answer.regimes_first
+            else [*_tighten(findings, answer)] or _keep(findings.result, answer)
         ),
-        *(_add_rows(findings.result, enough) if found.quantities else ()),
+        *(_add_rows(findings.result, enough) if answer.quantities else ()),
     ]
-    answered = found.quantities
-    if answered and not enough.question and all(one.rule in _AS_SETTLED for one in told):
-        known = any(one.rule == "known" for one in told)
-        told = [one for one in told if one.rule != "known"]  # it says so, too
-        nothing = "Nothing else" if told else "Nothing"
-        noisy = any(one.own_error is not None and one.own_error.share >= 1 for one in answered)
+    answered = answer.quantities
+    if answered and not enough.question and all(entry.rule in _AS_SETTLED for entry in advice):
+        laws_measured = any(entry.rule == "known" for entry in advice)
+        advice = [entry for entry in advice if entry.rule != "known"]  # `settled` states it
+        nothing = "Nothing else" if advice else "Nothing"
+        noisy = any(
+            quantity.own_error is not None and quantity.own_error.share >= 1
+            for quantity in answered
+        )
         settled = f"what the study {'is about' if enough.besides or noisy else 'asks'} is settled"
-        settled += ", and no law that matters is an assumption" * known
-        told.append(Advice("nothing", f"{nothing}: {settled}."))
-    yield from told
+        settled += ", and no law that matters is an assumption" * laws_measured
+        advice.append(Advice("nothing", f"{nothing}: {settled}."))
+    yield from advice
 
 
 def _leave_to_chance(levels: VarianceComponents | None) -> Iterator[Advice]:
-    """Yield that tolerances change little, where something that differs each time decides."""
+    """Yield the advice that tolerances change little, where chance is the main driver."""
     leader = None if levels is None else levels.leader
     if levels is not None and leader is not None and leader.name == CHANCE:
         yield Advice(
             "chance",
-            f"Expect little of tolerances: {leader.words} decides {levels.of}, and differs between"
-            " repeats of one machine.",
+            f"Expect little of tolerances: {leader.words} decides {levels.subject}, and differs"
+            " between repeats of one machine.",
             leader.inputs,
         )
 
@@ -77,7 +80,11 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     lost, rows = int(result.failed.sum()), len(result)
     most = result.analysis.max_failed
     why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
-    why += [one.what for one in bounds_unsettled(findings, answered) if isinf(one.factor)]
+    why += [
+        shortfall.clause
+        for shortfall in bounds_unsettled(findings, answered)
+        if isinf(shortfall.factor)
+    ]
     if why:
         yield Advice(
             "failed",
@@ -87,25 +94,25 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
         )
 
 
-def _unknown(found: Answer) -> Iterator[Advice]:
-    """Yield that no number of rows settles an event of which nothing is known."""
-    unknown = [one.sentence for one in found.asked_events if isnan(one.share.value)]
-    for said in [one for one in unknown if one][:1]:
-        yield Advice("unknown", f"More rows would not help: {said[:1].lower()}{said[1:]}")
+def _unknown(answer: Answer) -> Iterator[Advice]:
+    """Yield the advice that no sample size settles an event without an estimate."""
+    unknown = [event.sentence for event in answer.asked_events if isnan(event.share.value)]
+    for text in [text for text in unknown if text][:1]:
+        yield Advice("unknown", f"More rows would not help: {text[:1].lower()}{text[1:]}")
 
 
-def _leading(found: Answer) -> tuple[Contribution | None, Event | None]:
-    """Return what contributes most to what the study is about, and the event that it decides."""
-    about = [(event.ranking, event) for event in found.asked_events]
-    own = None if found.lead is None or found.regimes_first else found.lead.ranking
-    for ranking, event in (*about, (own, None)):
+def _leading(answer: Answer) -> tuple[Contribution | None, Event | None]:
+    """Return the leading contribution to the subject of the study, and the event that it drives."""
+    about = [(event.ranking, event) for event in answer.asked_events]
+    lead_ranking = None if answer.lead is None or answer.regimes_first else answer.lead.ranking
+    for ranking, event in (*about, (lead_ranking, None)):
         if ranking is not None and ranking.leads:
             return ranking.leader, event
     return None, None
 
 
-def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
-    leader, event = _leading(found)
+def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
+    leader, event = _leading(answer)
     if leader is None:
         return
     marks = {name: mark_of(findings.result, name) for name in leader.sure}
@@ -120,80 +127,85 @@ def _measure(findings: Findings, found: Answer) -> Iterator[Advice]:
     assumed = tuple(name for name in lasting if marks[name] == ASSUMED)
     unstated = tuple(name for name in lasting if not marks[name])
     if not assumed and unstated:
-        one = len(unstated) == 1
+        is_single = len(unstated) == 1
         yield Advice(
             "source",
-            f"State how well {called_together(unstated)} {'is' if one else 'are'} known:"
-            f" {'it matters' if one else 'they matter'} most{to_what}, and no source says it"
+            f"State how well {called_together(unstated)} {'is' if is_single else 'are'} known:"
+            f" {'it matters' if is_single else 'they matter'} most{to_what}, and no source says it"
             " (given, inferred, fitted, assumed or chosen).",
             unstated,
         )
     elif not assumed and lasting:
-        one = len(lasting) == 1
+        is_single = len(lasting) == 1
         yield Advice(
             "known",
-            f"Nothing needs to be measured first: {'the law' if one else 'the laws'} of"
-            f" {called_together(lasting)}, which {'matters' if one else 'matter'} most{to_what},"
-            f" {'is' if one else 'are'} not assumed.",
+            f"Nothing needs to be measured first: {'the law' if is_single else 'the laws'} of"
+            f" {called_together(lasting)}, which {'matters' if is_single else 'matter'}"
+            f" most{to_what}, {'is' if is_single else 'are'} not assumed.",
             tuple(lasting),
         )
     if not assumed:
         return
-    one = len(assumed) == 1
+    is_single = len(assumed) == 1
     words = called_together(assumed)
-    matters = "it matters" if one else "they matter"
+    matters = "it matters" if is_single else "they matter"
     if leader.doubtful:
-        matters = f"{'it' if one else 'they'} may matter"
+        matters = f"{'it' if is_single else 'they'} may matter"
     single = event is not None and event.is_of_single
     measure = "Of single inputs, measure" if single else "Measure"
     yield Advice(
         "measure",
         f"{measure} {words} first: {matters} most{to_what}, and"
-        f" {'its law is' if one else 'their laws are'} assumed.",
+        f" {'its law is' if is_single else 'their laws are'} assumed.",
         assumed,
     )
 
 
-def _tighten(findings: Findings, found: Answer) -> Iterator[Advice]:
-    leader, _ = _leading(found)
-    if leader is not None and any(mark_of(findings.result, one) != CHOSEN for one in leader.inputs):
-        yield from tighten(findings.result, found.quantities[0], leader)
+def _tighten(findings: Findings, answer: Answer) -> Iterator[Advice]:
+    leader, _ = _leading(answer)
+    if leader is not None and any(
+        mark_of(findings.result, name) != CHOSEN for name in leader.inputs
+    ):
+        yield from tighten(findings.result, answer.quantities[0], leader)
 
 
-def _keep(result: Result, found: Answer) -> Iterator[Advice]:
-    """Yield where to keep the input that decides an event, where the event is settled to differ."""
-    _, event = _leading(found)
-    lead = found.lead
+def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
+    """Yield the range to keep the leading input in, if the event differs significantly there."""
+    _, event = _leading(answer)
+    lead = answer.lead
     if event is None or event.curve is None or lead is None or (more := lead.wants_more) is None:
         return
     place = event.curve.most if more else event.curve.least
-    there, overall = event.curve.shares[place], event.share
-    if mark_of(result, event.over) == ASSUMED:  # it is what it is
+    local, overall = event.curve.shares[place], event.share
+    if mark_of(result, event.over) == ASSUMED:  # an assumed quantity cannot be adjusted
         return
-    if there.low > overall.high if more else there.high < overall.low:
-        where, what = f"{event.part(place)}: {share_text(there)} do there", "decided_by"
+    if local.low > overall.high if more else local.high < overall.low:
+        where, key_name = f"{event.part(place)}: {share_text(local)} do there", "decided_by"
         if event.limit is not None and not event.limit.why:
-            limit, what = event.limit, "limit"
+            limit, key_name = event.limit, "limit"
             where = f"{limit.place}: {limit.few} do there{limit.averaged}"
         yield Advice(
             "keep",
-            f"So that {'more' if more else 'fewer'} {event.said}, keep {called(event.over)}"
+            f"So that {'more' if more else 'fewer'} {event.predicate}, keep {called(event.over)}"
             f" {where}.",
             (event.over,),
-            key=key_of("quantities", lead.name, "events", event.name, what, verb="answer"),
+            key=key_of("quantities", lead.name, "events", event.name, key_name, verb="answer"),
         )
 
 
 def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
-    """Yield that intervals are missing, or how many rows would settle what the study is about."""
+    """Yield the sample size that settles the subject of the study, or why intervals are missing."""
     rows = len(result)
     if enough.unknown:
         wanted = "know what can be promised" if result.why_no_statistics else "have intervals"
         yield Advice("rows", f"To {wanted}: {enough.unknown}.")
-    open_ones = [one for one in enough.question if isfinite(one.factor)]
-    if not open_ones or not rows or enough.errors is not None:
+    shortfalls = [shortfall for shortfall in enough.question if isfinite(shortfall.factor)]
+    if not shortfalls or not rows or enough.errors is not None:
         return
-    worst, less = open_ones[0], [one for one in enough.every if one is not open_ones[0]]
+    worst, less = (
+        shortfalls[0],
+        [shortfall for shortfall in enough.every if shortfall is not shortfalls[0]],
+    )
     more = ""
     if less:
         are, them = ("is", "it") if len(less) == 1 else ("are", "them")
@@ -201,6 +213,6 @@ def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
         more = f"; {len(less)} more {are} not settled ({listed})"
     yield Advice(
         "rows",
-        f"Compute {needed(worst, result)} instead of {grouped(rows)}: {worst.what}{more}.",
+        f"Compute {needed(worst, result)} instead of {grouped(rows)}: {worst.clause}{more}.",
         rows=ceil(min(worst.factor, MOST) * rows),
     )

@@ -43,27 +43,27 @@ def answer(result: AnyResult) -> Answer:
     return conclude(Findings(result))
 
 
-_KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
+_ANSWERS: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
 
 
 def conclude(findings: Findings) -> Answer:
-    """Return the answer from what is known of a result, computed once."""
-    if findings not in _KNOWN:
-        found = without_advice(findings)
-        _KNOWN[findings] = replace(found, advice=tuple(advise(findings, found)))
-    return _KNOWN[findings]
+    """Return the answer of a result, computed once."""
+    if findings not in _ANSWERS:
+        draft = without_advice(findings)
+        _ANSWERS[findings] = replace(draft, advice=tuple(advise(findings, draft)))
+    return _ANSWERS[findings]
 
 
 def without_advice(findings: Findings) -> Answer:
-    """Return the answer but for what to do, for which rows are weighted."""
+    """Return the answer without advice, which would take reweighted rows."""
     result = findings.result
-    found = tuple((quantities if len(findings.rows) else only_ranked)(findings))
+    answered = tuple((quantities if len(findings.rows) else only_ranked)(findings))
     regimes = tuple(regimes_of(findings))
     plain = Answer(
         str(result.dataset.attrs["title"]),
         len(result),
         int(result.failed.sum()),
-        found,
+        answered,
         regimes,
         (),
         tuple(findings.summary.notes),
@@ -71,55 +71,55 @@ def without_advice(findings: Findings) -> Answer:
         starts_alike=starts_alike(result) if regimes else "",
         assumptions=assumptions(result),
     )
-    known = beside_levels(plain, _levels(findings, plain))
-    about = known.main_regimes if known.regimes_first else ()
+    with_levels = beside_levels(plain, _levels(findings, plain))
+    about = with_levels.main_regimes if with_levels.regimes_first else ()
     return replace(
-        known,
-        enough=enough_of(findings, known.quantities, about),
-        ties=ties_of(result, known),
-        mixing=intermingled(findings) if known.regimes_first else known.mixing,
+        with_levels,
+        enough=enough_of(findings, with_levels.quantities, about),
+        ties=ties_of(result, with_levels),
+        mixing=intermingled(findings) if with_levels.regimes_first else with_levels.mixing,
     )
 
 
-def beside_levels(found: Answer, levels: VarianceComponents | None) -> Answer:
-    """Return an answer that says which level decides, and if single inputs are not on it."""
+def beside_levels(draft: Answer, levels: VarianceComponents | None) -> Answer:
+    """Return an answer with its variance components; events note if their leader is elsewhere."""
     leader = None if levels is None else levels.leader
     if leader is None:
-        return replace(found, levels=levels)
+        return replace(draft, levels=levels)
 
     def beside(event: Event) -> Event:
         first = None if event.ranking is None else event.ranking.leader
         other = first is not None and not set(first.inputs) <= set(leader.inputs)
         return replace(event, is_of_single=other)
 
-    regimes = found.regimes
-    quantities = found.quantities
-    if found.regimes_first:
-        regimes = tuple(beside(one) for one in regimes)
+    regimes = draft.regimes
+    quantities = draft.quantities
+    if draft.regimes_first:
+        regimes = tuple(beside(regime) for regime in regimes)
     else:
-        events = tuple(beside(one) for one in quantities[0].events)
+        events = tuple(beside(event) for event in quantities[0].events)
         quantities = (replace(quantities[0], events=events), *quantities[1:])
-    return replace(found, levels=levels, regimes=regimes, quantities=quantities)
+    return replace(draft, levels=levels, regimes=regimes, quantities=quantities)
 
 
-def _levels(findings: Findings, found: Answer) -> VarianceComponents | None:
-    """Return which level decides what the study is about; None where that is not known."""
-    if found.regimes_first:
-        (first, *_) = found.regimes
-        return levels_of(findings, first.name, f"whether it is {first.said}", first.ranking)
-    lead = found.lead
+def _levels(findings: Findings, draft: Answer) -> VarianceComponents | None:
+    """Return the variance components of the subject of the study; None if unknown."""
+    if draft.regimes_first:
+        (first, *_) = draft.regimes
+        return levels_of(findings, first.name, f"whether it is {first.predicate}", first.ranking)
+    lead = draft.lead
     return None if lead is None else levels_of(findings, lead.name, "its scatter", lead.ranking)
 
 
-def ties_of(result: Result, found: Answer) -> str:
-    """Return which inputs have the value of one that contributes most in every row, or ""."""
-    own = [] if found.lead is None else [found.lead.ranking]
-    rankings = [*(event.ranking for event in found.asked_events), *own]
+def ties_of(result: Result, draft: Answer) -> str:
+    """Return a sentence on inputs tied to a leading input, or ""."""
+    lead_rankings = [] if draft.lead is None else [draft.lead.ranking]
+    rankings = [*(event.ranking for event in draft.asked_events), *lead_rankings]
     leading = {
         name
-        for one in rankings
-        if one is not None and one.leader is not None
-        for name in one.leader.inputs
+        for ranking in rankings
+        if ranking is not None and ranking.leader is not None
+        for name in ranking.leader.inputs
     }
     tied = {
         name: law.equals
@@ -132,7 +132,11 @@ def ties_of(result: Result, found: Answer) -> str:
 
 
 def regimes_of(findings: Findings) -> Iterator[Event]:
-    """Yield the regimes that occur, the most frequent first; one alone needs no words."""
-    shares = [one for one in findings.summary.regimes.values() if one.facts["count"]]
-    for one in sorted(shares, key=lambda one: -one.facts["count"]) * (len(shares) > 1):
-        yield event(findings, f"P(regime={one.label})", one.label, one)
+    """Yield the regimes that occur, the most frequent first; none if there is only one."""
+    shares = [
+        statistic for statistic in findings.summary.regimes.values() if statistic.facts["count"]
+    ]
+    for statistic in sorted(shares, key=lambda statistic: -statistic.facts["count"]) * (
+        len(shares) > 1
+    ):
+        yield event(findings, f"P(regime={statistic.label})", statistic.label, statistic)

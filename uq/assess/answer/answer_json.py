@@ -20,7 +20,7 @@ from uq.assess.event_curve import EventCurve
 from uq.stats import estimate_json
 
 
-def answer_json(found: Answer) -> dict[str, Any]:
+def answer_json(answer: Answer) -> dict[str, Any]:
     """Return the answer in plain data, in the units of the outputs.
 
     Returns
@@ -51,69 +51,72 @@ def answer_json(found: Answer) -> dict[str, Any]:
         (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of them.
     """
     return {
-        "rows": found.rows,
-        "failed": found.failed,
-        "quantities": {one.name: _quantity(one) for one in found.quantities},
-        "regimes": {one.said: _event(one) for one in found.regimes},
-        "assumptions": list(found.assumptions),
-        "enough": _enough(found.enough),
-        **_mixing(found.mixing),
-        "levels": None if found.levels is None else _levels(found.levels),
-        "advice": {one.rule: _advice(one) for one in found.advice},
+        "rows": answer.rows,
+        "failed": answer.failed,
+        "quantities": {quantity.name: _quantity(quantity) for quantity in answer.quantities},
+        "regimes": {regime.predicate: _event(regime) for regime in answer.regimes},
+        "assumptions": list(answer.assumptions),
+        "enough": _enough(answer.enough),
+        **_mixing(answer.mixing),
+        "levels": None if answer.levels is None else _levels(answer.levels),
+        "advice": {advice.rule: _advice(advice) for advice in answer.advice},
     }
 
 
-def _enough(one: Enough) -> dict[str, Any]:
-    known: dict[str, Any] = {"sentence": one.sentence, "others": list(one.others)}
-    if one.again.is_share and one.again.what:
-        known["expected"] = _repeated(one.again)["expected"]
-    if one.errors is not None:
-        known |= {"own_error": one.errors.own, "sampling_error": one.errors.sampling}
-    return known
+def _enough(enough: Enough) -> dict[str, Any]:
+    entry: dict[str, Any] = {"sentence": enough.sentence, "others": list(enough.others)}
+    if enough.again.is_share and enough.again.subject:
+        entry["expected"] = _repeated(enough.again)["expected"]
+    if enough.errors is not None:
+        entry |= {"own_error": enough.errors.numerical, "sampling_error": enough.errors.sampling}
+    return entry
 
 
-def _mixing(one: Intermingled) -> dict[str, Any]:
-    if not one.sentence:
+def _mixing(mixing: Intermingled) -> dict[str, Any]:
+    if not mixing.sentence:
         return {}
     numbers = {
         f"{name}{end}": value
-        for name, known in (("uncertainty_exponent", one.exponent), ("left", one.left))
-        for end, value in zip(("", "_low", "_high"), known.numbers, strict=True)
+        for name, estimate in (("uncertainty_exponent", mixing.exponent), ("left", mixing.left))
+        for end, value in zip(("", "_low", "_high"), estimate.numbers, strict=True)
     }
-    return {"intermingled": {"sentence": one.sentence} | numbers}
+    return {"intermingled": {"sentence": mixing.sentence} | numbers}
 
 
-def _levels(one: VarianceComponents) -> dict[str, Any]:
+def _levels(components: VarianceComponents) -> dict[str, Any]:
     return {
-        "sentence": one.sentence,
-        "target": one.target,
+        "sentence": components.sentence,
+        "target": components.target,
         "shares": {
-            component.name: estimate_json.numbers(component.share) for component in one.levels
+            component.name: estimate_json.numbers(component.share)
+            for component in components.levels
         },
-        "another_regime": None if one.another is None else estimate_json.numbers(one.another),
+        "another_regime": None
+        if components.another is None
+        else estimate_json.numbers(components.another),
     }
 
 
-def _quantity(one: Quantity) -> dict[str, Any]:
-    found: dict[str, Any] = {"words": one.words}
-    found |= {} if one.promise is None else {"promise": _promise(one.promise)}
-    found |= {} if one.range is None else {"range": _range(one.range)}
-    found |= {} if one.own_error is None else {"own_error": _own_error(one.own_error)}
-    found["events"] = {event.name: _event(event) for event in one.events}
-    found |= {} if one.earliest is None else {"earliest": _earliest(one.earliest)}
-    if one.repeated.sentence:
-        found["another_seed"] = _repeated(one.repeated)
-    return found | _of_ranking(one.ranking)
+def _quantity(quantity: Quantity) -> dict[str, Any]:
+    entry: dict[str, Any] = {"words": quantity.words}
+    entry |= {} if quantity.promise is None else {"promise": _promise(quantity.promise)}
+    entry |= {} if quantity.range is None else {"range": _range(quantity.range)}
+    entry |= {} if quantity.own_error is None else {"own_error": _own_error(quantity.own_error)}
+    entry["events"] = {event.name: _event(event) for event in quantity.events}
+    entry |= {} if quantity.earliest is None else {"earliest": _earliest(quantity.earliest)}
+    if quantity.repeated.sentence:
+        entry["another_seed"] = _repeated(quantity.repeated)
+    return entry | _of_ranking(quantity.ranking)
 
 
-def _earliest(one: Earliest) -> dict[str, Any]:
+def _earliest(earliest: Earliest) -> dict[str, Any]:
     return {
-        "sentence": one.sentence,
-        "first": one.first,
-        "command": one.command,
-        "lives": {str(row): life for row, life in zip(one.rows, one.lives, strict=True)},
-        "size": one.size,
-        "of": one.of,
+        "sentence": earliest.sentence,
+        "first": earliest.first,
+        "command": earliest.command,
+        "lives": {str(row): life for row, life in zip(earliest.rows, earliest.lives, strict=True)},
+        "size": earliest.size,
+        "of": earliest.total,
         "inputs": {
             each.name: {
                 "direction": each.direction,
@@ -124,92 +127,98 @@ def _earliest(one: Earliest) -> dict[str, Any]:
                 "rank_low": estimate_json.number(each.rank.low),
                 "rank_high": estimate_json.number(each.rank.high),
             }
-            for each in one.inputs or ()
+            for each in earliest.inputs or ()
         },
         "regimes": {
             each.label: estimate_json.numbers(each.share)
             | {"overall": each.overall, "is_more_frequent": each.is_more_frequent}
-            for each in one.regimes
+            for each in earliest.regimes
         },
     }
 
 
-def _promise(one: ToleranceBound) -> dict[str, Any]:
-    low, high = one.quantiles
+def _promise(promise: ToleranceBound) -> dict[str, Any]:
+    low, high = promise.quantiles
     numbers = {
-        "coverage": one.coverage,
-        "confidence": one.confidence,
-        "lower": one.lower,
-        "upper": one.upper,
+        "coverage": promise.coverage,
+        "confidence": promise.confidence,
+        "lower": promise.lower,
+        "upper": promise.upper,
         "lower_quantile": low.value,
         "lower_quantile_low": low.low,
         "upper_quantile": high.value,
         "upper_quantile_high": high.high,
     }
     plain = {name: estimate_json.number(value) for name, value in numbers.items()}
-    joint = {"joint": list(one.joint)} if one.joint else {}
-    ends = (("lower", one.ranks[0]), ("upper", one.ranks[1]))
+    joint = {"joint": list(promise.joint)} if promise.joint else {}
+    ends = (("lower", promise.ranks[0]), ("upper", promise.ranks[1]))
     places = {f"{side}_is_row": rank for side, rank in ends if rank}
     piled = {
-        f"share_at_{'largest' if each.upper else 'smallest'}": each.share for each in one.piled
+        f"share_at_{'largest' if each.upper else 'smallest'}": each.share for each in promise.piled
     }
-    return {"sentence": one.sentence, "reason": one.reason} | plain | places | piled | joint
+    return {"sentence": promise.sentence, "reason": promise.reason} | plain | places | piled | joint
 
 
-def _own_error(one: OwnError) -> dict[str, Any]:
-    worse = dict(zip(("lower", "upper"), map(estimate_json.number, one.worse), strict=True))
-    known = {"share_of_variance": one.share, "accuracy": one.asked, "rows_missing_it": one.missed}
-    plain = {name: estimate_json.number(value) for name, value in known.items()}
-    return {"sentence": one.sentence} | worse | plain | {"rows_stating_none": one.unstated}
+def _own_error(error: OwnError) -> dict[str, Any]:
+    worse = dict(zip(("lower", "upper"), map(estimate_json.number, error.worse), strict=True))
+    numbers = {
+        "share_of_variance": error.share,
+        "accuracy": error.asked,
+        "rows_missing_it": error.missed,
+    }
+    plain = {name: estimate_json.number(value) for name, value in numbers.items()}
+    return {"sentence": error.sentence} | worse | plain | {"rows_stating_none": error.unstated}
 
 
-def _range(one: Range) -> dict[str, Any]:
-    found: dict[str, Any] = {"sentence": one.sentence}
+def _range(likely_range: Range) -> dict[str, Any]:
+    entry: dict[str, Any] = {"sentence": likely_range.sentence}
     for name in ("low", "median", "high"):
-        estimate = getattr(one, name)
-        found[name] = estimate_json.number(estimate.value)
-        found |= estimate_json.flag(f"{name}_", estimate, "value")
-    if not isnan(one.never.value):
-        ends = {f"never_{name}": end for name, end in estimate_json.ends(one.never).items()}
-        found |= {"never": one.never.value} | ends
-    return found
+        estimate = getattr(likely_range, name)
+        entry[name] = estimate_json.number(estimate.value)
+        entry |= estimate_json.flag(f"{name}_", estimate, "value")
+    if not isnan(likely_range.never.value):
+        ends = {
+            f"never_{name}": end for name, end in estimate_json.ends(likely_range.never).items()
+        }
+        entry |= {"never": likely_range.never.value} | ends
+    return entry
 
 
-def _repeated(one: PredictionInterval) -> dict[str, Any]:
-    ends = {"low": estimate_json.number(one.low), "high": estimate_json.number(one.high)}
-    return {"sentence": one.sentence} | ({"expected": ends} if one.what else {})
+def _repeated(interval: PredictionInterval) -> dict[str, Any]:
+    ends = {"low": estimate_json.number(interval.low), "high": estimate_json.number(interval.high)}
+    return {"sentence": interval.sentence} | ({"expected": ends} if interval.subject else {})
 
 
-def _event(one: Event) -> dict[str, Any]:
-    found: dict[str, Any] = {"said": one.said}
-    found["share"] = (
-        {"sentence": one.sentence}
-        | estimate_json.whole(one.share)
-        | estimate_json.failed(one.failed)
+def _event(event: Event) -> dict[str, Any]:
+    entry: dict[str, Any] = {"said": event.predicate}
+    entry["share"] = (
+        {"sentence": event.sentence}
+        | estimate_json.whole(event.share)
+        | estimate_json.failed(event.failed)
     )
-    found["share"] |= {"undefined": one.undefined}
-    found["decided_by"] = {"sentence": one.decided_by}
-    if one.curve is not None:
-        parts = [*_parts(one.curve)]
-        for name, place in (("least", one.curve.least), ("most", one.curve.most)):
-            low, high = one.curve.around(place)
-            found["decided_by"] |= {
+    entry["share"] |= {"undefined": event.undefined}
+    entry["decided_by"] = {"sentence": event.decided_by}
+    if event.curve is not None:
+        parts = [*_parts(event.curve)]
+        for name, place in (("least", event.curve.least), ("most", event.curve.most)):
+            low, high = event.curve.around(place)
+            entry["decided_by"] |= {
                 name: parts[place]["value"],
                 f"{name}_above": low,
                 f"{name}_below": high,
             }
-        found |= {"over": one.over, "parts": parts}
-    if one.limit is not None:
-        found["limit"] = _limit(one.limit)
-    return found | _of_ranking(one.ranking)
+        entry |= {"over": event.over, "parts": parts}
+    if event.limit is not None:
+        entry["limit"] = _limit(event.limit)
+    return entry | _of_ranking(event.ranking)
 
 
-def _limit(one: Limit) -> dict[str, Any]:
-    ends = {name: estimate_json.number(getattr(one, name)) for name in ("at", "end")}
+def _limit(limit: Limit) -> dict[str, Any]:
+    ends = {name: estimate_json.number(getattr(limit, name)) for name in ("at", "end")}
     return (
-        {"sentence": one.sentence, "is_lower": one.is_lower}
+        {"sentence": limit.sentence, "is_lower": limit.is_lower}
         | ends
-        | estimate_json.numbers(one.share)
+        | estimate_json.numbers(limit.share)
     )
 
 
@@ -220,60 +229,60 @@ def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
         yield {"above": low, "below": high} | estimate_json.numbers(share)
 
 
-def _of_ranking(one: Ranking | None) -> dict[str, Any]:
-    if one is None:
+def _of_ranking(ranking: Ranking | None) -> dict[str, Any]:
+    if ranking is None:
         return {}
-    found: dict[str, Any] = {
-        "sentence": one.sentence,
-        "target": one.target,
-        "method": one.method,
-        "index": one.kind,
-        "reason": one.reason,
-        "rows_factor": estimate_json.number(one.rows_factor),
-        "contributions": [_contribution(each) for each in one.contributions],
+    entry: dict[str, Any] = {
+        "sentence": ranking.sentence,
+        "target": ranking.target,
+        "method": ranking.method,
+        "index": ranking.kind,
+        "reason": ranking.reason,
+        "rows_factor": estimate_json.number(ranking.rows_factor),
+        "contributions": [_contribution(each) for each in ranking.contributions],
     }
-    if not isnan(one.unexplained.value):
-        found["unexplained"] = estimate_json.numbers(one.unexplained)
-        found["totals"] = dict(one.totals)
-    return {"ranking": found}
+    if not isnan(ranking.unexplained.value):
+        entry["unexplained"] = estimate_json.numbers(ranking.unexplained)
+        entry["totals"] = dict(ranking.totals)
+    return {"ranking": entry}
 
 
-def _contribution(one: Contribution) -> dict[str, Any]:
-    changes = zip(one.inputs, one.changes, strict=False)
+def _contribution(contribution: Contribution) -> dict[str, Any]:
+    changes = zip(contribution.inputs, contribution.changes, strict=False)
     return {
         "inputs": {
             name: estimate_json.numbers(index)
-            for name, index in zip(one.inputs, one.indices, strict=True)
+            for name, index in zip(contribution.inputs, contribution.indices, strict=True)
         },
         "effects": {name: _change(change, name) for name, change in changes},
     }
 
 
-def _change(one: AverageEffect, name: str) -> dict[str, Any]:
+def _change(effect: AverageEffect, name: str) -> dict[str, Any]:
     return {
-        "sentence": one.sentence(name),
-        "direction": one.direction,
-        "step": one.step,
-        "unit": one.unit.name if one.step and one.unit.per == 1.0 else "",
-    } | estimate_json.numbers(one.by)
+        "sentence": effect.sentence(name),
+        "direction": effect.direction,
+        "step": effect.step,
+        "unit": effect.unit.name if effect.step and effect.unit.per == 1.0 else "",
+    } | estimate_json.numbers(effect.by)
 
 
-def _advice(one: Advice) -> dict[str, Any]:
-    found: dict[str, Any] = {"text": one.text, "inputs": list(one.inputs)}
-    if one.rows is not None:
-        found["rows"] = one.rows
-    if one.tolerances:
-        found["tolerances"] = [_tightened(each) for each in one.tolerances]
-    return found
+def _advice(advice: Advice) -> dict[str, Any]:
+    entry: dict[str, Any] = {"text": advice.text, "inputs": list(advice.inputs)}
+    if advice.rows is not None:
+        entry["rows"] = advice.rows
+    if advice.tolerances:
+        entry["tolerances"] = [_tightened(each) for each in advice.tolerances]
+    return entry
 
 
-def _tightened(one: TighterTolerance) -> dict[str, Any]:
+def _tightened(tolerance: TighterTolerance) -> dict[str, Any]:
     return {
-        "inputs": list(one.inputs),
-        "law": one.law,
-        "what": one.what,
-        "before": estimate_json.numbers(one.before),
-        "after": estimate_json.numbers(one.after),
-        "promised": one.promised,
-        "key": one.key,
+        "inputs": list(tolerance.inputs),
+        "law": tolerance.law,
+        "what": tolerance.statistic,
+        "before": estimate_json.numbers(tolerance.before),
+        "after": estimate_json.numbers(tolerance.after),
+        "promised": tolerance.promised,
+        "key": tolerance.key,
     }

@@ -10,7 +10,7 @@ from uq.text.numbers import counted
 
 
 def assumptions(result: Result) -> tuple[str, ...]:
-    """Return which laws and fixed values are assumed, or have no source that says it, in words.
+    """Return sentences on assumed laws and fixed values, and on laws without a source.
 
     Parameters
     ----------
@@ -28,25 +28,27 @@ def assumptions(result: Result) -> tuple[str, ...]:
         if not how and "initial" not in result.dataset[name].attrs
     ]
     values = [name for name, how in fixed.items() if how == ASSUMED]
-    said = (
-        (f"{_some(assumed, laws, 'law')} assumed", assumed),
-        (f"{_some(values, fixed, 'fixed value')} assumed", values),
+    groups = (
+        (f"{_counted_with_verb(assumed, laws, 'law')} assumed", assumed),
+        (f"{_counted_with_verb(values, fixed, 'fixed value')} assumed", values),
         ("No source says how well these laws are known", unstated),
     )
     return tuple(
-        f"{what}: {joined([called(name) for name in names])}." for what, names in said if names
+        f"{clause}: {joined([called(name) for name in names])}."
+        for clause, names in groups
+        if names
     )
 
 
-def _some(names: Sized, of: Sized, noun: str) -> str:
+def _counted_with_verb(names: Sized, total: Sized, noun: str) -> str:
     verb = "is" if len(names) == 1 else "are"
-    return f"{len(names)} of {counted(len(of), noun)} {verb}"
+    return f"{len(names)} of {counted(len(total), noun)} {verb}"
 
 
 def _marks(result: Result, role: str) -> dict[str, str]:
-    """Return how well each parameter of a role is known."""
+    """Return the quality of the source of each parameter with a role."""
     return {
         str(name): mark_of(result, str(name))
-        for name, one in result.dataset.variables.items()
-        if one.attrs.get("role") == role
+        for name, variable in result.dataset.variables.items()
+        if variable.attrs.get("role") == role
     }

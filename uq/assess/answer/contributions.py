@@ -14,22 +14,22 @@ SMALL = 0.05
 
 @dataclass(frozen=True)
 class AverageEffect:
-    """How a target changes with one input, on average.
+    """Average change of a target with one input.
 
     Attributes
     ----------
     direction : int
-        1 if it rises with the input, -1 if it falls, 0 where that is not clear.
+        1 if it rises with the input, -1 if it falls, 0 if unclear.
     step : str
-        The change of the input: ``10 %``; "" where only the direction is known.
+        The change of the input: ``10 %``; "" if only the direction is known.
     amount : str
-        How much that is in the unit of the input, where the step does not say it.
+        The step in the unit of the input, if it is not relative.
     by : Estimate
         The change of the target.
     unit : DisplayUnit
         Of `by`: ``%`` for relative changes, ``percentage points`` for probabilities.
     verbs : tuple of str
-        What a fall and a rise of the target is called.
+        Verbs for a fall and a rise of the target.
     """
 
     direction: int = 0
@@ -43,12 +43,12 @@ class AverageEffect:
         """Return direction and size in words, of an input with this name."""
         if self.direction == 0:
             return f"{name} has no clear direction" if name else "no clear direction"
-        verb, of = self.verbs[self.direction > 0], f" {name}" if name else ""
+        verb, of_input = self.verbs[self.direction > 0], f" {name}" if name else ""
         if not self.step or not self.by.has_interval:
-            return f"more{of} {verb}"
+            return f"more{of_input} {verb}"
         low, high = sorted(map(abs, (self.by.low, self.by.high)))
         step = f"{self.step} ({self.amount})" if self.amount else self.step
-        text = f"{step} more{of} {verb} by {self.unit.text(abs(self.by.value))}"
+        text = f"{step} more{of_input} {verb} by {self.unit.text(abs(self.by.value))}"
         if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
             return text
         return f"{text} ({self.unit.bare_between(low, high)})"
@@ -71,7 +71,7 @@ class Contribution:
     unit : DisplayUnit
         Of an index in the unit of the output.
     doubtful : tuple of str
-        Those of the inputs that may as well have no effect.
+        Inputs whose effect is not significant.
     """
 
     inputs: tuple[str, ...]
@@ -90,30 +90,30 @@ class Contribution:
 
     @property
     def sure(self) -> tuple[str, ...]:
-        """The inputs that have more effect than one without."""
-        return tuple(one for one in self.inputs if one not in self.doubtful)
+        """The inputs with a significant effect."""
+        return tuple(name for name in self.inputs if name not in self.doubtful)
 
     @property
     def value(self) -> float:
         """The largest index."""
-        return max(one.value for one in self.indices)
+        return max(index.value for index in self.indices)
 
     @property
     def size(self) -> str:
         """The indices with their intervals; shares in per cent, not beyond 0 and 100."""
-        texts = [self._size(one) for one in self.indices]
+        texts = [self._size(index) for index in self.indices]
         return " and ".join(texts) if len(texts) < 3 else f"at most {texts[0]} each"
 
-    def _size(self, one: Estimate) -> str:
+    def _size(self, index: Estimate) -> str:
         if self.share_of_variance:
-            value, low, high = (min(max(end, 0.0), 1.0) for end in one.numbers)
+            value, low, high = (min(max(end, 0.0), 1.0) for end in index.numbers)
             text = f"{100 * value:.0f} %"
             ends = f"{100 * low:.0f} to {100 * high:.0f} %"
         elif self.unit.name:
-            text, ends = self.unit.text(one.value), self.unit.bare_between(one.low, one.high)
+            text, ends = self.unit.text(index.value), self.unit.bare_between(index.low, index.high)
         else:
-            text, ends = f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}"
-        return text + (f" ({ends})" if one.has_interval else "")
+            text, ends = f"{index.value:.2f}", f"{index.low:.2f} to {index.high:.2f}"
+        return text + (f" ({ends})" if index.has_interval else "")
 
     @property
     def effect(self) -> str:
@@ -124,53 +124,54 @@ class Contribution:
             return self.changes[0].sentence()
         names = (called_together([name]) for name in self.inputs)
         each = zip(self.changes, names, strict=True)
-        return "; ".join(one.sentence(name) for one, name in each)
+        return "; ".join(effect.sentence(name) for effect, name in each)
 
 
 @dataclass(frozen=True)
 class Ranking:
-    """Which inputs contribute to a target.
+    """Ranking of the inputs by their contribution to a target.
 
     Attributes
     ----------
     target, method : str
     kind : str
         Key of the index that ranks.
-    what : str
-        What the index is, such as a share of the variance.
+    index_meaning : str
+        Meaning of the index, such as a share of the variance.
     contributions : tuple of Contribution
         The largest first; only those that exceed inputs without effect.
     reason : str
-        Why there is no ranking: no index, or nothing settled; "" where there is one.
+        Reason for a missing ranking: no index, or nothing settled; "" otherwise.
     rows_factor : float
-        How many times the rows would settle it; NaN where that does not apply.
+        Factor on the sample size that would settle it; NaN if not applicable.
     is_flat : bool
         Whether it is settled that no input contributes measurably.
     rivals : tuple of str
-        Inputs of which one would contribute most with another seed, with 95 %; none if not known.
-    of : str
-        Whose share an index is: ``its variance``; "" of another index, and of an event.
+        Inputs one of which would lead with another seed, with 95 %; none if unknown.
+    share_of : str
+        The variance that an index is a share of: ``its variance``; "" of other indices and of
+        events.
     unexplained : Estimate
-        Share of the variance that no single input explains, where inputs are ranked by what each
-        explains alone.
+        Share of the variance that no single input explains, where inputs are ranked by first-order
+        indices.
     runner_up : float
-        The largest index of the inputs that stand behind the first.
+        The largest index of the inputs ranked after the leader.
     totals : dict of str to float
         Input -> total index, the largest first, where an expansion of these rows gives it.
     remedy : str
-        What shows interactions where `totals` are not known.
+        Way to show interactions if `totals` are unknown.
     """
 
     target: str
     method: str
     kind: str = ""
-    what: str = ""
+    index_meaning: str = ""
     contributions: tuple[Contribution, ...] = ()
     reason: str = ""
     rows_factor: float = float("nan")
     is_flat: bool = False
     rivals: tuple[str, ...] = ()
-    of: str = ""
+    share_of: str = ""
     unexplained: Estimate = NOTHING
     runner_up: float = 0.0
     totals: Mapping[str, float] = field(default_factory=dict)
@@ -178,14 +179,14 @@ class Ranking:
 
     @property
     def leader(self) -> Contribution | None:
-        """What contributes most, where that is settled."""
+        """The largest contribution, if settled."""
         return self.contributions[0] if self.contributions and not self.reason else None
 
     @property
     def leads(self) -> bool:
-        """Whether what contributes most contributes much."""
-        one = self.leader
-        if one is None or (one.share_of_variance and one.value < SMALL):
+        """Whether the largest contribution is large."""
+        leader = self.leader
+        if leader is None or (leader.share_of_variance and leader.value < SMALL):
             return False
         return self.of_event or not self.may_be_overturned
 
@@ -214,7 +215,7 @@ class Ranking:
 
     @property
     def sentence(self) -> str:
-        """What contributes most, or why that is not known."""
+        """The leading contribution, or the reason why it is unknown."""
         if self.reason:
             return sentence(self.reason)
         leader = self.leader
@@ -232,23 +233,23 @@ class Ranking:
 
     @property
     def beyond_single(self) -> str:
-        """How much no single input explains, where that could change the order; else ""."""
+        """Share that no single input explains, if it could change the order; else ""."""
         if not self.may_be_overturned or self.of_event:
             return ""
         share = Contribution(("",), (self.unexplained,), True).size
         text = f"No single input explains {share}"
         if not self.totals:
             return f"{text}: interactions could change the order; {self.remedy}."
-        first = [(name, one) for name, one in self.totals.items()][:2]
-        named = joined([f"{called(name)} {100 * min(one, 1.0):.0f} %" for name, one in first])
+        first = [(name, total) for name, total in self.totals.items()][:2]
+        named = joined([f"{called(name)} {100 * min(total, 1.0):.0f} %" for name, total in first])
         return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
 
     @property
     def _of(self) -> str:
-        return f" of {self.of}" if self.of else ""
+        return f" of {self.share_of}" if self.share_of else ""
 
     @property
     def with_effect(self) -> str:
-        """What contributes most, with direction and size."""
+        """The leading contribution, with direction and size."""
         effect = self.leader.effect if self.leader is not None and self.leads else ""
         return " ".join(filter(None, (self.sentence, effect and sentence(effect))))

@@ -34,7 +34,7 @@ _MOST_INPUTS = 3
 
 @dataclass(frozen=True)
 class Earliest:
-    """The rows that end first, and what distinguishes them from the others.
+    """The rows that end first, and their distinguishing inputs and regimes.
 
     Attributes
     ----------
@@ -42,19 +42,19 @@ class Earliest:
     rows : tuple of int
         The numbers of the first, of all rows of the result.
     lives : tuple of float
-        Theirs.
-    size, of : int
-        How many rows count as the earliest, and of how many.
+        Their lives.
+    size, total : int
+        Numbers of the earliest rows, and of all that have a life.
     inputs : tuple of Apart, or None
-        Those whose values differ, the most different first; None where that cannot be known.
+        Inputs whose values differ, the most different first; None if undetermined.
     units : tuple of DisplayUnit
-        Theirs.
+        Their units.
     regimes : tuple of RegimeOfFirst
-        Those that the earliest are in more often than all, else that of most of them.
+        Regimes more frequent among the earliest than among all, else their most frequent.
     unit : DisplayUnit
         Of the lives.
     command : str
-        What shows the first of them.
+        Command that shows the first of them.
     """
 
     element: str
@@ -63,7 +63,7 @@ class Earliest:
     unit: DisplayUnit
     command: str
     size: int = 0
-    of: int = 0
+    total: int = 0
     inputs: tuple[Apart, ...] | None = None
     units: tuple[DisplayUnit, ...] = ()
     regimes: tuple[RegimeOfFirst, ...] = ()
@@ -80,10 +80,10 @@ class Earliest:
 
     @property
     def why(self) -> str:
-        """What distinguishes the earliest rows; "" where that cannot be known."""
+        """The distinguishing inputs of the earliest rows; "" if undetermined."""
         if self.inputs is None:
             return ""
-        share = f"{100 * self.size / self.of:.2g} %"
+        share = f"{100 * self.size / self.total:.2g} %"
         who = f"the earliest {share} ({grouped(self.size)} rows)"
         if not self.inputs:
             return f"No input distinguishes {who} measurably from the others."
@@ -93,32 +93,32 @@ class Earliest:
 
     @property
     def where(self) -> str:
-        """The regime of most of the earliest, and whether it is less frequent among all."""
+        """The most frequent regime of the earliest rows, compared with all rows."""
         if not self.regimes:
             return ""
-        one = self.regimes[0]
-        by_chance = one.share.low <= one.overall <= one.share.high
+        regime = self.regimes[0]
+        by_chance = regime.share.low <= regime.overall <= regime.share.high
         also = ": chance may explain the difference" * by_chance
         return (
-            f"{share_text(one.share)} of them are {one.label}, of all rows"
-            f" {percent(one.overall)}{also}."
+            f"{share_text(regime.share)} of them are {regime.label}, of all rows"
+            f" {percent(regime.overall)}{also}."
         )
 
     @property
     def sentence(self) -> str:
-        """What distinguishes the earliest rows, and their regime."""
+        """The distinguishing inputs of the earliest rows, and their regime."""
         return " ".join(filter(None, (self.why, self.where)))
 
     @property
     def lines(self) -> list[str]:
-        """All of it."""
+        """All sentences."""
         return [*filter(None, (self.sentence, f"{self.first} To see the first: {self.command}"))]
 
 
 def earliest(
     findings: Findings, element: Element, unit: DisplayUnit, part: Replicates
 ) -> Earliest | None:
-    """Return which rows end first, and what distinguishes them; None where none does.
+    """Return the rows that end first and their distinguishing inputs; None if no row ends.
 
     Parameters
     ----------
@@ -134,32 +134,32 @@ def earliest(
         chosen = lowest_rows(findings.result, element.name, _MOST_ROWS)
     except InputError:
         return None
-    rows, lives = tuple(one for one, _ in chosen), tuple(life for _, life in chosen)
+    rows, lives = tuple(row for row, _ in chosen), tuple(life for _, life in chosen)
     if not rows or (len(rows) > 1 and not np.ptp(element.values[element.present])):
         return None
     result, lowest = findings.result, shlex.quote(element.name)
     command = f"uq row {result.file} --lowest {lowest}{result.model_option}"
-    found = Earliest(element.name, rows, lives, unit, command)
+    lowest_lives = Earliest(element.name, rows, lives, unit, command)
     places = earliest_rows(element)
     if len(places) < FEWEST:
-        return found
+        return lowest_lives
     inputs = inputs_apart(findings.rows, places, findings.input_ranks, part)
     return replace(
-        found,
+        lowest_lives,
         size=len(places),
-        of=int(element.present.sum()),
+        total=int(element.present.sum()),
         inputs=None if inputs is None else tuple(inputs),
-        units=tuple(unit_of_input(findings.result, one.name) for one in inputs or ()),
+        units=tuple(unit_of_input(findings.result, difference.name) for difference in inputs or ()),
         regimes=tuple(regimes_of_first(findings.rows, places, part)),
     )
 
 
-def _in_words(one: Apart, unit: DisplayUnit, is_first: bool) -> str:
-    name = called(one.name)
-    if one.direction == 0:
-        place = "away from" if one.outwards > 0 else "near"
+def _in_words(difference: Apart, unit: DisplayUnit, is_first: bool) -> str:
+    name = called(difference.name)
+    if difference.direction == 0:
+        place = "away from" if difference.outwards > 0 else "near"
         return f"values of {name} {place} the middle of its range"
-    side = "higher" if one.direction > 0 else "lower"
+    side = "higher" if difference.direction > 0 else "lower"
     of_others = " of the others" if is_first else ""
-    against = f"{unit.number(one.median)} against {unit.text(one.others)}"
+    against = f"{unit.number(difference.median)} against {unit.text(difference.others)}"
     return f"a {side} {name} (median {against}{of_others})"

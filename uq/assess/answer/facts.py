@@ -24,26 +24,26 @@ class Answer:
     title : str
     rows, failed : int
     quantities : tuple of Quantity
-        The one that the study is about first.
+        The subject of the study first.
     regimes : tuple of Event
         Shares of the regimes, the most frequent first.
     advice : tuple of Advice
     notes : tuple of str
-        What could not be said, and why.
+        Missing results and their reasons.
     regimes_first : bool
         Whether the study is about the regimes: it names them before all other outputs.
     levels : VarianceComponents or None
-        Which level decides what the study is about, where a sample has several rows.
+        Variance components of the subject of the study, where samples have several rows.
     starts_alike : str
-        That the start is the same in all rows, where it might decide the regime, or "".
+        Sentence on a start that is equal in all rows but might decide the regime, or "".
     enough : Enough
-        Whether the rows are.
+        Sufficiency of the sample size.
     assumptions : tuple of str
-        Which laws and fixed values are assumed.
+        Sentences on assumed laws and fixed values.
     ties : str
-        Which inputs have the value of one that contributes most to what the study is about, or "".
+        Sentence on inputs tied to a leading input, or "".
     mixing : Intermingled
-        How intermingled the regimes are, of a study about them.
+        Intermingling of the regimes, of a study about them.
     """
 
     title: str
@@ -63,7 +63,7 @@ class Answer:
 
     @property
     def rows_sentence(self) -> str:
-        """How many rows were computed."""
+        """Sentence on the number of computed rows."""
         if self.failed:
             return f"{grouped(self.failed)} of {grouped(self.rows)} rows failed."
         return (
@@ -73,7 +73,7 @@ class Answer:
     @property
     def main_regimes(self) -> tuple[Event, ...]:
         """The regimes that are not rare."""
-        return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
+        return tuple(regime for regime in self.regimes if regime.share.value >= RARE)[:MOST_REGIMES]
 
     @property
     def asked_events(self) -> tuple[Event, ...]:
@@ -84,48 +84,54 @@ class Answer:
 
     @property
     def events(self) -> list[Event]:
-        """All events, those of the regimes last."""
-        return [one for own in self.quantities for one in own.events] + [*self.regimes]
+        """All events, regimes last."""
+        return [event for quantity in self.quantities for event in quantity.events] + [
+            *self.regimes
+        ]
 
     @property
     def regimes_sentence(self) -> str:
-        """The shares of the main regimes; "" where there is one at most."""
-        shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
+        """The shares of the main regimes; "" if there is at most one."""
+        shares = [f"{share_text(regime.share)} {regime.predicate}" for regime in self.main_regimes]
         return f"{', '.join(shares)}." if shares else ""
 
     @property
     def regime_causes(self) -> list[Event]:
-        """The main regimes of which is known what decides them; the first, the rest, only alone."""
-        known = [
-            one
-            for one in self.main_regimes
-            if one.ranking is not None and one.ranking.leader is not None
+        """The main regimes with a leading input; the most frequent only if no other has one."""
+        ranked = [
+            regime
+            for regime in self.main_regimes
+            if regime.ranking is not None and regime.ranking.leader is not None
         ]
-        others = [one for one in known if one is not self.main_regimes[0]]
-        return others or known
+        others = [regime for regime in ranked if regime is not self.main_regimes[0]]
+        return others or ranked
 
     @property
     def lines(self) -> list[str]:
         """The answer in a few sentences."""
         lead = self.lead
-        found = [] if not self.failed and lead else [self.rows_sentence]
-        regimes = [one.with_cause for one in self.main_regimes]
+        sentences = [] if not self.failed and lead else [self.rows_sentence]
+        regimes = [regime.with_cause for regime in self.main_regimes]
         of_lead = []
         if lead is not None:
-            of_lead = [*lead.head, *(one.with_cause for one in lead.others)]
-        own = [*self.level_lines, self.enough.sentence]
+            of_lead = [*lead.head, *(event.with_cause for event in lead.others)]
+        general = [*self.level_lines, self.enough.sentence]
         if self.regimes_first:
-            found += [*regimes, self.mixing.sentence, *own, *of_lead]
+            sentences += [*regimes, self.mixing.sentence, *general, *of_lead]
         else:
-            found += [*of_lead, *own, *regimes]
-        found += [self.starts_alike, *([] if lead is None else [lead.ranking_sentence]), self.ties]
+            sentences += [*of_lead, *general, *regimes]
+        sentences += [
+            self.starts_alike,
+            *([] if lead is None else [lead.ranking_sentence]),
+            self.ties,
+        ]
         if lead is not None and lead.earliest is not None:
-            found += lead.earliest.lines
-        return [*filter(None, found), *(one.text for one in self.advice)]
+            sentences += lead.earliest.lines
+        return [*filter(None, sentences), *(advice.text for advice in self.advice)]
 
     @property
     def level_lines(self) -> list[str]:
-        """Which level decides, as far as that is known."""
+        """Sentences on the variance components; none if unknown."""
         if self.levels is None:
             return []
         return [*filter(None, (self.levels.sentence, self.levels.switching))]

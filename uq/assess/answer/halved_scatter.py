@@ -14,7 +14,7 @@ _WIDTHS = ("sd", "cv", "sigma")
 
 
 def halved(law: Law) -> dict[str, float]:
-    """Return the arguments that give a law half its scatter about its middle; none if unknown.
+    """Return the arguments that halve the scatter of a law about its middle; none if unknown.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def halved(law: Law) -> dict[str, float]:
 
 
 def halvings(result: Result, inputs: Sequence[str]) -> dict[str, dict[str, float]]:
-    """Return the arguments that give each input half its scatter; none if one has no middle.
+    """Return the arguments that halve the scatter of each input; none if an input has no middle.
 
     Parameters
     ----------
@@ -44,15 +44,15 @@ def halvings(result: Result, inputs: Sequence[str]) -> dict[str, dict[str, float
     inputs : sequence of str
     """
     laws = result.study.uncertain
-    found = {}
+    arguments = {}
     for name in inputs:
         law = laws[name]
-        found[name] = {} if isinstance(law, Tied) else halved(law)
-    return found if all(found.values()) else {}
+        arguments[name] = {} if isinstance(law, Tied) else halved(law)
+    return arguments if all(arguments.values()) else {}
 
 
 def halvings_in_words(result: Result, changes: dict[str, dict[str, float]]) -> str:
-    """Return what half the scatter is: ``sd 0.5 mm instead of 1``; once for laws alike."""
+    """Return the halved scatter in words: ``sd 0.5 mm instead of 1``; once for equal laws."""
     texts = {name: _in_words(result, name, arguments) for name, arguments in changes.items()}
     if len(set(texts.values())) == 1:
         return next(iter(texts.values()))

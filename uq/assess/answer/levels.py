@@ -17,7 +17,7 @@ _MOST_NAMED = 4
 
 @dataclass(frozen=True)
 class VarianceComponent:
-    """The share of the variance that a level has.
+    """Share of the variance due to one level.
 
     Attributes
     ----------
@@ -25,9 +25,9 @@ class VarianceComponent:
     words : str
         ``the start``, ``the machine``.
     inputs : tuple of str
-        On this level, those that contribute most first.
+        Inputs of this level, the largest contributions first.
     ranked : int
-        How many of them contribute.
+        Number of contributing inputs.
     share : Estimate
     """
 
@@ -39,7 +39,7 @@ class VarianceComponent:
 
     @property
     def inputs_named(self) -> str:
-        """Its inputs by their names: those that contribute, or the first ones."""
+        """Its contributing inputs by their names, or the first inputs."""
         named = [
             called(name) for name in self.inputs[: min(self.ranked or _MOST_NAMED, _MOST_NAMED)]
         ]
@@ -49,105 +49,117 @@ class VarianceComponent:
 
 @dataclass(frozen=True)
 class VarianceComponents:
-    """Which level decides.
+    """Variance components of a target.
 
     Attributes
     ----------
     target : str
-        What they are shares of, as `uq.levels` names it.
-    of : str
-        What is decided: ``its scatter``, ``whether it is periodic``.
+        Name of the target, as in `uq.levels`.
+    subject : str
+        The quantity or question decided: ``its scatter``, ``whether it is periodic``.
     variance : str
-        Whose shares they are: ``the variance of its logarithm``.
-    levels : tuple of Level
-        Those on which something varies, the largest share first.
+        The apportioned variance: ``the variance of its logarithm``.
+    levels : tuple of VarianceComponent
+        Levels on which something varies, the largest share first.
     another : Estimate or None
         Probability that a repeat ends in another regime, of a target that is one.
     """
 
     target: str
-    of: str
+    subject: str
     variance: str
     levels: tuple[VarianceComponent, ...]
     another: Estimate | None = None
 
     @property
     def leader(self) -> VarianceComponent | None:
-        """The level that has most of the variance, if that is settled."""
+        """The level with most of the variance, if settled."""
         first = self.levels[0]
         return first if first.share.has_interval and first.share.low > 0.5 else None
 
     @property
     def sentence(self) -> str:
-        """Which level decides, with its share."""
+        """The main level with its share."""
         first, rest = self.levels[0], self.levels[1:]
         if self.leader is None:
-            shares = [f"{one.words} {share_text(one.share)}" for one in self.levels]
-            return f"No level alone decides {self.of}: of {self.variance}, {', '.join(shares)}."
+            shares = [
+                f"{component.words} {share_text(component.share)}" for component in self.levels
+            ]
+            return (
+                f"No level alone decides {self.subject}: of {self.variance}, {', '.join(shares)}."
+            )
         named = f" ({first.inputs_named})" if first.inputs else ""
         share = f"{share_text(first.share)} of {self.variance}"
-        least = [f"{one.words} {share_text(one.share)}" for one in rest]
-        text = f"{first.words}{named} decides {self.of}: {share}"
+        least = [f"{component.words} {share_text(component.share)}" for component in rest]
+        text = f"{first.words}{named} decides {self.subject}: {share}"
         return sentence(", ".join([text, *least]))
 
     @property
     def switching(self) -> str:
-        """How often a repeat ends in another regime; "" where that is not known."""
+        """Share of repeats that end in another regime; "" if unknown."""
         if self.another is None or isnan(self.another.value):
             return ""
         return f"{share_text(self.another)} of repeats end in another regime."
 
 
 def levels_of(
-    findings: Findings, target: str, of: str, ranking: Ranking | None = None
+    findings: Findings, target: str, subject: str, ranking: Ranking | None = None
 ) -> VarianceComponents | None:
-    """Return which level decides a target; None where that is not known.
+    """Return the variance components of a target; None if unknown.
 
     Parameters
     ----------
     findings : Findings
     target : str
         Of an element, such as ``life``, or of an event.
-    of : str
-        What is decided, in words.
+    subject : str
+        The quantity or question decided, in words.
     ranking : Ranking, optional
         Of the inputs: a level names first those that contribute most.
     """
     if not findings.result.is_nested or findings.result.has_weights:
         return None
-    known = findings.levels
-    name = next((one for one in known.outputs if target in (one, split_name(one)[1])), None)
+    decomposition = findings.levels
+    name = next(
+        (label for label in decomposition.outputs if target in (label, split_name(label)[1])), None
+    )
     if name is None:
         return None
-    words = _words(findings, known.inputs, known.units)
-    shares = known.outputs[name].shares
-    ranked = () if ranking is None else [n for one in ranking.contributions for n in one.sure]
+    words = _words(findings, decomposition.inputs, decomposition.units)
+    shares = decomposition.outputs[name].shares
+    ranked = (
+        ()
+        if ranking is None
+        else [n for contribution in ranking.contributions for n in contribution.sure]
+    )
     place = {name: i for i, name in enumerate(ranked)}
 
     def on(level: str) -> tuple[str, ...]:
-        return tuple(sorted(known.inputs_on(level), key=lambda name: place.get(name, len(place))))
+        return tuple(
+            sorted(decomposition.inputs_on(level), key=lambda name: place.get(name, len(place)))
+        )
 
-    found = [
+    components = [
         VarianceComponent(
             level, words[level], on(level), shares[level], len(place.keys() & set(on(level)))
         )
         for level in LEVELS
-        if known.inputs_on(level) or shares[level].value > 0
+        if decomposition.inputs_on(level) or shares[level].value > 0
     ]
-    if len(found) < 2 or any(isnan(one.share.value) for one in found):
+    if len(components) < 2 or any(isnan(component.share.value) for component in components):
         return None
     form = FORMS.get(split_name(name)[0])
     return VarianceComponents(
         name,
-        of,
+        subject,
         f"the variance of its {form}" if form else "the variance",
-        tuple(sorted(found, key=lambda one: -one.share.value)),
-        known.another_regime if target.startswith("P(regime=") else None,
+        tuple(sorted(components, key=lambda component: -component.share.value)),
+        decomposition.another_regime if target.startswith("P(regime=") else None,
     )
 
 
 def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[str, str]:
-    """Return what the levels are called: by what is on them."""
+    """Return the names of the levels, by their inputs."""
     drawn_anew = [name for name, level in inputs.items() if level == CHANCE]
     starts = any("initial" in findings.result.dataset[name].attrs for name in drawn_anew)
     return {
@@ -158,11 +170,11 @@ def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[st
 
 
 def starts_alike(result: Result) -> str:
-    """Return that the start is the same in all rows, where a model has one to vary, or ""."""
+    """Return a sentence on a start that could vary but is equal in all rows, or ""."""
     starts = [
         name
-        for name, one in result.dataset.variables.items()
-        if one.attrs.get("role") in ("input", "fixed") and "initial" in one.attrs
+        for name, variable in result.dataset.variables.items()
+        if variable.attrs.get("role") in ("input", "fixed") and "initial" in variable.attrs
     ]
     if not starts or any(result.dataset[name].attrs.get("role") == "input" for name in starts):
         return ""

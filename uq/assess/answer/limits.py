@@ -20,10 +20,10 @@ class Limit:
     ----------
     over : str
         The input.
-    said : str
-        What is rare in it: ``end within 60 s``; or what is then frequent.
+    predicate : str
+        The event that is rare in it: ``end within 60 s``; or that is then frequent.
     is_wanted : bool
-        Whether that is wanted, so that it is the frequent side.
+        Whether the event is wanted, so that it is the frequent side.
     at : float
         The limit, its inner end; NaN where there is none.
     end : float
@@ -33,7 +33,7 @@ class Limit:
     of_values : bool
         Whether the input has few values, so that nothing is averaged.
     share : Estimate
-        How probable it is in the part of the input next to the limit, or in the last part.
+        Its probability in the part of the input next to the limit, or in the last part.
     unit : DisplayUnit
         Of the input.
     why : str
@@ -41,7 +41,7 @@ class Limit:
     """
 
     over: str
-    said: str
+    predicate: str
     is_wanted: bool = False
     at: float = nan
     end: float = nan
@@ -57,7 +57,7 @@ class Limit:
         if self.why:
             return sentence(self.why)
         where = f"where {called(self.over)} is {self.place}"
-        return sentence(f"with 95 % confidence, {self.few} {self.said}{self.averaged} {where}")
+        return sentence(f"with 95 % confidence, {self.few} {self.predicate}{self.averaged} {where}")
 
     @property
     def place(self) -> str:
@@ -70,12 +70,12 @@ class Limit:
 
     @property
     def averaged(self) -> str:
-        """That the range is averaged over, as its rows are distributed; "" for single values."""
+        """Note that the probability is averaged over the range; "" for single values."""
         return "" if self.of_values else " on average"
 
     @property
     def few(self) -> str:
-        """How many there are in the range."""
+        """Bound on the probability in the range."""
         return _few(self.is_wanted)
 
 
@@ -84,7 +84,7 @@ def _few(is_wanted: bool) -> str:
 
 
 def limit_of(
-    curve: EventCurve, over: str, unit: DisplayUnit, said: str, is_unwanted: bool
+    curve: EventCurve, over: str, unit: DisplayUnit, predicate: str, is_unwanted: bool
 ) -> Limit | None:
     """Return the range of an input over which an event is rare on average, as far as is settled.
 
@@ -96,15 +96,15 @@ def limit_of(
         The input.
     unit : DisplayUnit
         Of the input.
-    said : str
-        What happens, in words.
+    predicate : str
+        The event, in words.
     is_unwanted : bool
-        Whether that is unwanted; otherwise that it does not happen.
+        Whether the event is unwanted; otherwise its opposite is.
 
     Returns
     -------
     Limit or None
-        None where it is rare in all parts. The range is that of the last parts, from the wanted end
+        None where it is rare in all parts. The range spans the last parts, from the wanted end
         of the input on, whose mean probabilities are all smaller with confidence, so that the mean
         over the range is. Tested in this order until one fails, at least one of them is larger in
         no more repetitions than a single one would be [1]_. Rows show means alone: within a part, a
@@ -116,7 +116,7 @@ def limit_of(
        preclinical assays: a-priori ordered hypotheses", in J. Vollmar (ed.), Biometrie in der
        chemisch-pharmazeutischen Industrie 6, Fischer, 3-18 (1995).
     """
-    shares = [one if is_unwanted else _opposite(one) for one in curve.shares]
+    shares = [share if is_unwanted else _opposite(share) for share in curve.shares]
     is_lower = shares[0].value > shares[-1].value
     edges = [float(edge) for edge in curve.edges]
     if not is_lower:  # from the unwanted to the wanted end
@@ -124,17 +124,17 @@ def limit_of(
     best, names = shares[-1], called(over)
     plain = Limit(
         over,
-        said,
+        predicate,
         not is_unwanted,
         is_lower=is_lower,
         of_values=curve.of_values,
         share=best,
         unit=unit,
     )
-    if all(one.high < RARE for one in shares):
+    if all(share.high < RARE for share in shares):
         return None
-    if any(one.high < later.low for i, one in enumerate(shares) for later in shares[i + 1 :]):
-        why = f"no limit of {names}: how many {said} does not change steadily with it"
+    if any(share.high < later.low for i, share in enumerate(shares) for later in shares[i + 1 :]):
+        why = f"no limit of {names}: how many {predicate} does not change steadily with it"
         return replace(plain, why=why)
     rare = len(shares)
     while shares[rare - 1].high < RARE:
@@ -143,10 +143,10 @@ def limit_of(
         return replace(plain, at=edges[rare], end=edges[-1], share=shares[rare])
     last = replace(plain, at=edges[-2], end=edges[-1])
     if not best.has_interval:
-        why = f"whether {plain.few} {said} where {names} is {last.place} is not settled"
+        why = f"whether {plain.few} {predicate} where {names} is {last.place} is not settled"
         return replace(plain, why=why)
     shown = best if is_unwanted else _opposite(best)
-    many = f"{percent_range(shown.low, shown.high)} {said}"
+    many = f"{percent_range(shown.low, shown.high)} {predicate}"
     low, high = sorted(edges[-2:])
     ends = unit.between(low, high)
     why = f"averaged over the best of {len(shares)} parts of {names} ({ends}), {many}"
@@ -157,5 +157,5 @@ def limit_of(
     return replace(plain, why=why)
 
 
-def _opposite(one: Estimate) -> Estimate:
-    return Estimate(1 - one.value, 1 - one.high, 1 - one.low)
+def _opposite(share: Estimate) -> Estimate:
+    return Estimate(1 - share.value, 1 - share.high, 1 - share.low)

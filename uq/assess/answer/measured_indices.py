@@ -1,4 +1,4 @@
-"""The index of each input, and what tells it from the others."""
+"""Index of each input, and its separation from the others."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -34,7 +34,7 @@ class Measured:
     index : Estimate
         With an interval where one is known.
     half : float
-        Half the width of its interval, or what tells it from another.
+        Half-width of its interval, or another measure of its error.
     counts : bool
         Whether it is larger than those of inputs without effect.
     shared : dict of str to float
@@ -53,7 +53,7 @@ class Measured:
 
 
 def method_for(result: Result, event: bool) -> str | None:
-    """Return the method that ranks: the first that the study asks for, or that its design feeds.
+    """Return the ranking method: the first that the study asks for, or that its design supports.
 
     Of an event first those whose index has a scale of its own: others, as PAWN, cannot exceed the
     probability of a rare one. None for rows with weights. Of shares of the variance alone, the ones
@@ -62,11 +62,11 @@ def method_for(result: Result, event: bool) -> str | None:
     if result.has_weights:
         return None
     fed = fed_by(result.design, bool(why_dependent(result)))
-    found = [_with_intervals(name, fed) for name in (*methods(result), *fed) if name in fed]
-    known = [name for name in found if not METHODS[name].conditional]
+    candidates = [_with_intervals(name, fed) for name in (*methods(result), *fed) if name in fed]
+    unconditional = [name for name in candidates if not METHODS[name].conditional]
     if not event:
-        return next((name for name in known if METHODS[name].takes_numbers), None)
-    of_events = [name for name in known if METHODS[name].takes_events]
+        return next((name for name in unconditional if METHODS[name].takes_numbers), None)
+    of_events = [name for name in unconditional if METHODS[name].takes_events]
     return min(of_events, key=lambda name: not _has_scale(METHODS[name]), default=None)
 
 
@@ -74,8 +74,10 @@ def _with_intervals(name: str, fed: Sequence[str]) -> str:
     """Return a method, or one that estimates the same indices with intervals."""
     if METHODS[name].intervals:
         return name
-    same = (one for one in fed if METHODS[one].kinds == METHODS[name].kinds)
-    return next((one for one in same if METHODS[one].kinds and METHODS[one].intervals), name)
+    same = (other for other in fed if METHODS[other].kinds == METHODS[name].kinds)
+    return next(
+        (other for other in same if METHODS[other].kinds and METHODS[other].intervals), name
+    )
 
 
 def _has_scale(method: SensitivityMethod) -> bool:
@@ -83,45 +85,45 @@ def _has_scale(method: SensitivityMethod) -> bool:
 
 
 def measured_inputs(
-    result: Result, method: str, name: str, kind: IndexKind, found: TargetIndices
+    result: Result, method: str, name: str, kind: IndexKind, target_indices: TargetIndices
 ) -> Iterator[Measured]:
     """Yield the indices of one kind, the largest first, of inputs with an effect of their own."""
-    every, borrowed = found.kinds()[kind], found.indices.by_correlation
-    values = {label: one for label, one in every.items() if label not in borrowed} or every
-    null = found.indices.nulls.get(kind, Null(nan))
+    every, borrowed = target_indices.kinds()[kind], target_indices.indices.by_correlation
+    values = {label: index for label, index in every.items() if label not in borrowed} or every
+    null = target_indices.indices.nulls.get(kind, Null(nan))
     limit = null.largest if isfinite(null.largest) else null.limit
-    products = found.indices.half_products
-    has_errors = bool(products) or any(one.has_interval for one in values.values())
+    products = target_indices.indices.half_products
+    has_errors = bool(products) or any(index.has_interval for index in values.values())
     scatter = {} if has_errors else _parts(result, method, name).get(kind.key, {})
-    known = sorted(values, key=lambda label: -_size(values[label]))
+    order = sorted(values, key=lambda label: -_size(values[label]))
     # Where no other input has an effect in any row, it is certain without an interval.
-    alone = kind.unit == "variance" and all(values[label].value == 0 for label in known[1:])
-    for label in known:
-        one = values[label]
-        if not isfinite(one.value):
+    alone = kind.unit == "variance" and all(values[label].value == 0 for label in order[1:])
+    for label in order:
+        index = values[label]
+        if not isfinite(index.value):
             continue
-        half = (one.high - one.low) / 2 if one.has_interval else null.limit
-        if products and not one.has_interval:
+        half = (index.high - index.low) / 2 if index.has_interval else null.limit
+        if products and not index.has_interval:
             half = _DOUBTFUL * sqrt(products[label, label])
         if label in scatter:  # estimates from fewer rows, which may be biased: no interval
-            low, high = scatter_interval(one.value, np.array(scatter[label]))
+            low, high = scatter_interval(index.value, np.array(scatter[label]))
             half = (high - low) / 2
-        counts = one.low > 0 if one.has_interval or not isfinite(limit) else one.value > limit
-        counts |= alone and one.value > 0 and not one.has_interval
+        counts = index.low > 0 if index.has_interval or not isfinite(limit) else index.value > limit
+        counts |= alone and index.value > 0 and not index.has_interval
         shared = {
             other: product
             for pair, product in products.items()
             if label in pair and (other := pair[pair[0] == label]) != label
         }
-        yield Measured(label, one, half, bool(counts and not one.low <= 0), shared)
+        yield Measured(label, index, half, bool(counts and not index.low <= 0), shared)
 
 
-def _size(one: Estimate) -> float:
-    return one.value if isfinite(one.value) else -1.0
+def _size(index: Estimate) -> float:
+    return index.value if isfinite(index.value) else -1.0
 
 
 def _parts(result: Result, method: str, name: str) -> dict[str, dict[str, list[float]]]:
-    """Return the indices from independent parts of the rows: kind -> input -> one of each part."""
+    """Return the indices from independent parts of the rows: kind -> input -> one per part."""
     if result.design.layout is not PLAIN:
         return {}
     result = result.first_rows
@@ -134,15 +136,15 @@ def _parts(result: Result, method: str, name: str) -> dict[str, dict[str, list[f
         part = np.arange(len(rows)) % max(min(_PARTS, len(rows) // MIN_ROWS), 1)
     else:
         part = result.dataset["replicate"].values[rows]
-    found: dict[str, dict[str, list[float]]] = {}
+    estimates: dict[str, dict[str, list[float]]] = {}
     if len(np.unique(part)) < _FEWEST_PARTS:
-        return found
-    for one in np.unique(part):
+        return estimates
+    for number in np.unique(part):
         try:
-            indices = METHODS[method].indices(sample.rows(rows[part == one]))
+            indices = METHODS[method].indices(sample.rows(rows[part == number]))
         except RefusedError:
             return {}
         for kind, values in indices.values.items():
             for label, index in values.items():
-                found.setdefault(kind.key, {}).setdefault(label, []).append(index.value)
-    return found
+                estimates.setdefault(kind.key, {}).setdefault(label, []).append(index.value)
+    return estimates

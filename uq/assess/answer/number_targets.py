@@ -8,7 +8,7 @@ from uq.text.symbols import readable
 
 
 class NumberTarget:
-    """An element of an output, or what is derived from one.
+    """An element of an output, or a quantity derived from it.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ class NumberTarget:
     Attributes
     ----------
     name : str
-        The same for a person, which ``--output`` takes too: ``P(life < 24 hours)``.
+        Its readable name, also accepted by ``--output``: ``P(life < 24 hours)``.
     units : str
         CF unit of the numbers; ``"1"`` for those of a logarithm, a rank or an event.
     meaning : str
@@ -33,9 +33,9 @@ class NumberTarget:
         self._compared, self._asked = "", result.analysis.thresholds.get(output, ())
         if result.is_category(output):
             self.meaning = str(result.dataset[output].attrs["long_name"])
-        elif output in (known := result.outputs):
+        elif output in (outputs := result.outputs):
             element, *others = result.named_elements(inside)
-            declared = known[output]
+            declared = outputs[output]
             self._units = declared.unit
             self._compared = compared(inside, declared.is_angle)
             self.meaning = element_called(result, element)

@@ -15,7 +15,7 @@ from uq.stats.estimate import Estimate
 from uq.text.numbers import capitalized, percent, percent_range
 
 MINOR = 0.25
-"""What decides most says it if it alone has a smaller share of the variance."""
+"""Below this share, state that the leading input explains little alone."""
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,15 @@ class Event:
     ----------
     name : str
         The target, such as ``P(life<86400.0)``.
-    said : str
-        What happens: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
+    predicate : str
+        What the rows do: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
     share : Estimate
     failed : Estimate or None
         Bounds with the failed rows at best and at worst, where rows failed.
     ranking : Ranking or None
-        What decides it.
+        Its main drivers.
     over : str
-        The input that decides most; "" if that is not settled.
+        The leading input; "" if not settled.
     curve : EventCurve or None
         The probability over that input.
     over_unit : DisplayUnit
@@ -42,13 +42,13 @@ class Event:
     undefined : float
         Share of the rows in which the output is undefined, so that neither side holds.
     is_of_single : bool
-        Whether what decides most among single inputs is not what decides most.
+        Whether a level without the leading input decides more than it.
     limit : Limit or None
         Of that input, where its unwanted side is rare on average; None where no side is unwanted.
     """
 
     name: str
-    said: str
+    predicate: str
     share: Estimate
     failed: Estimate | None = None
     ranking: Ranking | None = None
@@ -61,11 +61,11 @@ class Event:
 
     @property
     def sentence(self) -> str:
-        """Its probability, and what decides it; "" where that is not known."""
+        """Its probability, or the reason why it is unknown."""
         if isnan(self.share.value):
             why = self.share.reason
             return sentence(f"how many {self.clause} is not known: {why}") if why else ""
-        text = f"{share_text(self.share)} {self.said}"
+        text = f"{share_text(self.share)} {self.predicate}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
@@ -75,36 +75,36 @@ class Event:
 
     @property
     def clause(self) -> str:
-        """What rows do: ``exceed 5``, ``are chaotic``."""
-        return f"are {self.said}" if self.name.startswith("P(regime=") else self.said
+        """The predicate with its verb: ``exceed 5``, ``are chaotic``."""
+        return f"are {self.predicate}" if self.name.startswith("P(regime=") else self.predicate
 
     @property
     def with_cause(self) -> str:
-        """Its probability, what decides it, and where it is rare."""
+        """Its probability, main driver, and the range in which it is rare."""
         return " ".join(filter(None, (self.sentence, self.decided_by, self.limited)))
 
     @property
     def named_cause(self) -> str:
-        """What decides it, after its name."""
+        """Its main driver, after its name."""
         cause = self.decided_by
-        return f"{capitalized(self.said)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
+        return f"{capitalized(self.predicate)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
 
     @property
     def limited(self) -> str:
-        """In which range of the input that decides it the unwanted side is rare on average."""
+        """The range of the leading input in which the unwanted side is rare on average."""
         return "" if self.limit is None else self.limit.sentence
 
     def with_limit(self, more_is_better: bool) -> "Event":
-        """Return the same with the limit, where one input alone decides it."""
+        """Return the event with the limit of its leading input, if there is only one."""
         leader = None if self.ranking is None else self.ranking.leader
         if self.curve is None or leader is None or len(leader.inputs) > 1:
             return self
-        found = limit_of(self.curve, self.over, self.over_unit, self.said, not more_is_better)
-        return replace(self, limit=found)
+        limit = limit_of(self.curve, self.over, self.over_unit, self.predicate, not more_is_better)
+        return replace(self, limit=limit)
 
     @property
     def decided_by(self) -> str:
-        """What decides it, with the probability at either end of the leading input."""
+        """Its main driver, with the probability at either end of the leading input."""
         if self.ranking is None:
             return ""
         leader = self.ranking.leader
@@ -154,7 +154,7 @@ class Quantity:
     scaled_by : tuple of str
         Quantities whose values are assumed and to which all its lives are proportional.
     own_error : OwnError or None
-        What the error that the rows state would do to the promise.
+        Effect of the stated errors of the rows on the promise.
     """
 
     name: str
@@ -171,7 +171,7 @@ class Quantity:
 
     @property
     def subject(self) -> str:
-        """What it is, and if only its shape is known."""
+        """Its name, and the assumed quantities that scale it."""
         if not self.scaled_by:
             return sentence(self.words)
         are = "are" if len(self.scaled_by) > 1 else "is"
@@ -190,7 +190,7 @@ class Quantity:
 
     @property
     def wants_more(self) -> bool | None:
-        """Whether more of its events is better; None where that is not known.
+        """Whether more of its events are better; None if unknown.
 
         Of successes; of lives that end, fewer; of values above a threshold, as the study states.
         """
@@ -199,16 +199,16 @@ class Quantity:
         return self.wanted == "above" if self.wanted else None
 
     def with_limits(self) -> "Quantity":
-        """Return the same with limits of the inputs that decide its events."""
+        """Return the quantity with limits of the leading inputs of its events."""
         if (more := self.wants_more) is None:
             return self
-        return replace(self, events=tuple(one.with_limit(more) for one in self.events))
+        return replace(self, events=tuple(event.with_limit(more) for event in self.events))
 
     @property
     def ranking_sentence(self) -> str:
-        """What contributes most; "" where there is no ranking, and an event said why already."""
-        said = [event.decided_by for event in self.events]
-        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in said):
+        """The leading contribution; "" if there is no ranking and an event states the reason."""
+        causes = [event.decided_by for event in self.events]
+        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in causes):
             return ""
         return self.ranking.with_effect
 
@@ -219,36 +219,36 @@ class Quantity:
 
     @property
     def place(self) -> str:
-        """What distinguishes it from other elements of the output."""
+        """Its place among the elements of the output."""
         return self.words.removeprefix(self.meaning).removeprefix(", ")
 
     @property
     def first(self) -> Event | None:
-        """The event that stands first, where nothing can be promised."""
+        """The event that comes first, if nothing can be promised."""
         if self.promise is not None and self.promise.sentence:
             return None
-        return next((one for one in self.events if one.sentence), None)
+        return next((event for event in self.events if event.sentence), None)
 
     @property
     def repeated(self) -> PredictionInterval:
-        """What the study would find with another seed."""
+        """Prediction interval for another seed."""
         if self.first is None:
             return repeated_quantile(self.promise, self.range, self.ranking)
-        return repeated_share(self.first.said, self.first.share, self.ranking)
+        return repeated_share(self.first.predicate, self.first.share, self.ranking)
 
     @property
     def others(self) -> list[Event]:
-        """The events that do not stand first."""
-        return [one for one in self.events if one is not self.first]
+        """The events after the first."""
+        return [event for event in self.events if event is not self.first]
 
     @property
     def head(self) -> list[str]:
-        """What can be promised, of what, and its likely range, as far as they are known."""
-        found = [] if self.promise is None else [self.promise.sentence]
+        """Sentences on promise, subject, error and likely range, as far as known."""
+        sentences = [] if self.promise is None else [self.promise.sentence]
         if self.first is not None:
-            found += [self.first.sentence, self.first.decided_by, self.first.limited]
-        found.append(self.subject)
-        found += [] if self.promise is None else [self.promise.basis]
-        found += [] if self.own_error is None else [self.own_error.sentence]
-        found += [] if self.range is None else [self.range.sentence]
-        return [*filter(None, found)]
+            sentences += [self.first.sentence, self.first.decided_by, self.first.limited]
+        sentences.append(self.subject)
+        sentences += [] if self.promise is None else [self.promise.basis]
+        sentences += [] if self.own_error is None else [self.own_error.sentence]
+        sentences += [] if self.range is None else [self.range.sentence]
+        return [*filter(None, sentences)]

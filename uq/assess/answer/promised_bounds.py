@@ -31,7 +31,7 @@ def promise_of(
     wanted: str,
     unit: DisplayUnit,
 ) -> ToleranceBound:
-    """Return what can be promised of an element.
+    """Return the tolerance bound of an element, or quantiles in its place.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def promise_of(
         With the quantiles and bounds that the answer needs.
     element : Element
     analysis : AnalysisTable
-        What the study asks for.
+        The [analysis] of the study.
     wanted : {"", "above", "below"}
         The good side of a limit.
     unit : DisplayUnit
@@ -57,21 +57,21 @@ def promise_of(
     part = "joint_bounds" if joint else "tolerance"
     both = [described.find(part, name) for name in ("lower", "upper")]
     bounds = [
-        one.estimate.value if matters and one else nan
-        for one, matters in zip(both, sides, strict=True)
+        statistic.estimate.value if matters and statistic else nan
+        for statistic, matters in zip(both, sides, strict=True)
     ]
     piled = () if joint else tuple(piles(element, sides, coverage))
-    upper_piled = {one.upper for one in piled}
+    upper_piled = {atom.upper for atom in piled}
     sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
-    bounds = [one if matters else nan for one, matters in zip(bounds, sides, strict=True)]
-    # Quantiles of an angle are those of its magnitude, its joint bounds have a sign.
+    bounds = [bound if matters else nan for bound, matters in zip(bounds, sides, strict=True)]
+    # Quantiles of an angle refer to its magnitude, its joint bounds have a sign.
     signed = bool(joint) and element.is_angle
-    found = [
+    quantiles = [
         described.find("quantiles", repr(p)) if matters and not signed else None
         for p, matters in zip((round(1 - coverage, 12), coverage), sides, strict=True)
     ]
-    ends = [one.best.estimate if one else NOTHING for one in found]
-    with_failed = [one.best.failed if one else None for one in found]
+    ends = [statistic.best.estimate if statistic else NOTHING for statistic in quantiles]
+    with_failed = [statistic.best.failed if statistic else None for statistic in quantiles]
     reason = ""
     if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(result, element, both, bounds)
@@ -89,9 +89,9 @@ def promise_of(
         reason,
         element.is_lifetime,
         element.is_angle and not joint,
-        end_of(element),
+        end_verb(element),
         tuple(analysis.joint_bounds) if joint else (),
-        known_of(element),
+        support_of(element),
         _recurs(element),
         (0, 0) if joint else _ranks(element, bounds),
         int((element.present | element.failed).sum()),
@@ -118,8 +118,8 @@ def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterat
             yield BoundaryAtom(bool(upper), float(last), count / len(values))
 
 
-def known_of(element: Element) -> SampleSupport:
-    """Return which values numbers are about: those of sound rows that are defined."""
+def support_of(element: Element) -> SampleSupport:
+    """Return the support of the sample: defined values of rows that did not fail."""
     sound = ~element.failed
     share = float(element.undefined[sound].mean()) if sound.any() else 0.0
     return SampleSupport(bool(element.failed.any()), share)
@@ -135,18 +135,18 @@ def _recurs(element: Element) -> bool:
 
 
 def quantile_of(described: Described, p: float) -> Estimate:
-    """Return a quantile that was asked for, else nothing."""
-    found = described.find("quantiles", repr(p))
-    return found.best.estimate if found else NOTHING
+    """Return a requested quantile, else an estimate without a number."""
+    statistic = described.find("quantiles", repr(p))
+    return statistic.best.estimate if statistic else NOTHING
 
 
-def end_of(element: Element) -> str:
-    """Return what a life does at its end, in words."""
+def end_verb(element: Element) -> str:
+    """Return the verb for the end of a life."""
     return "succeed" if element.declared.success else "end"
 
 
 def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
-    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+    """Return a bound on the wrong side of its quantile; NaN if there is none.
 
     By chance few rows give one, where the quantile is better known since lives are integrated.
     """
@@ -159,9 +159,9 @@ def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
 def _sides(
     element: Element, described: Described, thresholds: tuple[float, ...], wanted: str
 ) -> tuple[bool, bool]:
-    """Return whether a lower and an upper bound are what matters."""
+    """Return whether a lower and an upper bound matter."""
     if element.is_lifetime:
-        early = bool(element.declared.success)  # the latest time of a success is what matters
+        early = bool(element.declared.success)  # for a success, the latest time matters
         return not early, early
     if wanted:
         return wanted == "above", wanted == "below"
@@ -174,13 +174,15 @@ def _sides(
 def _why_no_bound(
     result: Result, element: Element, both: list[Statistic | None], bounds: list[float]
 ) -> str:
-    needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    needed = next(
+        (statistic.rows_needed for statistic in both if statistic and statistic.rows_needed), None
+    )
     if needed == inf:
         return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
     if needed:
         return f"it needs {needed:.0f} rows"
-    if any(not isnan(one) for one in bounds):
-        return f"too few {end_of(element)}"
+    if any(not isnan(bound) for bound in bounds):
+        return f"too few {end_verb(element)}"
     if result.has_weights:
         return "the rows are weighted by inspections"
     if result.is_nested:

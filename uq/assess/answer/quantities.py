@@ -14,10 +14,10 @@ from uq.assess.answer.promised_bounds import (
     CONFIDENCE,
     COVERAGE,
     MIDDLE,
-    end_of,
-    known_of,
+    end_verb,
     promise_of,
     quantile_of,
+    support_of,
 )
 from uq.assess.answer.rankings import ranking_of
 from uq.assess.answer.solver_error import own_error_of
@@ -48,11 +48,11 @@ from uq.text.symbols import readable
 LOW, HIGH = 0.05, 0.95
 """Probabilities of the ends of the likely range."""
 
-_NARROW = 0.003  # a range over its values, of which three digits show but few steps
+_NARROW = 0.003  # range over values below which three digits show few steps
 
 
 def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
-    """Return the answer for each element that the study asks for, the one it is about first.
+    """Return the answer for each element that the study asks for, its subject first.
 
     Parameters
     ----------
@@ -73,28 +73,35 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     part = findings.rows.replicates
     context = Context(findings.rows, wanted, part, findings.rows.weights)
     return [
-        _quantity(findings, _with(summary.outputs[one.name], more.get(one.name)), context, one)
-        for one in findings.rows.elements(_by_importance(result, asked))  # one at a time in memory
-        if one.present.any() and only in (None, one.name)
+        _quantity(
+            findings,
+            _merged(summary.outputs[element.name], more.get(element.name)),
+            context,
+            element,
+        )
+        for element in findings.rows.elements(
+            _by_importance(result, asked)
+        )  # one at a time in memory
+        if element.present.any() and only in (None, element.name)
     ]
 
 
 def only_ranked(findings: Findings) -> list[Quantity]:
-    """Return what the inputs contribute, of rows that have indices but no statistics."""
+    """Return rankings alone, of rows that have indices but no statistics."""
     result = findings.result
-    found = []
+    ranked = []
     for element in result.elements(_by_importance(result, result.analysis)):
         values = np.abs(element.values[np.isfinite(element.values)])
         if not len(values):
             continue
         ranking = _ranking(findings, element, unit_for(element.units, float(np.median(values))))
         words, meaning = element_called(result, element), readable(element.meaning)
-        found.append(Quantity(element.name, words, meaning, ranking=ranking))
-    return found
+        ranked.append(Quantity(element.name, words, meaning, ranking=ranking))
+    return ranked
 
 
 def _by_importance(result: Result, asked: AnalysisTable) -> list[str]:
-    """Return the outputs that a study asks for, the one that it is about first."""
+    """Return the outputs that a study asks for, its subject first."""
     declared = result.outputs
     return sorted(
         result.shown_outputs(asked),
@@ -107,7 +114,7 @@ def _asks(wanted: AnalysisTable, asked: AnalysisTable, part: str) -> bool:
     return bool(getattr(wanted, part) != getattr(asked, part))
 
 
-def _with(described: Described, more: Described | None) -> Described:
+def _merged(described: Described, more: Described | None) -> Described:
     """Return an element with more statistics."""
     if more is None:
         return described
@@ -115,7 +122,7 @@ def _with(described: Described, more: Described | None) -> Described:
 
 
 def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
-    """Return what a study asks for, with the bounds and quantiles that the answer needs."""
+    """Return the [analysis] of a study with the bounds and quantiles that the answer needs."""
     coverage = asked.tolerance.coverage if asked.tolerance else COVERAGE
     needed = {LOW, MIDDLE, HIGH, coverage, round(1 - coverage, 12)}
     missing = tuple(sorted(needed - set(asked.quantiles)))
@@ -164,9 +171,9 @@ def _quantity(
             quantile_of(described, HIGH),
             fine,
             element.is_angle,
-            end_of(element),
+            end_verb(element),
             never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
-            known_of(element),
+            support_of(element),
             element.is_lifetime,
         ),
         tuple(_events(findings, described, element)),
@@ -181,13 +188,13 @@ def _quantity(
 
 
 def assumed_scales(result: Result, element: Element) -> tuple[str, ...]:
-    """Return what all lives are proportional to, or to the reciprocal of, and is assumed."""
+    """Return the assumed quantities that all lives scale with, or with the reciprocal of."""
     scales = (name for name in element.declared.scales if name in result.dataset)
     return tuple(name for name in scales if mark_of(result, name) == ASSUMED)
 
 
 def _may_end_badly(result: Result, element: Element) -> bool:
-    """Return whether the rows that end first are of interest, and stand for themselves."""
+    """Return whether the rows that end first are of interest and have equal weight."""
     return element.is_lifetime and not element.declared.success and not result.has_weights
 
 
@@ -198,86 +205,88 @@ def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking
     target = number_of(element)
     name = (target if METHODS[method].scale_free else lightened(target)).name
     verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
-    if element.is_angle:  # of all that is said, this alone is not of its magnitude
+    if element.is_angle:  # only the ranking refers to the signed value
         verb = ("lowers its signed value", "raises its signed value")
     try:
-        found = ranking_of(findings, name, method, verb)
+        ranking = ranking_of(findings, name, method, verb)
     except InputError as refused:
         return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
-    if element.is_angle and found.what:
-        found = replace(found, what=f"{found.what}, of the angle with its sign")
+    if element.is_angle and ranking.index_meaning:
+        ranking = replace(
+            ranking, index_meaning=f"{ranking.index_meaning}, of the angle with its sign"
+        )
     if split_name(name)[0]:
-        return found
+        return ranking
     # Changes of the output itself are in its unit, as are indices that are not relative.
-    kind = next((one for one in METHODS[method].kinds if one.key == found.kind), None)
+    kind = next((kind for kind in METHODS[method].kinds if kind.key == ranking.kind), None)
     of_index = unit if kind is not None and kind.unit == "output" else DisplayUnit()
-    own = tuple(
+    contributions = tuple(
         replace(
-            one,
-            changes=tuple(replace(change, unit=unit) for change in one.changes),
+            contribution,
+            changes=tuple(replace(change, unit=unit) for change in contribution.changes),
             unit=of_index,
         )
-        for one in found.contributions
+        for contribution in ranking.contributions
     )
-    return replace(found, contributions=own)
+    return replace(ranking, contributions=contributions)
 
 
 def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
-    """Return a ranking that says if it is of lives as computed, while other numbers integrate."""
-    facts = [one.facts.get("integrated") for one in described.parts["integrated"]]
-    if ranking is None or not ranking.what or not any(facts):
+    """Return a ranking, marked if it is of lives as computed while other numbers integrate."""
+    facts = [statistic.facts.get("integrated") for statistic in described.parts["integrated"]]
+    if ranking is None or not ranking.index_meaning or not any(facts):
         return ranking
-    return replace(ranking, what=f"{ranking.what}, of lives as computed")
+    return replace(ranking, index_meaning=f"{ranking.index_meaning}, of lives as computed")
 
 
 def _events(findings: Findings, described: Described, element: Element) -> Iterator[Event]:
     side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
-    for one in described.parts["thresholds"]:
-        if one.key[-1] != side or one.at is None:
+    for statistic in described.parts["thresholds"]:
+        if statistic.key[-1] != side or statistic.at is None:
             continue
-        at = threshold(one.at, element.units)
-        said = f"exceed {at}"
-        if element.is_lifetime:  # what ends at the time itself is not counted
+        at = threshold(statistic.at, element.units)
+        predicate = f"exceed {at}"
+        if element.is_lifetime:  # an end at the threshold itself does not count
             ended = element.values[~element.censored]
-            at_it = element.law is None and (ended == one.at).any()
-            said = f"{end_of(element)} {'before' if at_it else 'within'} {at}"
-        said += " in magnitude" * element.is_angle
-        target = f"P({element.name}{sign}{one.at!r})"
-        undefined = one.facts.get("undefined") or 0.0
-        yield replace(event(findings, target, said, one), undefined=undefined)
+            at_it = element.law is None and (ended == statistic.at).any()
+            predicate = f"{end_verb(element)} {'before' if at_it else 'within'} {at}"
+        predicate += " in magnitude" * element.is_angle
+        target = f"P({element.name}{sign}{statistic.at!r})"
+        undefined = statistic.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, predicate, statistic), undefined=undefined)
 
 
-def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
-    """Return what is known of an event: its probability, what decides it, and where.
+def event(findings: Findings, target: str, predicate: str, statistic: Statistic) -> Event:
+    """Return an event: its probability, ranking, and probability over the leading input.
 
     Parameters
     ----------
     findings : Findings
     target : str
-        Its name as that of a target of indices.
-    said : str
-        What happens, in words.
-    one : Statistic
+        Its name as a target of indices.
+    predicate : str
+        The event, in words.
+    statistic : Statistic
         Its probability.
     """
-    found = Event(target, said, one.best.estimate, one.failed)
+    outcome = Event(target, predicate, statistic.best.estimate, statistic.failed)
     method = method_for(findings.result, event=True)
-    if method is None or one.best.estimate.value in (0.0, 1.0):
-        return found
+    if method is None or statistic.best.estimate.value in (0.0, 1.0):
+        return outcome
     verb = ("lowers the probability", "raises the probability")
     try:
         ranking = ranking_of(findings, target, method, verb)
     except InputError as refused:
         why = str(refused)
-        if not split_name(target)[2]:  # a regime, of which the rows that could rank have none
-            why = f"no ranking of the inputs: no row that it could rest on is {said}"
-        return replace(found, ranking=Ranking(target, method, reason=why))
-    found = replace(found, ranking=ranking)
+        if not split_name(target)[2]:  # a regime that does not occur in the ranked rows
+            why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
+        return replace(outcome, ranking=Ranking(target, method, reason=why))
+    outcome = replace(outcome, ranking=ranking)
     if ranking.leader is None:
-        return found
+        return outcome
     over, rows = ranking.leader.inputs[0], findings.ranked.rows
     curve = curve_over(rows, target, method, over)
-    return replace(found, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
+    return replace(outcome, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
 
 
 def curve_over(rows: Result, target: str, method: str, over: str) -> EventCurve | None:

@@ -39,7 +39,7 @@ _WITHIN = 4.0  # standard deviations that a step may span
 
 
 def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
-    """Return which inputs contribute to a target.
+    """Return the ranking of the inputs of a target.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
         Of a target.
     method : str
     verbs : tuple of str
-        What a fall and a rise of the target is called.
+        Verbs for a fall and a rise of the target.
 
     Returns
     -------
@@ -60,56 +60,62 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     if not by:
         return ranking
     reason = f"{ranking.reason} ({by})" if ranking.reason else ""
-    return replace(ranking, what=f"{ranking.what}, {by}", reason=reason, rows_factor=nan)
+    return replace(
+        ranking, index_meaning=f"{ranking.index_meaning}, {by}", reason=reason, rows_factor=nan
+    )
 
 
 def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
-    found = findings.indices(method, name)
-    if found.refused:
-        why = f"no ranking of the inputs: {found.refused}"
-        return Ranking(name, method, reason=why, rows_factor=found.rows_factor)
-    kinds = found.kinds()
+    target_indices = findings.indices(method, name)
+    if target_indices.refused:
+        why = f"no ranking of the inputs: {target_indices.refused}"
+        return Ranking(name, method, reason=why, rows_factor=target_indices.rows_factor)
+    kinds = target_indices.kinds()
     kind = list(kinds)[-1]
-    measured = list(measured_inputs(findings.result, method, name, kind, found))
+    measured = list(measured_inputs(findings.result, method, name, kind, target_indices))
     form = FORMS.get(split_name(name)[0])
-    of = f" of the {form}" if form else ""
-    share = f"share of the variance{of}, " if kind.unit == "variance" else ""
+    of_form = f" of the {form}" if form else ""
+    share = f"share of the variance{of_form}, " if kind.unit == "variance" else ""
     by = "" if method in kind.words.lower() else f", by {method}"
-    what = f"{share}{kind.words}{'' if share else of}{by}"
+    meaning = f"{share}{kind.words}{'' if share else of_form}{by}"
     if not measured[0].counts:
         reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
-        needed = found.indices.rows_factors.get(measured[0].name, 1.0)
+        needed = target_indices.indices.rows_factors.get(measured[0].name, 1.0)
         if needed > 1:
             factor = max(factor, needed)
-        return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
+        return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
     # What does not exceed inputs without effect may yet contribute as much as the first.
-    weighed = [one for one in measured if one.counts or _are_tied(measured[0], one)]
+    weighed = [
+        candidate for candidate in measured if candidate.counts or _are_tied(measured[0], candidate)
+    ]
     groups = list(_groups(findings.result, weighed))
-    if len({twin_of(one.name) for one in groups[0]}) > MOST_TIED:
-        names = choices((called(one.name) for one in groups[0]), MOST_TIED + 1)
+    if len({twin_of(member.name) for member in groups[0]}) > MOST_TIED:
+        names = choices((called(member.name) for member in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
         factor = (first.apart(second) / apart) ** 2
         reason, is_flat = f"the order of {names} is not settled", False
-        if factor <= 1:  # the rows tell apart what differs by more
+        if factor <= 1:  # the rows distinguish larger differences
             is_flat = kind.unit == "variance" and first.index.value < SMALL
             reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
-        return Ranking(name, method, kind.key, what, (), reason, factor, is_flat)
+        return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
     least = LEAST * _scale(measured[0], kind)
     listed = [group for group in groups if group[0].index.value >= least]
-    moved = _effects(findings, method, name, [one.name for group in listed for one in group])
-    units = {one: unit_of_input(findings.result, one) for one in moved}
+    moved = _effects(findings, method, name, [member.name for group in listed for member in group])
+    units = {label: unit_of_input(findings.result, label) for label in moved}
     contributions = tuple(_contribution(group, kind, name, moved, verbs, units) for group in listed)
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
     of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
     rivals = _rivals(measured)
-    ranking = Ranking(name, method, kind.key, what, contributions, rivals=rivals, of=of_what)
+    ranking = Ranking(
+        name, method, kind.key, meaning, contributions, rivals=rivals, share_of=of_what
+    )
     if kind != S1 or len(kinds) > 1:
         return ranking
-    behind = (one.index.value for one in measured if one not in groups[0])
+    behind = (candidate.index.value for candidate in measured if candidate not in groups[0])
     ranking = replace(
         ranking,
-        unexplained=unexplained(found.indices),
+        unexplained=unexplained(target_indices.indices),
         runner_up=max(behind, default=0.0),
         remedy="a 'saltelli' design shows them",
     )
@@ -136,29 +142,29 @@ def _totals(findings: Findings, name: str) -> dict[str, float]:
     dependent = bool(why_dependent(findings.result))
     if _EXPANSION not in fed_by(findings.result.design, dependent):
         return {}
-    found = findings.indices(_EXPANSION, name)
-    values = {} if found.refused else found.indices.values[ST]
+    expansion = findings.indices(_EXPANSION, name)
+    values = {} if expansion.refused else expansion.indices.values[ST]
     return {label: values[label].value for label in sorted(values, key=lambda x: -values[x].value)}
 
 
 def _scale(first: Measured, kind: IndexKind) -> float:
-    """Return what an index is compared with: those in the unit of the output, with the largest."""
+    """Return the reference of an index: the largest, if in the unit of the output, else 1."""
     return abs(first.index.value) if kind.unit == "output" else 1.0
 
 
 def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
-    """Return the inputs of which one would contribute most with another seed, with 95 %.
+    """Return the inputs one of which would lead with another seed, with 95 %.
 
-    None where there is no other, or nothing tells them apart.
+    None without another input, or if errors are unknown.
     """
     first = measured[0]
-    if len(measured) == 1 or not all(isfinite(one.half) for one in measured):
+    if len(measured) == 1 or not all(isfinite(candidate.half) for candidate in measured):
         return ()
-    return tuple(one.name for one in measured if _are_tied(first, one, AGAIN))
+    return tuple(candidate.name for candidate in measured if _are_tied(first, candidate, AGAIN))
 
 
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
-    """Return why no index counts, how many times the rows would settle it, and if none is large."""
+    """Return the reason why no index counts, the factor on the rows, and whether none is large."""
     text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
     which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
     if not isfinite(first.half):
@@ -175,7 +181,7 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
 
 
 def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat: bool) -> str:
-    """Return that inputs contribute alike, or none of them much."""
+    """Return a clause: inputs contribute alike, or none contributes much."""
     most = f"is {first.index.value:.2f} at most"
     if is_flat:
         does = "decides that alone" if of_event else "explains much"
@@ -184,27 +190,31 @@ def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat
 
 
 def _groups(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:
-    """Yield inputs together that are twins or whose indices do not distinguish them."""
+    """Yield groups of inputs that are twins or have indistinguishable indices."""
     laws = {
-        name: None if isinstance(one, Tied) else one.model_dump(exclude={"source"})
-        for name, one in result.study.uncertain.items()
+        name: None if isinstance(law, Tied) else law.model_dump(exclude={"source"})
+        for name, law in result.study.uncertain.items()
     }
 
-    def are_twins(one: Measured, other: Measured) -> bool:
-        less, more = sorted((one.index.value, other.index.value))
-        same = twin_of(one.name) == twin_of(other.name) and less >= ALIKE * more
-        return same and laws[one.name] is not None and laws[one.name] == laws[other.name]
+    def are_twins(candidate: Measured, other: Measured) -> bool:
+        less, more = sorted((candidate.index.value, other.index.value))
+        same = twin_of(candidate.name) == twin_of(other.name) and less >= ALIKE * more
+        return (
+            same and laws[candidate.name] is not None and laws[candidate.name] == laws[other.name]
+        )
 
     left = list(measured)
     while left:
         first, others = left[0], left[1:]
-        tied = [one for one in others if _are_tied(first, one)]
+        tied = [other for other in others if _are_tied(first, other)]
         group = [first, *tied]
         group += [
-            one for one in others if one not in group and any(are_twins(one, of) for of in group)
+            other
+            for other in others
+            if other not in group and any(are_twins(other, member) for member in group)
         ]
         yield group
-        left = [one for one in left if one not in group]
+        left = [candidate for candidate in left if candidate not in group]
 
 
 def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
@@ -221,8 +231,8 @@ def _effects(
     if len(targets) != 1:
         return {}
     columns, part = independent_inputs(rows), rows.replicates
-    found = effects(targets[0].values, columns, part, inputs)
-    return {name: one for name, one in found.items() if one.slope.has_interval}
+    by_input = effects(targets[0].values, columns, part, inputs)
+    return {name: effect for name, effect in by_input.items() if effect.slope.has_interval}
 
 
 def _contribution(
@@ -233,17 +243,17 @@ def _contribution(
     verbs: tuple[str, str],
     units: Mapping[str, DisplayUnit],
 ) -> Contribution:
-    names = tuple(one.name for one in group)
+    names = tuple(member.name for member in group)
     form = split_name(target)[0]
     changes = tuple(
         _change(moved[name], form, verbs, units[name]) for name in names if name in moved
     )
     return Contribution(
         names,
-        tuple(one.index for one in group),
+        tuple(member.index for member in group),
         kind.unit == "variance",
         changes if len(changes) == len(names) else (),
-        doubtful=tuple(one.name for one in group if not one.counts),
+        doubtful=tuple(member.name for member in group if not member.counts),
     )
 
 
@@ -259,10 +269,10 @@ def _change(
         step, by = f"{100 * size:g} %", log1p(size)
     else:
         step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)
-    value, low, high = (by * one for one in effect.slope.numbers)
+    value, low, high = (by * end for end in effect.slope.numbers)
     unit = DisplayUnit()
     if form == "log":
-        value, low, high = (100 * expm1(one) for one in (value, low, high))
+        value, low, high = (100 * expm1(end) for end in (value, low, high))
         unit = DisplayUnit("%")
     elif form == "P":
         value, low, high = 100 * value, 100 * low, 100 * high

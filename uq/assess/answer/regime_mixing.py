@@ -1,4 +1,4 @@
-"""Intermingled regimes: better known inputs then tell little of the outcome."""
+"""Intermingled regimes: more accurate inputs hardly reduce the uncertainty of the outcome."""
 
 from dataclasses import dataclass
 
@@ -22,12 +22,12 @@ class Intermingled:
 
     @property
     def left(self) -> Estimate:
-        """Share of uncertain outcomes that stay so if all inputs are known twice as well."""
+        """Share of uncertain outcomes that remain so if all inputs are known twice as well."""
         return still_uncertain(self.exponent)
 
     @property
     def sentence(self) -> str:
-        """That they are; "" where they may have a smooth boundary."""
+        """Sentence on intermingled regimes; "" if the boundary may be smooth."""
         if not (self.exponent.has_interval and self.exponent.high < 1):
             return ""
         left = share_text(self.left)
@@ -40,5 +40,5 @@ class Intermingled:
 
 def intermingled(findings: Findings) -> Intermingled:
     """Return how intermingled the regimes of a result are."""
-    known = findings.boundary
-    return Intermingled() if known is None else Intermingled(known.estimate)
+    boundary = findings.boundary
+    return Intermingled() if boundary is None else Intermingled(boundary.estimate)

@@ -9,39 +9,39 @@ from uq.stats.estimate import NOTHING, Estimate
 from uq.text.numbers import capitalized, percent, percent_interval
 
 SHARE_OF = "the share of rows that "
-"""How the number is called that is the probability of an event."""
+"""Opening of the name of a statistic that is the probability of an event."""
 
 
 @dataclass(frozen=True)
 class TighterTolerance:
-    """What half the scatter of an input would change.
+    """Effect of halving the scatter of inputs on one statistic.
 
     Attributes
     ----------
     inputs : tuple of str
-    what : str
+    statistic : str
         The number that changes: ``the 5 % quantile``.
     before, after : Estimate
     is_share : bool
     unit : DisplayUnit
     reason : str
-        Why the rows cannot show it, or "".
+        Reason why the rows cannot show it, or "".
     effective_rows : float
     key : str
-        Of `after`, for ``uq trace``; "" where it is not known.
+        Key of `after` for ``uq trace``; "" if unknown.
     wants_more : bool or None
-        Whether a larger number is better; None where that is not known.
+        Whether a larger number is better; None if unknown.
     law : str
-        What half the scatter is: ``sd 0.5 mm instead of 1``.
+        The halved scatter: ``sd 0.5 mm instead of 1``.
     promise : ToleranceBound or None
-        What is promised of the same quantile now; None where an end of the interval of `after`
+        The current promise of the same quantile; None if an end of the interval of `after`
         could not be promised instead.
     failed : Estimate or None
         The ends of that interval with failed rows at worst, where rows failed.
     """
 
     inputs: tuple[str, ...]
-    what: str
+    statistic: str
     before: Estimate = NOTHING
     after: Estimate = NOTHING
     is_share: bool = False
@@ -66,7 +66,7 @@ class TighterTolerance:
 
     @property
     def may_stay(self) -> bool:
-        """Whether the number may be as before, for all that its interval says."""
+        """Whether the interval of the new number contains the old one."""
         return self.after.has_interval and self.after.low <= self.before.value <= self.after.high
 
     @property
@@ -82,7 +82,7 @@ class TighterTolerance:
 
     @property
     def gain(self) -> float:
-        """By how much the number moves to its better side, or at all where none is better."""
+        """Change of the number towards its better side; its size if neither side is better."""
         moved = self.after.value - self.before.value
         return abs(moved) if self.wants_more is None else moved if self.wants_more else -moved
 
@@ -91,19 +91,19 @@ class TighterTolerance:
         """Half the width of the interval; 0 without one."""
         return (self.after.high - self.after.low) / 2 if self.after.has_interval else 0.0
 
-    def text(self, one: Estimate) -> str:
+    def text(self, estimate: Estimate) -> str:
         """Return one of the numbers with its unit."""
-        return percent(one.value) if self.is_share else self.unit.text(one.value)
+        return percent(estimate.value) if self.is_share else self.unit.text(estimate.value)
 
     @property
     def after_in_words(self) -> str:
-        """The number that it would be; a quantile says which."""
-        what = "" if self.is_share else f"{self.what.removeprefix('the ')} "
-        return f"{what}{self.text(self.after)}"
+        """The new number, named if it is a quantile."""
+        prefix = "" if self.is_share else f"{self.statistic.removeprefix('the ')} "
+        return f"{prefix}{self.text(self.after)}"
 
     @property
     def interval(self) -> str:
-        """The interval of the number that it would be; "" without one."""
+        """The interval of the new number; "" without one."""
         if not self.after.has_interval:
             return ""
         low, high = self.after.low, self.after.high
@@ -111,18 +111,18 @@ class TighterTolerance:
 
     @property
     def sentence(self) -> str:
-        """What would change, or why the rows cannot show it."""
+        """The change, or the reason why the rows cannot show it."""
         words = called_together(self.inputs)
         if self.reason:
             return f"Tightening {words}: {self.reason}."
         law = f" ({self.law})" if self.law else ""
         first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
-        moved = f"move {self.what} from {first} to {self._then}"
+        moved = f"move {self.statistic} from {first} to {self._new_number}"
         return f"Half the scatter of {words}{law} would {moved}."
 
     @property
     def promised(self) -> str:
-        """What could then be promised: an end of the interval; "" where nothing could.
+        """The new promise: an end of the interval; "" without one.
 
         As in the bounds of now, failed rows are beyond it.
         """
@@ -133,14 +133,16 @@ class TighterTolerance:
 
     @property
     def besides(self) -> str:
-        """What would change for the worse, after a number that gets better."""
+        """The change for the worse of another statistic."""
         if self.is_share:
-            does = self.what.removeprefix(SHARE_OF)
-            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._then}."
-        return f"But {self.what} would {'rise' if self.rises else 'fall'} to {self._then}."
+            does = self.statistic.removeprefix(SHARE_OF)
+            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._new_number}."
+        return (
+            f"But {self.statistic} would {'rise' if self.rises else 'fall'} to {self._new_number}."
+        )
 
     @property
-    def _then(self) -> str:
+    def _new_number(self) -> str:
         if not self.after.has_interval:
             return self.text(self.after)
         bare = self.unit.bare_between(self.after.low, self.after.high)
@@ -149,29 +151,29 @@ class TighterTolerance:
 
 @dataclass(frozen=True)
 class Advice:
-    """One thing to do.
+    """One piece of advice.
 
     Attributes
     ----------
     rule : str
-        Why: ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
+        ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
         ``keep``, ``rows`` or ``nothing``.
-    said : str
-        The sentence, without what would help about as much.
+    sentence : str
+        The advice, without alternatives of about the same effect.
     inputs : tuple of str
     rows : int or None
-        How many there should be in all, where more help.
+        Recommended total number, if more rows help.
     tightened : TighterTolerance or None
     key : str
         Of its number, for ``uq trace``; "" if it has none.
     alike : tuple of TighterTolerance
-        Which other tolerances would help about as much.
+        Other tolerances of about the same effect.
     tolerances : tuple of TighterTolerance
         All that were compared: of each tolerance, every number that it would change.
     """
 
     rule: str
-    said: str
+    sentence: str
     inputs: tuple[str, ...] = ()
     rows: int | None = None
     tightened: TighterTolerance | None = None
@@ -181,29 +183,32 @@ class Advice:
 
     @property
     def also(self) -> str:
-        """Which other tolerances would help about as much; "" for none."""
-        named = [f"{called_together(one.inputs)} ({one.after_in_words})" for one in self.alike]
+        """Sentence on other tolerances of about the same effect; "" for none."""
+        named = [
+            f"{called_together(tolerance.inputs)} ({tolerance.after_in_words})"
+            for tolerance in self.alike
+        ]
         return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
 
     @property
-    def own(self) -> list[TighterTolerance]:
-        """All numbers that the tolerance which is advised would change."""
-        of = None if self.tightened is None else self.tightened.inputs
-        return [one for one in self.tolerances if one.inputs == of]
+    def effects(self) -> list[TighterTolerance]:
+        """Effects of the advised tolerance on all statistics."""
+        advised_inputs = None if self.tightened is None else self.tightened.inputs
+        return [tolerance for tolerance in self.tolerances if tolerance.inputs == advised_inputs]
 
     @property
     def sure(self) -> TighterTolerance | None:
-        """The number of which it says what could then be promised."""
-        return next((one for one in self.own if one.promised), None)
+        """The first effect with a new promise."""
+        return next((tolerance for tolerance in self.effects if tolerance.promised), None)
 
     @property
     def harmed(self) -> list[TighterTolerance]:
-        """The numbers that the tolerance which is advised would worsen."""
-        return [one for one in self.own if one.harms]
+        """Effects of the advised tolerance for the worse."""
+        return [tolerance for tolerance in self.effects if tolerance.harms]
 
     @property
     def text(self) -> str:
-        """All of it."""
+        """All sentences of the advice."""
         sure = "" if self.sure is None else self.sure.promised
-        worse = [one.besides for one in self.harmed]
-        return " ".join(filter(None, (self.said, sure, *worse, self.also)))
+        worse = [tolerance.besides for tolerance in self.harmed]
+        return " ".join(filter(None, (self.sentence, sure, *worse, self.also)))

@@ -17,21 +17,21 @@ MOST_NAMED = 3
 
 @dataclass(frozen=True)
 class PredictionInterval:
-    """What the same study with another seed would most likely find.
+    """Prediction interval of a repetition of the study with another seed.
 
     Attributes
     ----------
-    what : str
-        ``the 5 % quantile``, or of whom there is a share: ``end within 24 hours``; "" for none.
+    subject : str
+        ``the 5 % quantile``, or the event of a share: ``end within 24 hours``; "" for none.
     low, high : float
-        Between which it would lie with a probability of 95 %.
+        Ends of the 95 % prediction interval.
     is_share : bool
     unit : DisplayUnit
     ranking : str
-        What would contribute most; "" where that is not known.
+        The leading input of the repetition, in words; "" if unknown.
     """
 
-    what: str = ""
+    subject: str = ""
     low: float = nan
     high: float = nan
     is_share: bool = False
@@ -40,29 +40,29 @@ class PredictionInterval:
 
     @property
     def sentence(self) -> str:
-        """What it would find; "" where that is not known."""
+        """The prediction in words; "" if unknown."""
         number = ""
-        if self.what and self.is_share:
-            number = f"{percent_interval(self.low, self.high)} would {self.what} (95 %)"
-        elif self.what:
-            number = f"{self.what} would {self._lie} (95 %)"
+        if self.subject and self.is_share:
+            number = f"{percent_interval(self.low, self.high)} would {self.subject} (95 %)"
+        elif self.subject:
+            number = f"{self.subject} would {self._verb_phrase} (95 %)"
         text = "; ".join(filter(None, (number, self.ranking)))
         return f"With another seed, {text}." if text else ""
 
     @property
-    def _lie(self) -> str:
+    def _verb_phrase(self) -> str:
         first, last = self.unit.text(self.low), self.unit.text(self.high)
         if first == last:  # to the digits shown
             return f"again be {first}"
         return f"lie between {self.unit.between(self.low, self.high, ' and ')}"
 
 
-def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
+def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
     """Return between which values an estimate from as many other rows lies with 95 %.
 
     Parameters
     ----------
-    one : Estimate
+    estimate : Estimate
         With its 95 % interval.
     is_positive : bool
         Whether it is a life, whose logarithm scatters evenly.
@@ -77,9 +77,9 @@ def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
     G. J. Hahn, W. Q. Meeker, "Statistical Intervals" (Wiley, 1991): the difference of two
     independent estimates has twice the variance of one.
     """
-    if not (one.has_interval and isfinite(one.value)):
+    if not (estimate.has_interval and isfinite(estimate.value)):
         return nan, nan
-    value, low, high = one.numbers
+    value, low, high = estimate.numbers
     if is_positive and low > 0:
         return value * (low / value) ** AGAIN, value * (high / value) ** AGAIN
     return value - AGAIN * (value - low), value + AGAIN * (high - value)
@@ -88,42 +88,42 @@ def found_again(one: Estimate, is_positive: bool) -> tuple[float, float]:
 def repeated_quantile(
     promise: ToleranceBound | None, likely: Range | None, ranking: Ranking | None
 ) -> PredictionInterval:
-    """Return what would be found of the quantile that a promise bounds, and of the ranking.
+    """Return the prediction interval of the quantile that a promise bounds, and of the ranking.
 
     A low quantile is no larger than the upper end of the likely range, which matters where values
     jump, and a high one no smaller than its lower end.
     """
     order = _ranked_again(ranking)
     if promise is not None:
-        for p, one in zip(promise.probabilities, promise.quantiles, strict=True):
-            low, high = found_again(one, promise.is_life)
+        for p, quantile in zip(promise.probabilities, promise.quantiles, strict=True):
+            low, high = found_again(quantile, promise.is_life)
             if isfinite(low):
                 if likely is not None and p < 0.5:
-                    high = min(high, max(likely.high.value, one.high))
+                    high = min(high, max(likely.high.value, quantile.high))
                 elif likely is not None:
-                    low = max(low, min(likely.low.value, one.low))
-                of = " of the magnitudes" if promise.of_magnitude else ""
-                what = f"the {100 * p:.3g} % quantile{of}"
-                return PredictionInterval(what, low, high, False, promise.unit, order)
+                    low = max(low, min(likely.low.value, quantile.low))
+                of_magnitudes = " of the magnitudes" if promise.of_magnitude else ""
+                subject = f"the {100 * p:.3g} % quantile{of_magnitudes}"
+                return PredictionInterval(subject, low, high, False, promise.unit, order)
     return PredictionInterval(ranking=order)
 
 
-def repeated_share(said: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
-    """Return what would be found of the share of rows that do what is said, and of the ranking."""
+def repeated_share(predicate: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
+    """Return the prediction interval of the probability of an event, and of the ranking."""
     low, high = found_again(share, False)
-    known = said if isfinite(low) else ""
+    subject = predicate if isfinite(low) else ""
     return PredictionInterval(
-        known, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking)
+        subject, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking)
     )
 
 
-def _ranked_again(one: Ranking | None) -> str:
-    """Return what would contribute most, in words; "" where that is not known."""
-    if one is None or one.denies_a_leader:
+def _ranked_again(ranking: Ranking | None) -> str:
+    """Return the leading input of a repetition, in words; "" if unknown."""
+    if ranking is None or ranking.denies_a_leader:
         return ""
-    if one.leader is None:
-        return "the order of the inputs could differ" if isfinite(one.rows_factor) else ""
-    names = [called(name) for name in one.rivals]
+    if ranking.leader is None:
+        return "the order of the inputs could differ" if isfinite(ranking.rows_factor) else ""
+    names = [called(name) for name in ranking.rivals]
     if len(names) > MOST_NAMED:
         return "the order of the inputs could differ"
     again = "again " if len(names) == 1 else ""

@@ -28,17 +28,17 @@ _BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
 
 @dataclass(frozen=True)
 class Unsettled:
-    """Something that the rows do not settle.
+    """A result that the sample size does not settle.
 
     Attributes
     ----------
-    what : str
-        A clause.
+    clause : str
+        The uncertainty in words, without its remedy.
     factor : float
-        How many times the rows would settle it; infinite where no number would.
+        Factor on the sample size that would settle it; infinite if no number would.
     """
 
-    what: str
+    clause: str
     factor: float
 
 
@@ -59,35 +59,35 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
         yield Unsettled(ranking.reason, ranking.rows_factor)
     for event in quantity.events:
         if event.ranking is not None and isfinite(event.ranking.rows_factor):
-            what = f"what decides how many {event.clause} is not settled"
-            yield Unsettled(what, event.ranking.rows_factor)
+            clause = f"what decides how many {event.clause} is not settled"
+            yield Unsettled(clause, event.ranking.rows_factor)
 
 
 def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
-    """Yield the bounds that the study asks for and the rows do not give."""
+    """Yield the requested bounds that the sample size does not support."""
     rows = len(findings.rows)
     for key, words in _BOUNDS.items():
-        described = (findings.summary.outputs[one.name] for one in answered)
-        found = (one.find(key, side) for one in described for side in ("lower", "upper"))
-        needed = max((one.rows_needed or 0.0 for one in found if one), default=0.0)
+        described = (findings.summary.outputs[quantity.name] for quantity in answered)
+        bounds = (element.find(key, side) for element in described for side in ("lower", "upper"))
+        needed = max((bound.rows_needed or 0.0 for bound in bounds if bound), default=0.0)
         if needed:
             asked = f"the {words} that the study asks for"
-            what = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
-            yield Unsettled(what or f"too many rows failed for {asked}", needed / max(rows, 1))
+            clause = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
+            yield Unsettled(clause or f"too many rows failed for {asked}", needed / max(rows, 1))
 
 
 def unsettled_share(event: Event) -> Iterator[Unsettled]:
-    """Yield that the probability of an event is not settled."""
-    one = event.share
-    if isnan(one.value) and event.sentence:
+    """Yield the probability of an event, if not settled."""
+    share = event.share
+    if isnan(share.value) and event.sentence:
         yield Unsettled(f"{event.sentence[:1].lower()}{event.sentence[1:-1]}", inf)
-    if not one.has_interval:
+    if not share.has_interval:
         return
-    half = (one.high - one.low) / 2
-    goal = max(SHARE * min(one.value, 1 - one.value), POINT)
+    half = (share.high - share.low) / 2
+    goal = max(SHARE * min(share.value, 1 - share.value), POINT)
     if half > goal:
-        what = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
-        yield Unsettled(what, (half / goal) ** 2)
+        clause = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
+        yield Unsettled(clause, (half / goal) ** 2)
 
 
 def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Unsettled]:
@@ -109,5 +109,5 @@ def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Unsettl
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
             text = promise.unit.text(reached, outwards)
             best = promise.unit.text(estimate.value)
-            what = f"the cautious bound, {text}, is far from the estimate, {best}"
-            yield Unsettled(what, (away / (BOUND * scale)) ** 2)
+            clause = f"the cautious bound, {text}, is far from the estimate, {best}"
+            yield Unsettled(clause, (away / (BOUND * scale)) ** 2)

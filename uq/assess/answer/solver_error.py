@@ -17,21 +17,21 @@ from uq.result.elements import Element
 from uq.text.numbers import capitalized, counted, percent
 
 NOTABLE = 0.01
-"""A smaller share of the variance is not worth a word."""
+"""A smaller share of the variance is negligible."""
 
 Sides = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class OwnError:
-    """What the rows' own error would do.
+    """Effect of the numerical error of the rows on a promise.
 
     Attributes
     ----------
     bounds : tuple of float
         Lower and upper, as promised; NaN without one.
     worse : tuple of float
-        The same if every value were wrong by its own error, to the unsafe side.
+        The bounds if every value were wrong by its error, to the unsafe side.
     are_quantiles : bool
         Whether quantiles are promised, for want of tolerance bounds.
     share : float
@@ -43,7 +43,7 @@ class OwnError:
     asked, missed : float
         The accuracy that the settings ask for, and the share of the rows that miss it; NaN without.
     unstated : int
-        How many rows state no error.
+        Number of rows without a stated error.
     """
 
     bounds: Sides = (nan, nan)
@@ -58,23 +58,25 @@ class OwnError:
 
     @property
     def sentence(self) -> str:
-        """What the error would do; "" where it is not worth a word."""
+        """The effect of the error in words; "" if negligible."""
         if not (self._moved or self.share >= NOTABLE or self.unstated):
             return ""
         about = (self._moved, self._of_variance, self._missing)
-        return " ".join(f"{capitalized(one)}." for one in about if one)
+        return " ".join(f"{capitalized(clause)}." for clause in about if clause)
 
     @property
     def _moved(self) -> str:
-        """Where the bounds would lie, of those that move by a digit that is shown."""
+        """The new bounds, of those that change in a shown digit."""
         noun, ways = "life" if self.is_life else "value", ("overestimated", "underestimated")
         now, then = ([*self._texts(ends)] for ends in (self.bounds, self.worse))
         moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
         if not moved:
             return ""
         how = joined([ways[i] for i in moved], "or")
-        what = "quantile" if self.are_quantiles else "bound"
-        does, it = (f"{what} does", "it") if len(moved) == 1 else (f"{what}s do", "they")
+        bound_noun = "quantile" if self.are_quantiles else "bound"
+        does, it = (
+            (f"{bound_noun} does", "it") if len(moved) == 1 else (f"{bound_noun}s do", "they")
+        )
         return (
             f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
             f" by as much, {it} would be {joined([then[i] for i in moved])}"
@@ -88,11 +90,13 @@ class OwnError:
     def _of_variance(self) -> str:
         if not self.share >= NOTABLE:
             return ""
-        of = "variance of the logarithm" if self.is_life else "variance"
+        variance = "variance of the logarithm" if self.is_life else "variance"
         which = "this error" if self._moved else "the rows' own numerical error"
         if self.share >= 1:
-            return f"the mean square of {which} exceeds the {of}: all scatter may be numerical"
-        return f"the mean square of {which} is {percent(self.share)} of the {of}"
+            return (
+                f"the mean square of {which} exceeds the {variance}: all scatter may be numerical"
+            )
+        return f"the mean square of {which} is {percent(self.share)} of the {variance}"
 
     @property
     def _missing(self) -> str:
@@ -109,13 +113,13 @@ class OwnError:
 def own_error_of(
     promise: ToleranceBound, described: Described, element: Element, context: Context
 ) -> OwnError | None:
-    """Return what the rows' own error would do to a promise; None where no error is stated.
+    """Return the effect of the stated errors of rows on a promise; None if none is stated.
 
     Parameters
     ----------
     promise : ToleranceBound
     described : Described
-        The statistics that it is from.
+        The statistics behind it.
     element : Element
         Of an angle, its magnitude.
     context : Context
@@ -131,9 +135,11 @@ def own_error_of(
     for side in (0, 1):
         if isfinite(bounds[side]) and not promise.joint:
             moved = off_by_error(element, error, (-1, 1)[side])
-            worse[side] = _again(promise, are_quantiles, moved, context)[side]
-    known = [one.facts["accuracy"] for one in described.parts.get("accuracy", ())]
-    asked, missed = next(((one["asked"], one["share"] or 0.0) for one in known), (nan, 0.0))
+            worse[side] = _bounds(promise, are_quantiles, moved, context)[side]
+    accuracies = [statistic.facts["accuracy"] for statistic in described.parts.get("accuracy", ())]
+    asked, missed = next(
+        ((accuracy["asked"], accuracy["share"] or 0.0) for accuracy in accuracies), (nan, 0.0)
+    )
     return OwnError(
         bounds,
         (worse[0], worse[1]),
@@ -147,15 +153,23 @@ def own_error_of(
     )
 
 
-def _again(
+def _bounds(
     promise: ToleranceBound, are_quantiles: bool, element: Element, context: Context
 ) -> Sides:
     """Return the bounds of other values of the same rows."""
     if not are_quantiles:
-        bounds = {one.key[-1]: one.estimate.value for one in tolerance(element, context)}
+        bounds = {
+            statistic.key[-1]: statistic.estimate.value for statistic in tolerance(element, context)
+        }
         return bounds["lower"], bounds["upper"]
-    alike = (one for one in population(context.rows, [element.output]) if one.name == element.name)
-    drawn = replace(next(alike), values=element.values)  # with the law of what scales its lives
-    known = {one.key[-1]: one.best.estimate.value for one in quantiles(drawn, context)}
-    low, high = (known[repr(p)] for p in promise.probabilities)
+    alike = (
+        candidate
+        for candidate in population(context.rows, [element.output])
+        if candidate.name == element.name
+    )
+    drawn = replace(next(alike), values=element.values)  # with the law of its scaling inputs
+    values = {
+        statistic.key[-1]: statistic.best.estimate.value for statistic in quantiles(drawn, context)
+    }
+    low, high = (values[repr(p)] for p in promise.probabilities)
     return low, high

@@ -13,7 +13,7 @@ _MARK = re.compile(rf"(?:^|[:;,] ){_WORDS}\b|(?<!\bnot )\b{_WORDS}$")
 
 
 def mark(source: str) -> str:
-    """Return how well a number is known according to its source, or "".
+    """Return the quality of a number according to its source, or "".
 
     Parameters
     ----------
@@ -26,10 +26,10 @@ def mark(source: str) -> str:
         ``given``, ``inferred``, ``fitted``, ``assumed`` or ``chosen``: the first that begins the
         sentence or one of its parts, or ends it.
     """
-    found = _MARK.search(source)
-    return (found[1] or found[2]) if found else ""
+    match = _MARK.search(source)
+    return (match[1] or match[2]) if match else ""
 
 
 def mark_of(result: Result, name: str) -> str:
-    """Return how well a parameter of a result is known; "" also where it has no source."""
+    """Return the quality of a parameter of a result; "" also without a source."""
     return mark(str(result.dataset[name].attrs.get("source", "")))

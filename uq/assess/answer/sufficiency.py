@@ -24,24 +24,24 @@ from uq.text.numbers import capitalized, rows_in_words
 
 @dataclass(frozen=True)
 class Enough:
-    """Whether the rows are enough.
+    """Sufficiency of the sample size.
 
     Attributes
     ----------
     unknown : str
-        Why that is not known, or "".
+        Reason why it is unknown, or "".
     question : tuple of Unsettled
-        What is not settled of that which the study is about, the least settled first.
+        Unsettled results on the subject of the study, the least settled first.
     besides : tuple of Unsettled
-        The same of everything else that it asks for.
+        Unsettled results on everything else, the least settled first.
     errors : Errors or None
-        Of what it is about, where the error of the rows themselves is the larger.
+        Errors of the subject, if the numerical error exceeds the sampling error.
     unit : DisplayUnit
-        Of these errors.
+        Unit of these errors.
     again : PredictionInterval
-        What another seed would find.
+        Prediction interval for another seed.
     others : tuple of str
-        What is not settled besides the first of the question, in sentences.
+        Sentences on all unsettled results but the first of the question.
     """
 
     unknown: str = ""
@@ -54,35 +54,37 @@ class Enough:
 
     @property
     def every(self) -> tuple[Unsettled, ...]:
-        """All that is not settled, the least settled first."""
-        return tuple(sorted(self.question + self.besides, key=lambda one: -one.factor))
+        """All unsettled results, the least settled first."""
+        return tuple(sorted(self.question + self.besides, key=lambda shortfall: -shortfall.factor))
 
     @property
     def sentence(self) -> str:
-        """Whether they are enough, and what another seed would find; "" where nothing is known."""
+        """Sufficiency and prediction for another seed; "" if unknown."""
         again = self.again.sentence
         if self.unknown:
             return again
-        if any(isfinite(one.factor) for one in self.question):
-            said = "The rows are not enough to settle all of this. "
+        if any(isfinite(shortfall.factor) for shortfall in self.question):
+            opening = "The rows are not enough to settle all of this. "
         elif self.errors is not None:
-            said = "More rows alone would not help, more accurate ones would. "
+            opening = "More rows alone would not help, more accurate ones would. "
         else:
-            said = "" if self.question else "The rows are enough: "
+            opening = "" if self.question else "The rows are enough: "
         if not again:
             return ""
-        return said + (f"{again[0].lower()}{again[1:]}" if said.endswith(": ") else again)
+        return opening + (f"{again[0].lower()}{again[1:]}" if opening.endswith(": ") else again)
 
     @property
     def finer(self) -> str:
-        """That the error of the rows themselves is the larger; "" where it is not."""
+        """Advice on a dominant numerical error; "" if it does not dominate."""
         if self.errors is None:
             return ""
-        own, sampling = (self.unit.text(one) for one in (self.errors.own, self.errors.sampling))
+        numerical, sampling = (
+            self.unit.text(error) for error in (self.errors.numerical, self.errors.sampling)
+        )
         return (
             "Compute more accurate rows before more of them (finer settings or longer averages):"
-            f" their numerical error may move the {self.errors.estimate} by {own}, sampling by"
-            f" {sampling}."
+            f" their numerical error may move the {self.errors.estimate} by {numerical},"
+            f" sampling by {sampling}."
         )
 
 
@@ -95,61 +97,73 @@ def enough_of(
     ----------
     findings : Findings
     answered : sequence of Quantity
-        The one that the study is about first.
+        The subject of the study first.
     regimes : sequence of Event
-        Those that the study is about; none if it is about a quantity.
+        The subject of the study; none if that is a quantity.
     """
     result = findings.result
     why = result.why_no_statistics
     none = f"the rows of a '{result.design_name}' design {why}; use 'monte-carlo'" if why else ""
     unknown = none or why_no_intervals(result).removeprefix("no intervals: ")
-    known = result.outputs
-    own = [one for one in answered if not is_error(one.output, known)] or [*answered]
-    about, rest = ([], own) if regimes else (own[:1], own[1:])
-    question = [each for one in about for each in unsettled(one)]
-    question += [each for one in regimes for each in unsettled_share(one)]
-    question += bounds_unsettled(findings, own)
+    outputs = result.outputs
+    primary = [quantity for quantity in answered if not is_error(quantity.output, outputs)] or [
+        *answered
+    ]
+    about, rest = ([], primary) if regimes else (primary[:1], primary[1:])
+    question = [each for quantity in about for each in unsettled(quantity)]
+    question += [each for regime in regimes for each in unsettled_share(regime)]
+    question += bounds_unsettled(findings, primary)
     besides = [
-        replace(each, what=f"{each.what} ({one.words})") for one in rest for each in unsettled(one)
+        replace(each, clause=f"{each.clause} ({quantity.words})")
+        for quantity in rest
+        for each in unsettled(quantity)
     ]
     errors = None if not about or result.has_weights else _errors(findings, about[0])
-    found = Enough(
+    enough = Enough(
         unknown,
-        tuple(sorted(question, key=lambda one: -one.factor)),
-        tuple(sorted(besides, key=lambda one: -one.factor)),
+        tuple(sorted(question, key=lambda shortfall: -shortfall.factor)),
+        tuple(sorted(besides, key=lambda shortfall: -shortfall.factor)),
         errors,
         about[0].range.unit if about and about[0].range is not None else DisplayUnit(),
-        _again(about, regimes),
+        _prediction(about, regimes),
     )
-    others = [one for one in found.every if one is not next(iter(found.question), None)]
-    said = (capitalized(settled(one, result)) for one in others if isfinite(one.factor))
-    return replace(found, others=tuple(said))
+    others = [
+        shortfall
+        for shortfall in enough.every
+        if shortfall is not next(iter(enough.question), None)
+    ]
+    sentences = (
+        capitalized(settled(shortfall, result))
+        for shortfall in others
+        if isfinite(shortfall.factor)
+    )
+    return replace(enough, others=tuple(sentences))
 
 
-def _again(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInterval:
+def _prediction(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInterval:
     if regimes:
         first = regimes[0]
         ranking = None if first.is_of_single else first.ranking
-        return repeated_share(f"be {first.said}", first.share, ranking)
+        return repeated_share(f"be {first.predicate}", first.share, ranking)
     return about[0].repeated if about else PredictionInterval()
 
 
-def _errors(findings: Findings, one: Quantity) -> Errors | None:
-    """Return the errors of a quantity where that of the rows themselves is the larger."""
-    (element,) = findings.rows.named_elements(one.name)
-    found = compared(findings.rows, element, findings.summary.outputs[one.name])
-    return found if found.warning else None
+def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
+    """Return the errors of a quantity, if its numerical error exceeds its sampling error."""
+    (element,) = findings.rows.named_elements(quantity.name)
+    errors = compared(findings.rows, element, findings.summary.outputs[quantity.name])
+    return errors if errors.warning else None
 
 
-def settled(one: Unsettled, result: Result) -> str:
-    """Return what is not settled, and how many rows in all would settle it."""
-    return f"{one.what}; {needed(one, result)} in all would settle it."
+def settled(shortfall: Unsettled, result: Result) -> str:
+    """Return an unsettled result and the sample size that would settle it."""
+    return f"{shortfall.clause}; {needed(shortfall, result)} in all would settle it."
 
 
-def needed(one: Unsettled, result: Result) -> str:
-    """Return the rows that would settle it, and of how many samples where these have several."""
-    many = "more than" if one.factor > MOST else "about"
-    factor = min(one.factor, MOST)
+def needed(shortfall: Unsettled, result: Result) -> str:
+    """Return the number of rows that would settle it, with samples if these have several rows."""
+    many = "more than" if shortfall.factor > MOST else "about"
+    factor = min(shortfall.factor, MOST)
     rows = f"{many} {rows_in_words(factor * result.dataset.sizes['row'])} rows"
     samples = rows_in_words(factor * int(result.dataset.attrs["samples"]))
     return f"{rows} ({samples} samples)" if result.is_nested else rows

@@ -1,4 +1,4 @@
-"""Tighter tolerances: what half the scatter of each input would change, by weights of rows."""
+"""Tighter tolerances: effects of halving the scatter of each input, by importance weights."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ _UNKNOWN = "the rows cannot show what it would change"
 def tightened(
     result: Result, quantity: Quantity, inputs: Sequence[str]
 ) -> Iterator[TighterTolerance]:
-    """Yield what half the scatter of some inputs would change about a quantity.
+    """Yield the effects of halving the scatter of inputs on a quantity.
 
     Parameters
     ----------
@@ -56,16 +56,16 @@ def tightened(
     for key, words, before, unit, more in promised_numbers:
         statistic = described.find(*key) if described is not None else None
         if statistic is None:
-            yield replace(unanswered, what=words, reason=_UNKNOWN)
+            yield replace(unanswered, statistic=words, reason=_UNKNOWN)
             continue
         after = statistic.best.estimate
         if not isfinite(after.value):
-            yield replace(unanswered, what=words, reason=f"{_UNKNOWN} ({after.reason})")
+            yield replace(unanswered, statistic=words, reason=f"{_UNKNOWN} ({after.reason})")
             continue
         given = {name: repr(value) for name, value in changes.items()}
         yield replace(
             unanswered,
-            what=words,
+            statistic=words,
             before=before,
             after=after,
             is_share=key[0] == "thresholds",
@@ -79,7 +79,7 @@ def tightened(
 
 
 def _asked(result: Result, quantity: Quantity, keys: Sequence[Sequence[str]]) -> AnalysisTable:
-    """Return what a study asks for, of this quantity and these quantiles alone."""
+    """Return the [analysis] of a study for this quantity and these quantiles alone."""
     asked = result.analysis_of(quantity.output)
     wanted = {key[1] for key in keys if key[0] == "quantiles"}
     quantiles = tuple(p for p in asked.quantiles if repr(p) in wanted)
@@ -104,7 +104,7 @@ def _promised(
             continue
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
-        words = SHARE_OF + event.said
+        words = SHARE_OF + event.predicate
         yield key, words, event.share, DisplayUnit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
@@ -128,16 +128,16 @@ ABOUT = 0.75
 
 
 def tighten(result: Result, quantity: Quantity, leader: Contribution) -> Iterator[Advice]:
-    """Yield which tolerance to tighten, which would help about as much, and all that are known.
+    """Yield the tolerance to tighten, its alternatives, and all estimated effects.
 
     Parameters
     ----------
     result : Result
         A result.
     quantity : Quantity
-        What the study is about.
+        The subject of the study.
     leader : Contribution
-        What contributes most: its number is the one that all are compared by.
+        The leading contribution: all tolerances are compared by its statistic.
     """
     of_contributions = [
         _shown(result, quantity, contribution)
@@ -161,7 +161,7 @@ def tighten(result: Result, quantity: Quantity, leader: Contribution) -> Iterato
             for tolerance in refused[:1]
         )
         return
-    compared = [tolerance for tolerance in better if tolerance.what == better[0].what]
+    compared = [tolerance for tolerance in better if tolerance.statistic == better[0].statistic]
     best, *others = compared[:1]
     if best.wants_more is not None:
         best, *others = sorted(compared, key=lambda tolerance: -tolerance.gain)
@@ -182,7 +182,7 @@ def twins(leader: Contribution) -> tuple[str, ...]:
 
 
 def _candidates(result: Result, quantity: Quantity, leader: Contribution) -> list[Contribution]:
-    """Return what contributes and is not chosen, no input named twice, the leader first."""
+    """Return contributions of inputs that are not chosen, without overlaps, the leader first."""
     rankings = [event.ranking for event in quantity.events] + [quantity.ranking]
     candidates = [leader]
     for ranking in rankings:
@@ -198,7 +198,7 @@ def _candidates(result: Result, quantity: Quantity, leader: Contribution) -> lis
 def _shown(
     result: Result, quantity: Quantity, contribution: Contribution
 ) -> Sequence[TighterTolerance]:
-    """Return what half the scatter of inputs would change, of as many as the rows can show."""
+    """Return the effects of halving the scatter of as many inputs as the rows can show."""
     tolerances: list[TighterTolerance] = []
     sets = (contribution.sure, twins(contribution), contribution.inputs[:1])
     for inputs in dict.fromkeys(sets):

@@ -14,21 +14,21 @@ _ONE_END = (1 + CONFIDENCE) / 2
 
 @dataclass(frozen=True)
 class SampleSupport:
-    """Which values a number is about.
+    """Values that a statistic describes.
 
     Attributes
     ----------
     rows_failed : bool
         Whether there are rows without a value because they failed.
     undefined : float
-        Share of the rows in which there is none.
+        Share of the rows without a defined value.
     """
 
     rows_failed: bool = False
     undefined: float = 0.0
 
-    def of(self, noun: str) -> str:
-        """Return which they are: ``of the computed lives``; "" for all."""
+    def phrase(self, noun: str) -> str:
+        """Return them in words: ``of the computed lives``; "" for all."""
         if self.undefined > 0:
             return f"of the defined {noun}"
         return f"of the computed {noun}" if self.rows_failed else ""
@@ -51,7 +51,7 @@ class BoundaryAtom:
     share: float
 
     def sentence(self, unit: DisplayUnit) -> str:
-        """Return how many they are, in words."""
+        """Return their share in words."""
         which = "largest" if self.upper else "smallest"
         text = f"{percent(self.share)} of the rows share the {which} value, {unit.text(self.value)}"
         return f"{text}, at which values may be cut off"
@@ -59,7 +59,7 @@ class BoundaryAtom:
 
 @dataclass(frozen=True)
 class ToleranceBound:
-    """A value that can be promised.
+    """A tolerance bound that can be promised, or conservative quantiles.
 
     Attributes
     ----------
@@ -73,22 +73,22 @@ class ToleranceBound:
     failed : tuple
         The same quantiles with failed rows at either side; None where none failed.
     reason : str
-        Why there is no tolerance bound, or "".
+        Reason for a missing tolerance bound, or "".
     unit : DisplayUnit
     is_life, of_magnitude : bool
         Whether it is a life that ends; whether it is the magnitude of an angle.
     ends : str
-        What a life does at its end.
+        Verb for the end of a life.
     joint : tuple of str
         Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
-    known : Known
-        Which values it is about.
+    support : SampleSupport
+        Values that it describes.
     recurs : bool
-        Whether rows have equal values, so that many may have that of a bound.
+        Whether rows have equal values, so that many may equal a bound.
     ranks : tuple of int
         Places of the bounds among all rows, the smallest first; 0 without one.
     rows : int
-        How many rows these are.
+        Number of all rows.
     piled : tuple of BoundaryAtom
         Instead of bounds: sides on which too many rows have the last value for one.
     """
@@ -105,7 +105,7 @@ class ToleranceBound:
     of_magnitude: bool = False
     ends: str = "end"
     joint: tuple[str, ...] = ()
-    known: SampleSupport = field(default_factory=SampleSupport)
+    support: SampleSupport = field(default_factory=SampleSupport)
     recurs: bool = False
     ranks: tuple[int, int] = (0, 0)
     rows: int = 0
@@ -113,13 +113,13 @@ class ToleranceBound:
 
     @property
     def sentence(self) -> str:
-        """What can be promised, and where rows pile up; "" where nothing can be said."""
-        piles = (f"{one.sentence(self.unit)}." for one in self.piled)
+        """The promise, and boundary atoms; "" if there is none."""
+        piles = (f"{atom.sentence(self.unit)}." for atom in self.piled)
         return " ".join(filter(None, (self._promised, *piles)))
 
     @property
     def probabilities(self) -> tuple[float, float]:
-        """Those of its quantiles."""
+        """Probabilities of its quantiles."""
         return round(1 - self.coverage, 12), self.coverage
 
     @property
@@ -132,17 +132,17 @@ class ToleranceBound:
             if isfinite(bound)
         ]
         if bounds and self.joint:
-            return f"{self._sure}, at least {covered} {' and '.join(bounds)}{self._others}."
+            return f"{self._confidence}, at least {covered} {' and '.join(bounds)}{self._others}."
         if bounds:
             each, joined = " each" * (len(bounds) > 1), f", and at least {covered} ".join(bounds)
-            return f"{self._sure}{each}, at least {covered} {joined}."
-        share = " ".join(filter(None, (share, self.known.of(self._noun))))
+            return f"{self._confidence}{each}, at least {covered} {joined}."
+        share = " ".join(filter(None, (share, self.support.phrase(self._noun))))
         cautious: list[str] = []
-        for i, one in enumerate(self.quantiles):
-            end = (one.low, one.high)[i]
-            if not isfinite(one.value):
+        for i, quantile in enumerate(self.quantiles):
+            end = (quantile.low, quantile.high)[i]
+            if not isfinite(quantile.value):
                 continue
-            text = f"{share} {self._side(i)} {self.unit.text(one.value)}"
+            text = f"{share} {self._side(i)} {self.unit.text(quantile.value)}"
             if isfinite(end):
                 text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
             else:
@@ -151,7 +151,7 @@ class ToleranceBound:
         return f"{'; '.join(cautious)}." if cautious else ""
 
     def of_quantile(self, probability: float) -> "ToleranceBound | None":
-        """Return the same with the bound of one quantile alone.
+        """Return it with the bound of one quantile alone.
 
         None where there is none, or an end of the interval of the quantile would not bound it with
         this confidence.
@@ -163,47 +163,47 @@ class ToleranceBound:
         return replace(self, upper=nan) if isfinite(self.lower) else None
 
     def would_be(self, quantile: Estimate, before: Estimate) -> str:
-        """Return what an end of the interval of the quantile would be, beside the same now.
+        """Return a sentence on the new end of the interval of the quantile, beside the present one.
 
         "" without it, or where it is no better than now: the rows may be too few. It is called what
         it is, and not a bound of its coverage: the tolerance bound, of another estimator, is.
         """
         is_upper = isfinite(self.upper)
-        bound, now = ((one.low, one.high)[is_upper] for one in (quantile, before))
+        bound, now = ((estimate.low, estimate.high)[is_upper] for estimate in (quantile, before))
         if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
-        then, studied = (self.unit.text(one, (-inf, inf)[is_upper]) for one in (bound, now))
+        then, studied = (self.unit.text(end, (-inf, inf)[is_upper]) for end in (bound, now))
         return f"{self.end_of_quantile} {then}; as studied, {studied}."
 
     @property
     def end_of_quantile(self) -> str:
-        """What an end of the interval of the quantile that it bounds would be, up to the number."""
+        """Opening of the sentence on the new end of the interval of the bounded quantile."""
         is_upper = isfinite(self.upper)
         side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
-        of = " of magnitudes" if self.of_magnitude else ""
-        return f"The {side} end of the interval of the {100 * p:.3g} % quantile{of} would then be"
+        quantile = f"{100 * p:.3g} % quantile{' of magnitudes' * self.of_magnitude}"
+        return f"The {side} end of the interval of the {quantile} would then be"
 
     def opening(self) -> str:
-        """Return what a single bound promises, up to the bound."""
+        """Return the opening of the promise of a single bound, up to the bound."""
         side = self._side(isfinite(self.upper))
         share = f"at least {100 * self.coverage:g} %"
-        return f"{self._sure}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
+        return f"{self._confidence}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
 
     @property
-    def _sure(self) -> str:
+    def _confidence(self) -> str:
         return f"With {100 * self.confidence:g} % confidence"
 
     @property
     def basis(self) -> str:
-        """What kind of bound it is, or why there is none."""
+        """The kind of bound, or the reason why there is none."""
         if not (isfinite(self.lower) or isfinite(self.upper) or self.reason):
             return ""
         if not self.reason:
             several = isfinite(self.lower) and isfinite(self.upper)
             bound = f"{'joint ' * bool(self.joint)}tolerance bound{'s' * several}"
-            known = [grouped(rank) for rank in self.ranks if rank]
-            places = f"{'s' * several} {' and '.join(known)} of {grouped(self.rows)} in order"
-            which = f": value{places}" if known else ""
+            ranks = [grouped(rank) for rank in self.ranks if rank]
+            places = f"{'s' * several} {' and '.join(ranks)} of {grouped(self.rows)} in order"
+            which = f": value{places}" if ranks else ""
             return f"{bound.capitalize()} from order statistics{which}, valid for any distribution."
         end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
         bound = f"{'joint ' * bool(self.joint)}tolerance bound"
@@ -222,8 +222,8 @@ class ToleranceBound:
 
     @property
     def _of_bounded(self) -> str:
-        """Which values a tolerance bound is about: failed rows count as beyond it."""
-        return replace(self.known, rows_failed=False).of(self._noun)
+        """Values that a tolerance bound describes: failed rows count as beyond it."""
+        return replace(self.support, rows_failed=False).phrase(self._noun)
 
     @property
     def _is_cautious(self) -> bool:
@@ -246,7 +246,7 @@ class ToleranceBound:
 class Range:
     """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
 
-    ``ends`` is what a life does at its end, ``known`` which values they are.
+    ``ends`` is the verb for the end of a life, ``support`` which values they describe.
     """
 
     low: Estimate
@@ -256,33 +256,33 @@ class Range:
     of_magnitude: bool = False
     ends: str = "end"
     never: Estimate = NOTHING
-    known: SampleSupport = field(default_factory=SampleSupport)
+    support: SampleSupport = field(default_factory=SampleSupport)
     is_life: bool = False
 
     @property
     def sentence(self) -> str:
-        """Range, median, and how many never end, as far as they are known."""
+        """Range, median, and share that never ends, as far as known."""
         parts = []
         noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
-        of = self.known.of(noun) or "of the magnitudes" * self.of_magnitude
-        what = f"{of} " if of else ""
+        of_values = self.support.phrase(noun) or "of the magnitudes" * self.of_magnitude
+        subject = f"{of_values} " if of_values else ""
         if isfinite(self.low.value) and isfinite(self.high.value):
             ends = self.unit.between(self.low.value, self.high.value, " and ")
-            parts.append(f"90 % {what}lie between {ends}")
+            parts.append(f"90 % {subject}lie between {ends}")
         elif isfinite(self.low.value) and self.high.value == inf:
-            parts.append(f"5 % {what}{self.ends} within {self.unit.text(self.low.value)}")
+            parts.append(f"5 % {subject}{self.ends} within {self.unit.text(self.low.value)}")
             if "value" in self.high.beyond:
                 parts.append("more than 5 % exceed the horizon")
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
         parts.append(self._never)
-        if self.known.undefined > 0:
-            parts.append(f"{percent(self.known.undefined)} of the rows have none")
+        if self.support.undefined > 0:
+            parts.append(f"{percent(self.support.undefined)} of the rows have none")
         return sentence("; ".join(filter(None, parts))) if any(parts) else ""
 
     @property
     def _never(self) -> str:
-        """How many never end; "" where that is not known, or it is no life."""
+        """Share that never ends; "" if unknown, or not of a life."""
         if self.never.value == 0 and self.never.has_interval:
             most = rounded(100 * self.never.high, inf)
             verb = self.ends + "s"

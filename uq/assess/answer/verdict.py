@@ -10,7 +10,7 @@ from uq.assess.findings import Findings
 
 
 def verdict(findings: Findings, output: str | None = None) -> list[str]:
-    """Return whether the rows are enough, in sentences, the least settled first.
+    """Return the verdict on the sample size in sentences, the least settled first.
 
     Parameters
     ----------
@@ -21,20 +21,24 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     result = findings.result
     if output is None:
         answer = without_advice(findings)
-        asked, found = answer.quantities, answer.enough
+        asked, enough = answer.quantities, answer.enough
     else:
-        asked = tuple(one for one in quantities(findings) if output in (one.name, one.output))
-        found = enough_of(findings, asked)
+        asked = tuple(
+            quantity
+            for quantity in quantities(findings)
+            if output in (quantity.name, quantity.output)
+        )
+        enough = enough_of(findings, asked)
     if not len(result):
         return []
-    if found.unknown:
-        return [f"Whether the rows are enough is not known: {found.unknown}."]
-    if not found.every:
+    if enough.unknown:
+        return [f"Whether the rows are enough is not known: {enough.unknown}."]
+    if not enough.every:
         return ["Enough rows: what the study asks is settled."] if asked else []
     lines = [
-        f"Not enough rows: {settled(one, result)}"
-        if isfinite(one.factor)
-        else f"{sentence(one.what)} More rows would not help."
-        for one in found.every
+        f"Not enough rows: {settled(shortfall, result)}"
+        if isfinite(shortfall.factor)
+        else f"{sentence(shortfall.clause)} More rows would not help."
+        for shortfall in enough.every
     ]
-    return lines if found.question else ["Enough rows for what the study is about.", *lines]
+    return lines if enough.question else ["Enough rows for what the study is about.", *lines]

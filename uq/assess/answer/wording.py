@@ -23,7 +23,7 @@ class DisplayUnit(NamedTuple):
     name : str
         "" for a pure number.
     per : float
-        What numbers are divided by.
+        Divisor of the numbers.
     resolution : float
         The smallest difference that digits must show, before the division; 0 for three digits.
     """
@@ -103,7 +103,7 @@ def called_together(names: Sequence[str]) -> str:
     groups: dict[str, list[str]] = {}
     for name in names:
         groups.setdefault(twin_of(name), []).append(name)
-    words = [_twins_called(stem, own) for stem, own in groups.items()]
+    words = [_twins_called(stem, twins) for stem, twins in groups.items()]
     return joined(words)
 
 
@@ -120,9 +120,9 @@ def _twins_called(stem: str, names: Sequence[str]) -> str:
 
 
 def twin_of(name: str) -> str:
-    """Return what the name of an input is without its number: ``unbalance`` of ``unbalance_2``."""
-    found = _TWIN.fullmatch(name)
-    return found[1] if found else name
+    """Return the name of an input without its number: ``unbalance`` of ``unbalance_2``."""
+    match = _TWIN.fullmatch(name)
+    return match[1] if match else name
 
 
 def _plural(words: str) -> str:
@@ -154,7 +154,7 @@ def sentence(text: str) -> str:
     return f"{capitalized(text)}."
 
 
-def share_text(one: Estimate) -> str:
+def share_text(share: Estimate) -> str:
     """Return a share in per cent, with its interval."""
-    interval = f" ({percent_interval(one.low, one.high)})" if one.has_interval else ""
-    return percent(one.value) + interval
+    interval = f" ({percent_interval(share.low, share.high)})" if share.has_interval else ""
+    return percent(share.value) + interval

@@ -26,7 +26,7 @@ class FigureSubject:
     keywords : dict
         Passed on to the function that draws it.
     part : str
-        Which of several figures it is: ``1 of 2``.
+        Its number among several figures: ``1 of 2``.
     """
 
     name: str = ""
@@ -48,10 +48,10 @@ class Entry:
     draw : callable
         ``draw(ds, output, *, axes=None)`` or, for a whole result, ``draw(ds, *, axes=None)``. The
         documentation quotes the first line of its docstring.
-    of : callable
+    subjects : callable
         Findings -> subjects: a function of `uq.render.figures.subjects`.
     caption : str
-        With ``{what}``, ``{event}`` and ``{method}``: an output or a target in words, and an event.
+        With ``{what}``, ``{event}`` and ``{method}``: output or target, event, and method in words.
     section : str
         Of the report; "" if the report does not show it.
     applies : tuple of callable
@@ -65,7 +65,7 @@ class Entry:
     """
 
     draw: Callable[..., Figure]
-    of: Callable[[Findings], Iterator[FigureSubject]]
+    subjects: Callable[[Findings], Iterator[FigureSubject]]
     caption: str = "{what}"
     section: Literal["inputs", "rows", "results", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
@@ -92,17 +92,17 @@ class Drawable:
 
     @property
     def caption(self) -> str:
-        """What it shows."""
+        """Its caption: subject, method and part."""
         result, name = self.findings.result, self.subject.name
-        what = (
+        words = (
             str(result.dataset[name].attrs["long_name"])
             if name in result.dataset
             else subject(result, name)
             if name
             else ""
         )
-        event = what.removeprefix("whether ")
-        caption = self.entry.caption.format(what=what, event=event, method=self.subject.method)
+        event = words.removeprefix("whether ")
+        caption = self.entry.caption.format(what=words, event=event, method=self.subject.method)
         return capitalized(caption) + f" ({self.subject.part})" * bool(self.subject.part)
 
     def draw(self) -> Figure:
@@ -115,19 +115,19 @@ class Drawable:
 def drawables(
     figures: Mapping[str, Entry], findings: Findings, section: str | None = None
 ) -> Iterator[Drawable]:
-    """Yield every figure of a result, or those of one section of its report, in order.
+    """Yield every figure of a result, or of one section of its report, in order.
 
     Neighbouring entries with the same subjects alternate: all figures of one output come before
     those of the next.
     """
-    chosen = [one for one in figures.items() if section in (None, one[1].section)]
-    for of, entries in groupby(chosen, key=lambda one: one[1].of):
+    chosen = [pair for pair in figures.items() if section in (None, pair[1].section)]
+    for subjects_of, entries in groupby(chosen, key=lambda pair: pair[1].subjects):
         together = list(entries)
-        for one in of(findings):
+        for figure_subject in subjects_of(findings):
             for figure, entry in together:
                 conditions = entry.applies + (entry.in_report if section else ())
-                if all(applies(findings, one.name) for applies in conditions):
-                    yield Drawable(figure, entry, one, findings)
+                if all(applies(findings, figure_subject.name) for applies in conditions):
+                    yield Drawable(figure, entry, figure_subject, findings)
 
 
 def file_name(*words: str) -> str:

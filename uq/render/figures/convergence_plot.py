@@ -54,40 +54,44 @@ def convergence(
     """
     result = Result.of(result)
     running = running_estimates(result) if running is None else running
-    kind, own = followed(result, output, running)
+    kind, estimates = followed(result, output, running)
     if not kind:
         raise InputError(f"{output}: neither its mean nor its median can be estimated")
     chosen, part = drawn_elements(result.independent, output)
-    unit = display_unit(chosen[0].units, np.concatenate([one.values for one in chosen]))
+    unit = display_unit(chosen[0].units, np.concatenate([element.values for element in chosen]))
     (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
         _curve(
             panel,
-            own[own["output"] == element.name],
+            estimates[estimates["output"] == element.name],
             unit.size,
             colour,
             line,
             label(result, element),
         )
-    what = "mean" if kind == "mean" else "median"
-    known = _over_samples(panel, result)
-    if known and not np.isfinite(own[["low", "high"]].astype(float)).all(axis=None):
-        known += " where the rows allow one"
+    statistic = "mean" if kind == "mean" else "median"
+    bands = _over_samples(panel, result)
+    if bands and not np.isfinite(estimates[["low", "high"]].astype(float)).all(axis=None):
+        bands += " where the rows allow one"
     whole_numbers(panel.yaxis)
-    title(panel, as_label(f"{what}: {chosen[0].meaning}", unit.name, 46), part, known)
+    title(panel, as_label(f"{statistic}: {chosen[0].meaning}", unit.name, 46), part, bands)
     return finish(panel)
 
 
 def followed(result: Result, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
     """Return the estimate of an output that `convergence` draws ("" for none), and its lines."""
     names = [element.name for element in result.independent.named_elements(output)]
-    own = running[running["output"].isin(names)]
-    own = own[np.isfinite(own["value"].astype(float))]
+    estimates = running[running["output"].isin(names)]
+    estimates = estimates[np.isfinite(estimates["value"].astype(float))]
     # If a life never ends, the first rows may have a mean although all rows have none.
-    of_all = own[own["samples"] == running["samples"].max()].groupby("estimate")["output"].nunique()
-    kind = max(("mean", "quantile 0.5"), key=lambda one: of_all.get(one, 0))
-    return kind if kind in of_all else "", own[own["estimate"] == kind]
+    of_all = (
+        estimates[estimates["samples"] == running["samples"].max()]
+        .groupby("estimate")["output"]
+        .nunique()
+    )
+    kind = max(("mean", "quantile 0.5"), key=lambda estimate: of_all.get(estimate, 0))
+    return kind if kind in of_all else "", estimates[estimates["estimate"] == kind]
 
 
 @styled
@@ -116,29 +120,31 @@ def index_convergence(
     """
     result = Result.of(result)
     running = running_estimates(result) if running is None else running
-    own = total_indices(running)
-    own = own[own["output"] == output]
-    if own.empty:
+    totals = total_indices(running)
+    totals = totals[totals["output"] == output]
+    if totals.empty:
         raise InputError(f"{output}: no total indices of fewer rows are known")
-    last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
+    last = totals[totals["samples"] == totals["samples"].max()].sort_values(
+        "value", ascending=False
+    )
     leading = last["input"].tolist()[:_MOST_INPUTS]
     (panel,) = column(axes, 2.1)
     ends = []
     for i, name in enumerate(leading):
-        samples, value, low, high = _numbers(own[own["input"] == name])
+        samples, value, low, high = _numbers(totals[totals["input"] == name])
         samples = samples * 2 ** (_APART * (i - (len(leading) - 1) / 2))
         colour, line = SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
         style: Any = {"color": colour, "ls": line, "marker": _MARKS[i], "ms": 3}
         panel.plot(samples, value, label=labelled(result.dataset[name], width=60), **style)
-        known = np.isfinite(low)
-        panel.vlines(samples[known], low[known], high[known], color=colour, lw=0.8)
+        bounded = np.isfinite(low)
+        panel.vlines(samples[bounded], low[bounded], high[bounded], color=colour, lw=0.8)
         ends.append((samples, low, high))
     panel.set_ylabel("Total index (ST)")
     panel.set_ylim(range_of_indices(panel.get_ylim()))
-    said = _over_samples(panel, result)
-    for one in ends:
-        arrows(panel, *one, "y", color=INK)
-    title(panel, as_label(subject(result, output), width=50), said)
+    bands = _over_samples(panel, result)
+    for interval in ends:
+        arrows(panel, *interval, "y", color=INK)
+    title(panel, as_label(subject(result, output), width=50), bands)
     return finish(panel)
 
 
@@ -151,7 +157,7 @@ def _curve(
     axes: Axes, lines: pd.DataFrame, per: float, colour: str, style: str, words: str
 ) -> None:
     samples, *numbers = _numbers(lines)
-    value, low, high = (one / per for one in numbers)
+    value, low, high = (series / per for series in numbers)
     axes.plot(samples, value, color=colour, ls=style, marker=".", label=words)
     if np.isfinite(low).any():
         only = 0.8 if len(samples) == 1 else 0  # a band over one place has no width
@@ -164,12 +170,12 @@ def _numbers(lines: pd.DataFrame) -> list[Floats]:
 
 
 def _over_samples(axes: Axes, result: Result) -> str:
-    """Draw the axis of samples, and return what the bands are."""
+    """Draw the axis of samples, and return the title's note on intervals."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: grouped(round(value)))
     axes.minorticks_off()
     replicates = int(result.dataset.attrs["replicates"])
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
-    known = any(len(band.get_paths()) for band in axes.collections)
-    return known * "with 95 % intervals"
+    has_bands = any(len(band.get_paths()) for band in axes.collections)
+    return has_bands * "with 95 % intervals"

@@ -67,11 +67,11 @@ def histogram(
     together = np.concatenate([element.at_least for element in chosen])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
-    known = (summary or summarise(result)).outputs
+    outputs = (summary or summarise(result)).outputs
     marked = False
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
-        marked |= _mark_bounds(panel, result, element, known.get(element.name), unit, colour)
+        marked |= _mark_bounds(panel, result, element, outputs.get(element.name), unit, colour)
         style: Any = {"color": colour, "ls": line, "lw": 1.2}
         if len(chosen) == 1:
             style = {"color": ROWS, "fill": True, "lw": 0}
@@ -111,7 +111,9 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
     codes = rows.dataset["regime"].values
     ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
     drawn = set(codes[np.any(ended, axis=0)].tolist())
-    regimes = {name: one for name, one in occurring_regimes(rows).items() if one[0] in drawn}
+    regimes = {
+        name: regime for name, regime in occurring_regimes(rows).items() if regime[0] in drawn
+    }
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
@@ -124,7 +126,7 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
             base = top
         panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
-        entitle(panel, [element], of=label(result, element))
+        entitle(panel, [element], place=label(result, element))
     below = "" if chosen == every else f"\nthe first and the last of {len(every)} elements"
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name) + below)
     if wide:
@@ -171,7 +173,7 @@ def lifetime(
     unit = display_unit(chosen[0].declared.unit, ends)
     (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
-    known = (summary or summarise(result)).outputs
+    outputs = (summary or summarise(result)).outputs
     for i, element in enumerate(chosen):
         curve = survival(result, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
@@ -184,7 +186,7 @@ def lifetime(
             if np.isfinite(low).any():
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
-        if _mark_bounds(panel, result, element, known.get(element.name), unit, colour):
+        if _mark_bounds(panel, result, element, outputs.get(element.name), unit, colour):
             bands[_BOUND] = True
     success = chosen[0].declared.success
     event = typeset(literal(success)) if success else "the life has ended"
@@ -199,7 +201,7 @@ def lifetime(
     marked: set[str] = set()
     for i, element in enumerate(chosen):
         colour, _ = curve_style(i, element, chosen)
-        marked |= _mark(panel, known.get(element.name), unit, colour)
+        marked |= _mark(panel, outputs.get(element.name), unit, colour)
     if marked:
         bands[f"marks: {', '.join(name for name in B_LIVES if name in marked)}"] = True
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
@@ -213,18 +215,22 @@ def _mark_bounds(
     axes: Axes,
     result: Result,
     element: Element,
-    found: Described | None,
+    described: Described | None,
     unit: ReadableUnit,
     colour: str,
 ) -> bool:
     """Draw the tolerance bounds of an element, and return whether there are any."""
-    if found is None or element.is_angle:
+    if described is None or element.is_angle:
         return False
     wanted = result.analysis.wanted.get(element.output)
     if element.is_lifetime:
         wanted = "below" if element.declared.success else "above"
     sides = {"above": ["lower"], "below": ["upper"], None: ["lower", "upper"]}[wanted]
-    bounds = [one.estimate.value for side in sides if (one := found.find("tolerance", side))]
+    bounds = [
+        statistic.estimate.value
+        for side in sides
+        if (statistic := described.find("tolerance", side))
+    ]
     drawn = [bound for bound in bounds if np.isfinite(bound)]
     for bound in drawn:
         axes.axvline(bound / unit.size, color=colour, ls=":", lw=1.2)
@@ -232,23 +238,25 @@ def _mark_bounds(
 
 
 def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: str) -> set[str]:
-    """Mark the B-lives of an element with their intervals, and return the names of those known."""
+    """Mark the B-lives of an element with their intervals, and return the names of finite ones."""
     if described is None:
         return set()
     asked = {name: described.find("b_lives", name) for name in B_LIVES}
-    lives = {name: one.best.estimate for name, one in asked.items() if one is not None}
-    found = {name: one for name, one in lives.items() if np.isfinite(one.value)}
-    if not found:
+    lives = {
+        name: statistic.best.estimate for name, statistic in asked.items() if statistic is not None
+    }
+    finite = {name: estimate for name, estimate in lives.items() if np.isfinite(estimate.value)}
+    if not finite:
         return set()
-    shares = np.array([B_LIVES[name] for name in found])
-    value, low, high = np.array([one.numbers for one in found.values()]).T / unit.size
+    shares = np.array([B_LIVES[name] for name in finite])
+    value, low, high = np.array([estimate.numbers for estimate in finite.values()]).T / unit.size
     edges = axes.get_xlim()
     axes.plot(value, shares, "o", ms=MARK, color=colour)
     axes.hlines(shares, np.clip(low, *edges), np.clip(high, *edges), color=colour, lw=1.0)
     for ends in (low, high):
         axes.plot(ends, shares, "|", ms=5, mew=1.0, color=colour)
     arrows(axes, shares, low, high, "x", color=colour)
-    return set(found)
+    return set(finite)
 
 
 @styled
@@ -275,13 +283,15 @@ def quantile_table(
     result = Result.of(result)
     chosen, part = drawn_elements(result.independent, output)
     outputs = (summary or summarise(result)).outputs
-    found = [outputs[element.name].parts["quantiles"] for element in chosen]
-    values = [one.estimate.finite.value for quantiles in found for one in quantiles]
+    by_element = [outputs[element.name].parts["quantiles"] for element in chosen]
+    values = [
+        statistic.estimate.finite.value for quantiles in by_element for statistic in quantiles
+    ]
     unit = display_unit(chosen[0].units, np.array(values))
     head = as_label(chosen[0].meaning, unit.name, 58).splitlines()
     blocks = [
-        (label(result, element), [_quantile(one, unit.size) for one in quantiles])
-        for element, quantiles in zip(chosen, found, strict=True)
+        (label(result, element), [_quantile(statistic, unit.size) for statistic in quantiles])
+        for element, quantiles in zip(chosen, by_element, strict=True)
     ]
     lines = sum(len(quantiles) + bool(words) for words, quantiles in blocks)
     height = len(head) + 2.8 + lines
@@ -292,8 +302,8 @@ def quantile_table(
     axes.set(xlim=(0, 1), ylim=(height + 0.3, -0.3))
     axes.text(0, 0, "\n".join(head), va="top")
     y: float = len(head) + 0.1
-    said = ", ".join(filter(None, (rows_in_words(chosen), part)))
-    axes.text(0, y, said, va="top", color="0.45", size=7)
+    subtitle = ", ".join(filter(None, (rows_in_words(chosen), part)))
+    axes.text(0, y, subtitle, va="top", color="0.45", size=7)
     columns = ("quantile", "value", "95 % interval")
     for x, text in zip(_COLUMNS, columns, strict=True):
         axes.text(x, y + 1.95, text, ha="right", size=7)
@@ -313,7 +323,7 @@ def quantile_table(
     return figure_of(axes)
 
 
-def _quantile(one: Statistic, per: float) -> tuple[str, str, str]:
-    value, ends = rounded_text(one.estimate, per)
-    value = value if np.isfinite(one.estimate.value) else one.words(per)
-    return f"{100 * float(one.key[-1]):g} %", value, ends
+def _quantile(statistic: Statistic, per: float) -> tuple[str, str, str]:
+    value, ends = rounded_text(statistic.estimate, per)
+    value = value if np.isfinite(statistic.estimate.value) else statistic.words(per)
+    return f"{100 * float(statistic.key[-1]):g} %", value, ends

@@ -45,14 +45,14 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
     """Return the shade and line style of a curve: of two dimensions, the first sets the line."""
     if len(element.place) < 2:
         return SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
-    firsts = [next(iter(one.place.values())) for one in chosen]
+    firsts = [next(iter(other.place.values())) for other in chosen]
     line = list(dict.fromkeys(firsts)).index(firsts[i])
     return SHADES[firsts[:i].count(firsts[i]) % len(SHADES)], LINES[line % len(LINES)]
 
 
-def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:
+def entitle(axes: Axes, chosen: Sequence[Element], *more: str, place: str = "") -> None:
     """Write a wrapped title: the place of the element drawn, how many rows there are, and more."""
-    texts = filter(None, (of, rows_in_words(chosen), *more))
+    texts = filter(None, (place, rows_in_words(chosen), *more))
     text = printed(", ".join(texts))  # no line breaks within a number
     axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
 
@@ -63,7 +63,7 @@ def display_unit(units: str, values: Floats) -> ReadableUnit:
 
 
 def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
-    """Label the horizontal axis as that of an input, and return the size of its unit."""
+    """Label the horizontal axis with an input, and return the size of its unit."""
     unit = result.input_unit(name)
     axes.set_xlabel(labelled(result.dataset[name], unit.name, width))
     return unit.size
@@ -72,9 +72,9 @@ def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
 def mark_thresholds(
     axes: Axes, result: Result, element: Element, unit: ReadableUnit, vertical: bool = False
 ) -> None:
-    """Draw the study's thresholds of an output as lines, those of an angle on both sides.
+    """Draw the study's thresholds of an output as lines, for an angle on both sides.
 
-    One that is so far away that it would squeeze the data is an arrow at the edge.
+    A threshold so far away that it would squeeze the data is an arrow at the edge.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def mark_thresholds(
     result : Result
     element : Element
     unit : ReadableUnit
-        That of the axis.
+        Unit of the axis.
     vertical : bool
         Whether the output is on the vertical axis.
     """
@@ -137,10 +137,10 @@ def shares_in_bins(
 ) -> Floats:
     """Return the share of the rows kept that lies in each bin, or that a part of them has there."""
     worth = np.ones(len(kept)) if element.weights is None else element.weights
-    own = kept if part is None else kept & part
-    found = np.histogram(element.values[own] / unit.size, edges, weights=worth[own])[0]
+    selected = kept if part is None else kept & part
+    counts = np.histogram(element.values[selected] / unit.size, edges, weights=worth[selected])[0]
     total = worth[kept].sum()
-    return np.asarray(found / total if total > 0 else found)
+    return np.asarray(counts / total if total > 0 else counts)
 
 
 def _bin_count(values: Floats) -> int:
@@ -167,7 +167,7 @@ def occurring_regimes(rows: Result) -> dict[str, tuple[int, str]]:
     """
     if "regime" not in rows.dataset:
         return {}
-    there = set(np.unique(rows.dataset["regime"].values).tolist())
-    known = [(name, code) for code, name in flags(rows.dataset["regime"]) if code >= 0]
-    coloured = zip(known, cycle(COLOURS))
-    return {literal(name): (code, colour) for (name, code), colour in coloured if code in there}
+    occurring = set(np.unique(rows.dataset["regime"].values).tolist())
+    regimes = [(name, code) for code, name in flags(rows.dataset["regime"]) if code >= 0]
+    coloured = zip(regimes, cycle(COLOURS))
+    return {literal(name): (code, colour) for (name, code), colour in coloured if code in occurring}

@@ -44,13 +44,15 @@ def event_probability(
         When the study asks for no such event, or no input is known to decide it.
     """
     result = Result.of(result)
-    event = event or next((one for one in answer(result).events if one.name == output), None)
+    event = event or next(
+        (candidate for candidate in answer(result).events if candidate.name == output), None
+    )
     if event is None or event.curve is None:
         raise InputError(f"'{output}': no input is known to decide it, or the study does not ask")
     curve, colour = event.curve, INK
     edges = curve.edges / event.over_unit.per
-    value, low, high = np.array([one.numbers for one in curve.shares]).T
-    what = f"rows that {event.clause}"
+    value, low, high = np.array([share.numbers for share in curve.shares]).T
+    clause = f"rows that {event.clause}"
     (panel,) = column(axes, 2.1)
     band = (_ended(low), _ended(high))
     panel.stairs(value, edges, baseline=None, color=colour, lw=1.4, label="in parts of the input")
@@ -58,7 +60,7 @@ def event_probability(
     panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0, label=words)
     panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9, label="of all rows")
     panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
-    title(panel, *(as_label(one, width=46) for one in (output_of(result, event.name), what)))
+    title(panel, *(as_label(line, width=46) for line in (output_of(result, event.name), clause)))
     over = called(event.over)  # as the sentence beside the figure does
     panel.set_xlabel(
         as_label(over, event.over_unit.name, symbol=symbol_of(result.dataset[event.over]))

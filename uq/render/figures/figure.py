@@ -38,7 +38,7 @@ def lay_out(figure: Figure) -> None:
     if engine := figure.get_layout_engine():
         before = _ticks(figure)
         engine.execute(figure)
-        changed = _ticks(figure) != before  # those of the new size may call for longer numbers
+        changed = _ticks(figure) != before  # the new size may need longer numbers
         _keep_ticks(figure)
         if changed:
             engine.execute(figure)

@@ -88,23 +88,25 @@ def index_curves(
     leading = [name for name in ranking({kind: of_all})[:_MOST_INPUTS] if size(of_all[name]) > 0]
     form = split_name(whole.name)[0]
     panels: dict[str, list[tuple[float, TargetIndices]]] = {}
-    for one in elements:
-        others = {dim: at for dim, at in one.place.items() if dim != along}
-        place = place_in_words(result, replace(one, place=others))
-        name = f"{form}({one.name})" if form else one.name
-        found = findings.indices(method, name)
-        panels.setdefault(place, []).append((float(one.place[along]), found))
+    for element in elements:
+        others = {dim: at for dim, at in element.place.items() if dim != along}
+        place = place_in_words(result, replace(element, place=others))
+        name = f"{form}({element.name})" if form else element.name
+        target_indices = findings.indices(method, name)
+        panels.setdefault(place, []).append((float(element.place[along]), target_indices))
     unit = unit_of(
         result.dataset[along].attrs.get("units", "1"), float(np.abs(result.dataset[along]).max())
     )
-    bands = ", with 95 % bands" if any(one.has_interval for one in of_all.values()) else ""
+    bands = ", with 95 % bands" if any(index.has_interval for index in of_all.values()) else ""
     drawn = column(axes, 0.6 + 1.5 * len(panels), len(panels))
     for panel, (place, points) in zip(drawn, panels.items(), strict=True):
         at = np.array([where for where, _ in points]) / unit.size
         for i, name in enumerate(leading):
             numbers = [
-                found.kinds()[kind][name].numbers if not found.refused else (np.nan,) * 3
-                for _, found in points
+                target_indices.kinds()[kind][name].numbers
+                if not target_indices.refused
+                else (np.nan,) * 3
+                for _, target_indices in points
             ]
             value, low, high = np.array(numbers).T
             style: Any = {"color": SHADES[i], "ls": LINES[i]}

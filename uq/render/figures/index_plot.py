@@ -61,8 +61,8 @@ def index_bars(
         for parameter in parameters
     ]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
-    said = as_label(subject(result, name), width=56)
-    (panel,) = column(axes, 0.8 + 0.13 * (lines.sum() + said.count("\n")))
+    description = as_label(subject(result, name), width=56)
+    (panel,) = column(axes, 0.8 + 0.13 * (lines.sum() + description.count("\n")))
     middle = np.cumsum(lines) - lines / 2
     thickness, ends = 0.8 * lines.min() / len(kinds), []
     for i, (kind, values) in enumerate(kinds.items()):
@@ -73,11 +73,11 @@ def index_bars(
         ends.append((y, low, high))
     for kind, null in found.indices.nulls.items():
         colour = BARS[list(kinds).index(kind) % len(BARS)] if len(kinds) > 1 else INK
-        one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
+        single = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
         largest = "95 % limit for the largest of them"
-        limits = {one: null.limit, largest: null.largest}
+        limits = {single: null.limit, largest: null.largest}
         if null.largest == null.limit:
-            limits = {f"{one}, or several": null.limit}
+            limits = {f"{single}, or several": null.limit}
         for line, (label, limit) in zip(("--", ":"), limits.items(), strict=False):
             if np.isfinite(limit):
                 named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
@@ -91,12 +91,14 @@ def index_bars(
     panel.set_yticks(middle, labels)
     panel.set_ylim(0, lines.sum())
     roomy(panel, ticks=3)  # the labels take most of the width
-    known = any(np.isfinite(one.low) for values in kinds.values() for one in values.values())
+    has_intervals = any(
+        np.isfinite(index.low) for values in kinds.values() for index in values.values()
+    )
     form, *_ = split_name(name)
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
     axis = "Sensitivity index" if shares else unit
-    panel.set_xlabel(axis + known * ",\nwith 95 % interval")
-    heading(panel, said)
+    panel.set_xlabel(axis + has_intervals * ",\nwith 95 % interval")
+    heading(panel, description)
     return finish(panel)
 
 
@@ -107,13 +109,13 @@ def range_of_indices(ends: tuple[float, float]) -> tuple[float, float]:
 
 def _only(result: Result, output: str, method: str | None) -> TargetIndices:
     """Return the indices of the only target of a name."""
-    found = sensitivities(result, method, output).targets
-    if len(found) > 1:
-        raise InputError(f"'{output}' is ambiguous; name one of: {', '.join(found)}")
-    ((name, one),) = found.items()
-    if one.refused:
-        raise InputError(f"{name}: {one.refused}")
-    return one
+    targets = sensitivities(result, method, output).targets
+    if len(targets) > 1:
+        raise InputError(f"'{output}' is ambiguous; name one of: {', '.join(targets)}")
+    ((name, target),) = targets.items()
+    if target.refused:
+        raise InputError(f"{name}: {target.refused}")
+    return target
 
 
 def subject(result: Result, name: str) -> str:
@@ -126,11 +128,13 @@ def subject(result: Result, name: str) -> str:
     element, *_ = result.named_elements(inside)
     if at:
         asked = result.analysis.thresholds.get(element.output, ())
-        at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)
+        at = threshold(
+            next((limit for limit in asked if repr(limit) == at), float(at)), element.units
+        )
         side = "below" if "<" in name else "above"
         size = "magnitude of the " * element.is_angle
-        what = f"{size}{words.removeprefix('the ')}{',' * (',' in words)}"
-        words = f"whether the {what} is {side} {at}"
+        noun = f"{size}{words.removeprefix('the ')}{',' * (',' in words)}"
+        words = f"whether the {noun} is {side} {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return words

@@ -47,18 +47,18 @@ def inputs(
         When the rows do not follow the laws.
     """
     result = Result.of(result)
-    found, weights = laws_and_values(result), weights_of_samples(result)
-    if not found:
+    distributions, weights = laws_and_values(result), weights_of_samples(result)
+    if not distributions:
         raise InputError(f"the rows of a '{result.design_name}' design do not follow the laws")
-    if unknown := [name for name in names or () if name not in found]:
-        raise InputError(f"no such input '{unknown[0]}' (allowed: {choices(found)})")
-    found = {name: found[name] for name in names or found}
-    columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
-    lines = -(-len(found) // columns)
+    if unknown := [name for name in names or () if name not in distributions]:
+        raise InputError(f"no such input '{unknown[0]}' (allowed: {choices(distributions)})")
+    distributions = {name: distributions[name] for name in names or distributions}
+    columns = 1 if len(distributions) <= _IN_ONE_COLUMN else 2
+    lines = -(-len(distributions) // columns)
     panels = grid(axes, 0.3 + 1.4 * lines, lines, columns).ravel()
-    for panel in panels[len(found) :]:
+    for panel in panels[len(distributions) :]:
         panel.set_axis_off()
-    for panel, (name, (law, values)) in zip(panels, found.items(), strict=False):
+    for panel, (name, (law, values)) in zip(panels, distributions.items(), strict=False):
         width = 44 if columns == 1 else 20
         per = 1.0
         if law.times is None:
@@ -67,12 +67,12 @@ def inputs(
             factor = f"{result.dataset[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))
         _panel(panel, law, values, weights, per, ticks=6 // columns)
-    count = len(next(iter(found.values()))[1])
+    count = len(next(iter(distributions.values()))[1])
     rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
     several = len(result.independent) > count
-    of = ", one of each sample" * several
-    said = f"Share of {rows} per bin{of}; line: stated law"
-    panels[0].set_title(textwrap.fill(printed(said), 50).replace("\u00a0", " "), loc="left")
+    of_samples = ", one of each sample" * several
+    caption = f"Share of {rows} per bin{of_samples}; line: stated law"
+    panels[0].set_title(textwrap.fill(printed(caption), 50).replace("\u00a0", " "), loc="left")
     return figure_of(panels[0])
 
 

@@ -63,19 +63,21 @@ def history(
     """
     ds = with_quantities(ds)
     if quantities is None:
-        quantities = [str(name) for name, one in ds.data_vars.items() if one.dims == ("time",)]
-    groups = [[one] if isinstance(one, str) else list(one) for one in quantities]
+        quantities = [
+            str(name) for name, variable in ds.data_vars.items() if variable.dims == ("time",)
+        ]
+    groups = [[names] if isinstance(names, str) else list(names) for names in quantities]
     if not groups:
         raise InputError("no variable varies along time")
-    found = [[find(ds, name) for name in group] for group in groups]
-    scales = [scale_of(group) for group in found]
+    variables = [[find(ds, name) for name in group] for group in groups]
+    scales = [scale_of(group) for group in variables]
     clock = scale_of([find(ds, "time")])
     time = ds["time"].values * clock.factor
     panels = column(axes, 0.4 + 1.0 * len(groups), len(groups))
-    for panel, group, scale in zip(panels, found, scales, strict=True):
-        for i, one in enumerate(group):
+    for panel, group, scale in zip(panels, variables, scales, strict=True):
+        for i, variable in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-            series, text = one.values * scale.factor, labelled(one)
+            series, text = variable.values * scale.factor, labelled(variable)
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
             panel.set_ylabel(f"[{powers(scale.unit)}]")
@@ -114,19 +116,21 @@ def motion(ds: xr.Dataset) -> Figure:
     options: dict[str, Any] = {"width_ratios": (3, 2)} if columns == 2 else {}
     panels = figure.subplots(len(places), columns, squeeze=False, sharex="col", **options)
     for row, place in zip(panels, places, strict=True):
-        one = series[str(trajectory["quantity"].values[place])]
+        variable = series[str(trajectory["quantity"].values[place])]
         if trajectory["turns"].values[place]:
-            one = one.copy(data=_wrapped(one.values))
-            one.attrs["long_name"] = str(one.attrs["long_name"]).removesuffix(", turns included")
-        scale = scale_of([one])
+            variable = variable.copy(data=_wrapped(variable.values))
+            variable.attrs["long_name"] = str(variable.attrs["long_name"]).removesuffix(
+                ", turns included"
+            )
+        scale = scale_of([variable])
         stops = trajectory["lower_stop"].values[place], trajectory["upper_stop"].values[place]
         for panel, part in zip(row, (slice(None), last), strict=False):
-            y = one.values[part] * scale.factor
+            y = variable.values[part] * scale.factor
             panel.plot(time[part] * clock.factor, y, color=INK, lw=0.6)
             for stop in filter(np.isfinite, stops):
                 panel.axhline(stop * scale.factor, color=LIMIT, ls="--", lw=0.8)
-            _widen(panel, _FINEST * np.nanmax(np.abs(one.values), initial=0.0) * scale.factor)
-        text = labelled(one, scale.unit, width=_ABOVE)
+            _widen(panel, _FINEST * np.nanmax(np.abs(variable.values), initial=0.0) * scale.factor)
+        text = labelled(variable, scale.unit, width=_ABOVE)
         if count := int(np.isfinite(stops).sum()):
             dashed = f"dashed: stop{'s' * (count > 1)}"
             text += (", " if len(text) + len(dashed) < _ABOVE else "\n") + dashed

@@ -183,7 +183,9 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
         # A dot in the middle would hide the dashes of a short line.
-        dotted = any(isinstance(one, Line2D) and one.get_marker() == "." for one in handles)
+        dotted = any(
+            isinstance(handle, Line2D) and handle.get_marker() == "." for handle in handles
+        )
         style = {"handlelength": _LONG} if dotted else {}
         shown = figure.legend(
             handles, labels, loc="outside lower left", markerscale=1.5, ncols=across, **style
@@ -209,7 +211,7 @@ def heading(axes: Axes, text: str) -> None:
 
 
 def title(axes: Axes, *lines: str) -> None:
-    """Write lines of text above a panel: what its vertical axis shows, and of what."""
+    """Write lines of text above a panel: the quantity of its vertical axis and its subject."""
     axes.set_title("\n".join(filter(None, lines)), loc="left")
 
 

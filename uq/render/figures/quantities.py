@@ -45,9 +45,9 @@ def with_quantities(ds: xr.Dataset) -> xr.Dataset:
         return ds
     trajectory = ds["trajectory"]
     series = trajectory.reset_coords(drop=True).to_dataset("quantity")
-    for one in trajectory.transpose("quantity", "time"):
-        words = {"units": one["units"].item(), "long_name": one["meaning"].item()}
-        series[one["quantity"].item()].attrs = words
+    for quantity in trajectory.transpose("quantity", "time"):
+        words = {"units": quantity["units"].item(), "long_name": quantity["meaning"].item()}
+        series[quantity["quantity"].item()].attrs = words
     return series
 
 
@@ -97,15 +97,15 @@ def scale_of(variables: Sequence[xr.DataArray]) -> AxisScale:
     InputError
         When their units differ, or they are not numeric.
     """
-    for one in variables:
-        if one.dtype.kind not in "fiub":
-            raise InputError(f"'{one.name}' is not numeric and cannot be drawn")
-    units = {str(one.attrs.get("units", "1")): one.name for one in variables}
+    for variable in variables:
+        if variable.dtype.kind not in "fiub":
+            raise InputError(f"'{variable.name}' is not numeric and cannot be drawn")
+    units = {str(variable.attrs.get("units", "1")): variable.name for variable in variables}
     if len(units) > 1:
         unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
         raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
-    shown = unit_of(unit, max(_largest(one) for one in variables))
+    shown = unit_of(unit, max(_largest(variable) for variable in variables))
     return AxisScale(1 / shown.size, shown.name)
 
 
@@ -133,7 +133,7 @@ def families(
 ) -> Iterator[tuple[Floats, Floats, dict[str, Any]]]:
     """Yield the scaled coordinates of each curve along the last dimension, its colour and label."""
     if across.ndim == 1:
-        across, up = (one.expand_dims("") for one in (across, up))
+        across, up = (variable.expand_dims("") for variable in (across, up))
     for i, (x, y) in enumerate(zip(across.values, up.values, strict=True)):
         name = place_in(across, i) if len(across) > 1 else ""
         style = {"color": COLOURS[i % len(COLOURS)], "label": name}

@@ -115,26 +115,28 @@ def bifurcation(
         find(result.dataset, against or _first_dimension(result, output)),
     )
     kinds = find(result.dataset, by) if by else xr.full_like(across, "", dtype=object)
-    known = str(kinds.attrs.get("flag_meanings", "")).split()
+    declared = str(kinds.attrs.get("flag_meanings", "")).split()
     (axes,) = column(axes, 2.4)
     scales = label_axes(axes, across, up)
     up, across, kinds = xr.broadcast(up, across, kinds)
-    there = np.isfinite(up.values)
-    values, places = (one.values * s.factor for one, s in ((up, scales[1]), (across, scales[0])))
-    for word, colour in _coloured(kinds.values[there], known):
-        chosen = there & (kinds.values == word)
+    finite = np.isfinite(up.values)
+    values, places = (
+        variable.values * s.factor for variable, s in ((up, scales[1]), (across, scales[0]))
+    )
+    for word, colour in _coloured(kinds.values[finite], declared):
+        chosen = finite & (kinds.values == word)
         points = places[chosen], values[chosen]
-        size = point_size("diagram", there.sum())
+        size = point_size("diagram", finite.sum())
         many = are_many(int(chosen.sum()))
         axes.plot(*points, "o", ms=size, mew=0, color=colour, label=literal(word), rasterized=many)
     return finish(axes)
 
 
-def _coloured(words: NDArray[Any], known: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the words that occur, each with its colour: those known have their own."""
-    there = {str(word) for word in np.unique(words)}
-    order = [*known, *sorted(there - set(known))]
-    return [pair for pair in zip(order, cycle(COLOURS)) if pair[0] in there]
+def _coloured(words: NDArray[Any], declared: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the words that occur, each with its colour; declared words keep theirs."""
+    occurring = {str(word) for word in np.unique(words)}
+    order = [*declared, *sorted(occurring - set(declared))]
+    return [pair for pair in zip(order, cycle(COLOURS)) if pair[0] in occurring]
 
 
 @styled
@@ -196,21 +198,21 @@ def _first_dimension(result: Result, output: str) -> str:
     return str(next(iter(find(result.dataset, output).dims), output))
 
 
-def _basin(one: xr.Dataset, outputs: Sequence[str], width: int) -> str:
+def _basin(basin: xr.Dataset, outputs: Sequence[str], width: int) -> str:
     """Describe an attractor: its categories, the chosen outputs and its share of the grid.
 
     Within a width [characters].
     """
-    known = []
-    for name, value in one.data_vars.items():
+    parts = []
+    for name, value in basin.data_vars.items():
         output = str(name).removeprefix("representative_")
         if output != name and value.dtype.kind in "UO" and not value.ndim:
             text = str(value.item())
-            known.append(f"{output.replace('_', ' ')} {text}" if text.isdecimal() else text)
+            parts.append(f"{output.replace('_', ' ')} {text}" if text.isdecimal() else text)
     for name in outputs:
-        value = find(one, f"representative_{name}")
+        value = find(basin, f"representative_{name}")
         scale = scale_of([value])
         rounded = float(f"{value.item():.3g}")
         text = powers(in_unit(rounded, ReadableUnit(scale.unit, 1 / scale.factor)))
-        known.append(minus(text))
-    return as_label(", ".join([*known, percent(float(one["share"]))]), width=width)
+        parts.append(minus(text))
+    return as_label(", ".join([*parts, percent(float(basin["share"]))]), width=width)

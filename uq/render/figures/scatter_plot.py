@@ -79,7 +79,7 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
     )
     wide = is_wide(shown.values[np.isfinite(shown.values)])
     parts = _parts(rows, len(element.values))
-    medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
+    medians = wide or any(_needs_median(shown, mask) for mask, _ in parts.values())
     for panel, name in zip(panels, first, strict=True):
         per = input_axis(panel, result, name, width=46 if alone else 30)
         x = inputs[name] / per
@@ -87,8 +87,8 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
         if across:
             logarithmic(panel)
         _points(panel, x, shown)
-        for words, (own, colour) in parts.items():
-            _conditional(panel, x, shown, own, colour, words, medians, rows.replicates is None)
+        for words, (mask, colour) in parts.items():
+            _conditional(panel, x, shown, mask, colour, words, medians, rows.replicates is None)
         if not across:
             roomy(panel, 6 if alone else 4)
         whole_numbers(panel.yaxis)
@@ -98,12 +98,12 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
             panel.set_yticks([])
         mark_thresholds(panel, result, element, unit, vertical=True)
     above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(result, element)]
-    what = "median" if medians else "mean"
-    of_each = f"lines: {what} in slices of a regime's rows" if len(parts) > 1 else ""
-    said = [rows_in_words([element]), of_each]
+    statistic = "median" if medians else "mean"
+    of_each = f"lines: {statistic} in slices of a regime's rows" if len(parts) > 1 else ""
+    remarks = [rows_in_words([element]), of_each]
     if not alone:
-        above, said = [", ".join(filter(None, above))], ["; ".join(filter(None, said))]
-    title(panels[0], *above, *said)
+        above, remarks = [", ".join(filter(None, above))], ["; ".join(filter(None, remarks))]
+    title(panels[0], *above, *remarks)
     return finish(panels[0])
 
 
@@ -131,9 +131,9 @@ def _points(axes: Axes, x: Floats, element: Element) -> None:
         axes.plot(x[never], top, "|", ms=5, color=SHADES[2], label=words, **edge)
 
 
-def _needs_median(element: Element, own: Mask) -> bool:
-    """Whether the mean of some rows is infinite or without information."""
-    values = element.at_most[own[element.present]]
+def _needs_median(element: Element, mask: Mask) -> bool:
+    """Whether the mean of the rows is infinite or uninformative."""
+    values = element.at_most[mask[element.present]]
     return not np.isfinite(values).all() or lacks_variance(values)
 
 
@@ -141,15 +141,15 @@ def _conditional(
     axes: Axes,
     x: Floats,
     element: Element,
-    own: Mask,
+    mask: Mask,
     colour: str,
     regime: str,
     medians: bool,
     independent: bool,
 ) -> None:
-    """Draw the mean (or median) of some rows within slices of the input, with its 95 % band."""
-    there = own[element.present]
-    values, x = element.at_most[there], x[element.present][there]
+    """Draw the mean (or median) within slices of the input, with its 95 % band."""
+    selected = mask[element.present]
+    values, x = element.at_most[selected], x[element.present][selected]
     count = min(_MOST_BINS, len(x) // _IN_BIN)
     if count < 2:
         return
@@ -166,24 +166,27 @@ def _conditional(
     )
     if medians:
         empty |= [
-            _is_torn(values[rows], *one, axes) for rows, one in zip(slices, ends, strict=True)
+            _is_torn(values[rows], *interval, axes)
+            for rows, interval in zip(slices, ends, strict=True)
         ]
     empty |= _fragments(~empty)
     seen = np.isfinite(line) & ~empty
     line = np.where(seen & ~_fragments(seen), line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
-    # A gap between neighbouring rows interrupts the line: nothing is known in between.
+    # A gap between neighbouring rows interrupts the line: it holds no information.
     inside = np.sort(x)
     edges = np.array(axes.get_xlim())
     along, width = (np.log, np.log(edges)) if axes.get_xscale() == "log" else (np.array, edges)
     jumps = np.flatnonzero(np.diff(along(inside)) > _GAP * np.ptp(width))
     gaps = np.searchsorted(middle, (inside[jumps] + inside[jumps + 1]) / 2)
-    middle, line, low, high = (np.insert(one, gaps, np.nan) for one in (middle, line, low, high))
-    what = f"{'median' if medians else 'mean'} in slices of {counted(len(x) // count, 'row')}"
+    middle, line, low, high = (
+        np.insert(series, gaps, np.nan) for series in (middle, line, low, high)
+    )
+    line_label = f"{'median' if medians else 'mean'} in slices of {counted(len(x) // count, 'row')}"
     if independent:
-        what += ", 95 % band"
+        line_label += ", 95 % band"
     if np.isfinite(line).any():
-        axes.plot(middle, line, color=colour, label=regime or what)
+        axes.plot(middle, line, color=colour, label=regime or line_label)
     ended = values[np.isfinite(values)]
     if independent and len(ended):
         top = ended.max()  # an infinite end would hide all others
@@ -210,10 +213,10 @@ def _is_torn(values: Floats, low: float, high: float, axes: Axes) -> bool:
     return bool(widest > max(2 * _EMPTY * np.ptp(axes.get_ylim()), by_chance))
 
 
-def _fragments(there: Mask) -> Mask:
+def _fragments(mask: Mask) -> Mask:
     """Return which places belong to runs too short for a line."""
-    run = np.cumsum(np.diff(there, prepend=False))
-    return there & (np.bincount(run)[run] < _SHORTEST)
+    run = np.cumsum(np.diff(mask, prepend=False))
+    return mask & (np.bincount(run)[run] < _SHORTEST)
 
 
 def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
@@ -279,7 +282,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
             if j > i:
                 panel.set_axis_off()
                 continue
-            x, y = (inputs[one][seen] / units[one].size for one in (across, down))
+            x, y = (inputs[name][seen] / units[name].size for name in (across, down))
             panel.scatter(x, y, marker=".", c=colours, **points)
             panel.locator_params(axis="y", nbins=4)
             whole_numbers(panel.yaxis)

@@ -42,18 +42,20 @@ def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figur
         raise InputError(f"'{output}' is no category of this result")
     rows = result.independent
     weights = rows.weights
-    found = {one: category_shares(rows, one, weights) for one in rows.codes(output)}
+    by_element = {
+        element: category_shares(rows, element, weights) for element in rows.codes(output)
+    }
     labels = [
         label
-        for label in next(iter(found.values()))
-        if any(of[label].facts["count"] for of in found.values())
+        for label in next(iter(by_element.values()))
+        if any(statistics[label].facts["count"] for statistics in by_element.values())
     ]
     regimes = occurring_regimes(rows) if name == REGIME else {}
-    (panel,) = column(axes, 0.9 + 0.22 * len(labels) * max(len(found), 1.5))
-    thickness = 0.8 / len(found)
-    for i, (element, of) in enumerate(found.items()):
-        y = np.arange(len(labels))[::-1] + thickness * ((len(found) - 1) / 2 - i)
-        numbers = [of[label].estimate.numbers for label in labels]
+    (panel,) = column(axes, 0.9 + 0.22 * len(labels) * max(len(by_element), 1.5))
+    thickness = 0.8 / len(by_element)
+    for i, (element, statistics) in enumerate(by_element.items()):
+        y = np.arange(len(labels))[::-1] + thickness * ((len(by_element) - 1) / 2 - i)
+        numbers = [statistics[label].estimate.numbers for label in labels]
         value, low, high = np.array(numbers, dtype=float).T
         colours = [
             regimes[literal(label)][1] if literal(label) in regimes else BARS[i % len(BARS)]
@@ -63,8 +65,12 @@ def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figur
         panel.barh(y, value, thickness, color=colours, label=place.replace(",", ", "))
         panel.hlines(y, low, high, color=INK, lw=0.8)
     panel.set_yticks(np.arange(len(labels))[::-1], list(map(literal, labels)))
-    known = any(of[label].estimate.has_interval for of in found.values() for label in labels)
-    panel.set(xlim=(0, 1), xlabel="Share of rows" + known * ", with 95 % interval")
+    has_intervals = any(
+        statistics[label].estimate.has_interval
+        for statistics in by_element.values()
+        for label in labels
+    )
+    panel.set(xlim=(0, 1), xlabel="Share of rows" + has_intervals * ", with 95 % interval")
     meaning = as_label(str(result.dataset[name].attrs["long_name"]), width=46)
     title(panel, meaning, counted(len(rows), "row"))
     return finish(panel)

@@ -26,9 +26,9 @@ def the_result(findings: Findings) -> Iterator[FigureSubject]:
 def outputs(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each output with numbers."""
     if len(findings.rows):
-        known, result = findings.result.outputs, findings.result
+        declared, result = findings.result.outputs, findings.result
         shown = result.shown_outputs(result.analysis)
-        yield from (FigureSubject(output) for output in shown if not known[output].is_category)
+        yield from (FigureSubject(output) for output in shown if not declared[output].is_category)
 
 
 def inputs(findings: Findings) -> Iterator[FigureSubject]:
@@ -37,40 +37,46 @@ def inputs(findings: Findings) -> Iterator[FigureSubject]:
     count = -(-len(names) // _MOST_INPUTS)
     for i in range(count):
         part = f"{i + 1} of {count}" if count > 1 else ""
-        own = names[i * len(names) // count : (i + 1) * len(names) // count]
-        yield FigureSubject(part=part, keywords={"names": own})
+        group = names[i * len(names) // count : (i + 1) * len(names) // count]
+        yield FigureSubject(part=part, keywords={"names": group})
 
 
 def categories(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each category that occurs, the regime among them."""
     if len(findings.rows):
         shares = findings.summary.shares.items()
-        occur = (name for name, of in shares if any(one.facts["count"] for one in of.values()))
+        occur = (
+            name
+            for name, statistics in shares
+            if any(statistic.facts["count"] for statistic in statistics.values())
+        )
         yield from map(FigureSubject, dict.fromkeys(name.partition("[")[0] for name in occur))
 
 
 def targets(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each target of each sensitivity method."""
-    for method, found in _indices(findings):
-        yield FigureSubject(found.name, method, {"method": method, "found": found})
+    for method, target_indices in _indices(findings):
+        yield FigureSubject(
+            target_indices.name, method, {"method": method, "found": target_indices}
+        )
 
 
 def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
-    """Yield each method with what it finds for each target."""
+    """Yield each method with the indices of each target."""
     for method in methods(findings.result):
         try:
             targets_of = findings.sensitivities(method).targets
         except InputError:  # the report gives the reason
             continue
-        for found in targets_of.values():
-            if not found.refused and found.kinds():
-                yield method, found
+        for target_indices in targets_of.values():
+            if not target_indices.refused and target_indices.kinds():
+                yield method, target_indices
 
 
 def curves(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each output with a dimension of three or more numbers, by each method."""
-    for method, found in _indices(findings):
-        inside = split_name(found.name)[1]
+    for method, target_indices in _indices(findings):
+        inside = split_name(target_indices.name)[1]
         output = inside.partition("[")[0]
         if is_whole(inside) and dimension_of(findings.result, output):
             yield FigureSubject(output, method, {"method": method, "findings": findings})
@@ -87,8 +93,8 @@ def crossed_targets(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each target whose total indices are known for fewer rows."""
     if any(outputs(findings)):
         names = findings.running["output"]
-        known = total_indices(findings.running)["output"]
-        yield from map(FigureSubject, names[names.isin(known)].unique())
+        with_totals = total_indices(findings.running)["output"]
+        yield from map(FigureSubject, names[names.isin(with_totals)].unique())
 
 
 def is_lifetime(findings: Findings, name: str) -> bool:

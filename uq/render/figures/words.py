@@ -43,7 +43,7 @@ def formula(symbol: str) -> str:
         return literal(symbol)
     text = symbol if "_" in symbol else re.sub(r"(?<=[A-Za-z])(\d+)\b", r"_\1", symbol)
     text = re.sub(r"_([A-Za-z0-9]+)", _subscript, text.replace(" ", r"\,"))
-    return f"${WORD.sub(lambda found: chr(92) + found[0], text)}$"
+    return f"${WORD.sub(lambda match: chr(92) + match[0], text)}$"
 
 
 def is_short(symbol: str) -> bool:
@@ -51,14 +51,14 @@ def is_short(symbol: str) -> bool:
     return _SHORT.fullmatch(symbol) is not None
 
 
-def _subscript(found: re.Match[str]) -> str:
-    upright = found[1].isalpha() and not WORD.fullmatch(found[1])
-    return rf"_{{\mathrm{{{found[1]}}}}}" if upright else f"_{{{found[1]}}}"
+def _subscript(match: re.Match[str]) -> str:
+    upright = match[1].isalpha() and not WORD.fullmatch(match[1])
+    return rf"_{{\mathrm{{{match[1]}}}}}" if upright else f"_{{{match[1]}}}"
 
 
 def typeset(text: str) -> str:
-    """Return text with its symbols as formulas, its roots and minus signs as such."""
-    text = IN_TEXT.sub(lambda found: formula(found[0]), literal(minus(text)))
+    """Return text with symbols as formulas and typographic roots and minus signs."""
+    text = IN_TEXT.sub(lambda match: formula(match[0]), literal(minus(text)))
     return text.replace("sqrt(", "√(").replace(" - ", " \N{MINUS SIGN} ")
 
 
@@ -77,12 +77,12 @@ def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> st
 
 
 def _wrapped(text: str, width: int) -> str:
-    """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
+    """Wrap text by its visible width: a formula is narrower than its source and never broken."""
     text = re.sub(r" ([+−=]) ", "\u00a0\\1\u00a0", text)  # a difference is one word
     text = re.sub(r"(?<=[a-z]) (?=\d+\b)", "\u00a0", text)  # as is "motor 1"
     formulas = re.findall(_FORMULA, text)
-    letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
-    seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
+    letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", source) for source in formulas)
+    seen = (re.sub(r"\\[A-Za-z]+", "x", word) for word in letters)
     masked = re.sub(_FORMULA, lambda _: _MASK * len(next(seen)), text)
     whole = iter(formulas)
     return re.sub(f"{_MASK}+", lambda _: next(whole), "\n".join(_lines(masked, width)))

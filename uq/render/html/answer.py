@@ -177,7 +177,7 @@ def _ranking(answer: Answer) -> Markup:
         if answer.regimes_first:
             why = Markup("{} {}").format(plain(printed(sentence(lead.words))), why)
         return _block("ranking", [title, _line(why)])
-    note = _small(" ".join(filter(None, (sentence(ranking.what), answer.ties))))
+    note = _small(" ".join(filter(None, (sentence(ranking.index_meaning), answer.ties))))
     largest = ranking.contributions[0].value
     seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
     shown = enumerate(seen[:_MOST_BARS])
@@ -194,7 +194,7 @@ def _levels(answer: Answer) -> Markup:
         size = Contribution(one.inputs, (one.share,), share_of_variance=True).size
         texts = capitalized(one.words), track, size, one.inputs_named
         found.append(_BAR.format(*map(_shown, texts)))
-    return Markup("").join([*found, _small(f"Share of the variance of {answer.levels.of}.")])
+    return Markup("").join([*found, _small(f"Share of the variance of {answer.levels.subject}.")])
 
 
 def _first(answer: Answer) -> Markup:

@@ -39,10 +39,10 @@ def below(one: Advice) -> Markup:
 def _tolerances(advice: Advice) -> Markup:
     """Return a table: what half the scatter of each input would make of each number."""
     known, above = advice.tolerances, {advice.key, *(one.key for one in advice.alike)}
-    numbers = {one.what: one for one in known}
+    numbers = {one.statistic: one for one in known}
     lines = [["As studied", *(_number(one.text(one.before)) for one in numbers.values())]]
     for inputs in dict.fromkeys(one.inputs for one in known):
-        own = {one.what: one for one in known if one.inputs == inputs}
+        own = {one.statistic: one for one in known if one.inputs == inputs}
         cells = (
             _cell(own[what], above) if what in own else Markup("<td></td>") for what in numbers
         )

@@ -64,7 +64,7 @@ def enough(one: Answer) -> Markup:
 
 
 def _again(text: str, known: PredictionInterval, key: str) -> Markup:
-    return keyed(text, key) if known.what else escape(plain(printed(text)))
+    return keyed(text, key) if known.subject else escape(plain(printed(text)))
 
 
 def mixing(one: Answer) -> Markup:
@@ -102,18 +102,20 @@ def first(one: Quantity) -> tuple[Markup, Markup]:
 
 def regime(one: Event) -> Markup:
     """Return the share of a regime, and what decides it."""
-    return _event(one, ("regimes", one.said))
+    return _event(one, ("regimes", one.predicate))
 
 
 def cause_of(one: Event) -> Markup:
     """Return what decides a regime, after its name."""
-    return keyed(one.named_cause, _answer(*_cause_key(one, ("regimes", one.said))))
+    return keyed(one.named_cause, _answer(*_cause_key(one, ("regimes", one.predicate))))
 
 
 def shares(several: Sequence[Event]) -> Markup:
     """Return the shares of regimes in one sentence; "" without any."""
     known = [
-        keyed(f"{share_text(one.share)} {one.said}", _answer("regimes", one.said, "share"))
+        keyed(
+            f"{share_text(one.share)} {one.predicate}", _answer("regimes", one.predicate, "share")
+        )
         for one in several
     ]
     return Markup("{}.").format(Markup(", ").join(known)) if known else Markup()
@@ -190,11 +192,11 @@ def advice(one: Advice) -> Markup:
         sure = Markup() if one.sure is None else keyed(one.sure.promised, one.sure.key)
         worse = (keyed(each.besides, each.key) for each in one.harmed)
         also = keyed(one.also, *(each.key for each in one.alike))
-        said = keyed(one.said, one.key)
+        said = keyed(one.sentence, one.key)
         return Markup(" ").join(filter(None, (said, sure, *worse, also)))
     if one.rows is not None:
-        return keyed(one.said, _answer("advice", one.rule, "rows"))
-    return escape(plain(printed(one.said)))
+        return keyed(one.sentence, _answer("advice", one.rule, "rows"))
+    return escape(plain(printed(one.sentence)))
 
 
 def _key(one: Quantity, *path: str) -> str:

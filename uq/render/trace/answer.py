@@ -1,4 +1,4 @@
-"""The numbers of the answer, and where they come from."""
+"""The numbers of the answer and their origins."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -36,7 +36,7 @@ from uq.stats.variance_components import nested_shares
 from uq.text.keys import Json, Options, Path, value_at
 from uq.text.numbers import grouped
 
-_OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
+_ERROR_ESTIMATORS: dict[str, tuple[Callable[..., Any], ...]] = {
     "lower": (off_by_error,),
     "upper": (off_by_error,),
     "share_of_variance": (error_share,),
@@ -46,14 +46,14 @@ _OF_ERROR: dict[str, tuple[Callable[..., Any], ...]] = {
 }
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the answer: of the quantity or the part alone that a path names."""
     findings = Findings(result)
     part, *names = path or ("",)
-    alone = not result.is_nested  # a level that decides changes what is said of the regimes
+    alone = not result.is_nested  # variance components change the sentences on regimes
     if part == "quantities" and names and alone:
-        known = tuple(quantities(findings, names[0]))
-        return answer_json(Answer("", 0, 0, known, (), ()))
+        answered = tuple(quantities(findings, names[0]))
+        return answer_json(Answer("", 0, 0, answered, (), ()))
     if part == "regimes" and alone:
         return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
     if part in ("rows", "failed"):
@@ -62,8 +62,8 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return answer_json(whole(findings))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a number of the answer comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a number of the answer."""
     part, *names = path
     if part in ("rows", "failed"):
         return Origin((cited(status_counts),), result)
@@ -78,11 +78,11 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
     if part == "advice":
         return Origin((cited(what_if if "tolerances" in names else unsettled),), result)
     if "ranking" in names:
-        ranking = value_at(said, path[: path.index("ranking") + 1])
+        ranking = value_at(document, path[: path.index("ranking") + 1])
         index = estimator_of(ranking["method"], ranking["index"])
         if "effects" in names:
             return Origin((cited(effects),), result)
-        return Origin((index,), result, notes=tuple(_one_of_each(result)))
+        return Origin((index,), result, notes=tuple(_notes(result)))
     if "earliest" in names:
         return Origin((cited(inputs_apart),), result)
     if "limit" in names:
@@ -91,36 +91,40 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(event_curve), cited(share_interval)), result)
     rows = result.independent
     if part == "regimes":
-        found = summarise(result, result.analysis).regimes[names[0]]
-        return Origin(tuple(map(cited, found.by)), rows)
+        statistic = summarise(result, result.analysis).regimes[names[0]]
+        return Origin(tuple(map(cited, statistic.by)), rows)
     states = states_of(rows.named_elements(names[0])[0])
     return Origin(
-        tuple(dict.fromkeys(_estimators(result, said["quantities"][names[0]], *names))),
+        tuple(dict.fromkeys(_estimators(result, document["quantities"][names[0]], *names))),
         rows,
         states,
     )
 
 
-def _one_of_each(result: Result) -> Iterator[str]:
-    """Yield that an index rests on fewer rows, where samples have several."""
+def _notes(result: Result) -> Iterator[str]:
+    """Yield the note that an index rests on one row per sample, where samples have several rows."""
     if result.is_nested:
         used = len(result.first_rows)
         yield f"the index rests on {grouped(used)} of these rows, the first of each sample"
 
 
-def _estimators(result: Result, said: Json, name: str, part: str, *rest: str) -> Iterator[Citation]:
-    """Yield what computes a number of a promise, a range, an event, or of another seed."""
+def _estimators(
+    result: Result, entry: Json, name: str, part: str, *rest: str
+) -> Iterator[Citation]:
+    """Yield the estimators of a number of a promise, range, event or prediction interval."""
     asked = with_bounds(result.analysis_of(name.partition("[")[0]), Findings(result))
-    found = summarise(result, asked).outputs[name]
+    described = summarise(result, asked).outputs[name]
     keys: list[Path] = [("quantiles", repr(LOW))]
     if part == "another_seed":
         yield cited(found_again)
-        promised = said["promise"]["sentence"] if "promise" in said else ""
-        part, rest = ("range", ()) if promised else ("events", tuple(said["events"]))
+        promised = entry["promise"]["sentence"] if "promise" in entry else ""
+        part, rest = ("range", ()) if promised else ("events", tuple(entry["events"]))
     if part == "own_error":
-        yield from map(cited, _OF_ERROR.get("".join(rest), (off_by_error, error_share, accuracy)))
+        yield from map(
+            cited, _ERROR_ESTIMATORS.get("".join(rest), (off_by_error, error_share, accuracy))
+        )
         keys *= any(end in rest for end in ("lower", "upper"))
-        if keys and not said["promise"]["reason"]:
+        if keys and not entry["promise"]["reason"]:
             keys = [("tolerance", "lower")]
     elif part == "range" and "".join(rest).startswith("never"):
         yield from map(cited, (never_ending, Population if result.has_weights else share_interval))
@@ -136,4 +140,4 @@ def _estimators(result: Result, said: Json, name: str, part: str, *rest: str) ->
         side = "below" if "<" in rest[0] else "above"
         keys = [("thresholds", split_name(rest[0])[2], side)]
     for key in keys:
-        yield from map(cited, functions_of(found, key))
+        yield from map(cited, functions_of(described, key))

@@ -13,11 +13,11 @@ class Citation(NamedTuple):
     Attributes
     ----------
     does : str
-        What it estimates, in one line.
+        Summary in one line.
     code : str
         The function that computes it: ``uq.stats.order_statistics.quantile``.
     sources : tuple of str
-        What its docstring cites.
+        References of its docstring.
     """
 
     does: str
@@ -26,12 +26,14 @@ class Citation(NamedTuple):
 
 
 def cited(function: Callable[..., Any]) -> Citation:
-    """Return what a function estimates, and what its docstring cites."""
+    """Return summary and references of an estimator from its docstring."""
     while isinstance(function, partial):
         function = function.func
-    said = inspect.getdoc(function) or ""
-    first = _joined(said.split("\n\n")[0])
-    section = re.search(r"^References\n-+\n(.*?)(?=^\w+\n-+$|\Z)", said, re.DOTALL | re.MULTILINE)
+    docstring = inspect.getdoc(function) or ""
+    first = _joined(docstring.split("\n\n")[0])
+    section = re.search(
+        r"^References\n-+\n(.*?)(?=^\w+\n-+$|\Z)", docstring, re.DOTALL | re.MULTILINE
+    )
     entries = re.split(r"^\.\. (?=\[\d+\] )", section[1], flags=re.MULTILINE) if section else []
     code = f"{function.__module__}.{getattr(function, '__qualname__', '')}"
     return Citation(first.removesuffix("."), code, tuple(filter(None, map(_joined, entries))))

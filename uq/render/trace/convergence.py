@@ -1,4 +1,4 @@
-"""The numbers of `uq convergence`, and where they come from."""
+"""The numbers of `uq convergence` and their origins."""
 
 from typing import Any
 
@@ -17,45 +17,45 @@ from uq.stats.estimate import Estimate
 from uq.text.keys import Json, Options, Path, value_at
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of running estimates: of the element alone that a path names, if it does.
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of running estimates, of one element if the path names one.
 
-    Only the errors, if it asks for one: every design has them.
+    Only the errors if the path names one: every design has them.
     """
     named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
     if path[2:] and path[2] != "estimates":
         errors = enough(result, named).to_dict("index")
-        return {"outputs": {name: errors_json(one) for name, one in errors.items()}}
+        return {"outputs": {name: errors_json(record) for name, record in errors.items()}}
     return convergence_json(converging(result, named))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a running estimate comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a running estimate."""
     _, target, kind, *rest = path
     if kind != "estimates":
         return Origin((cited(enough),), result.independent)
     label, place = rest[0], int(rest[1])
-    rows = result.first_samples(said["outputs"][target]["estimates"][label][place]["samples"])
-    of = summarise(rows).outputs.get(target)
-    for name, statistics in of.parts.items() if of else ():
-        for one in statistics:
-            if one.label == label:
-                by = tuple(map(cited, one.by or (STATISTICS[name],)))
+    rows = result.first_samples(document["outputs"][target]["estimates"][label][place]["samples"])
+    described = summarise(rows).outputs.get(target)
+    for name, statistics in described.parts.items() if described else ():
+        for statistic in statistics:
+            if statistic.label == label:
+                by = tuple(map(cited, statistic.by or (STATISTICS[name],)))
                 return Origin(by, rows.independent)
     method = method_shown(result)
     assert method is not None
     return Origin((estimator_of(method, label.split()[0]),), rows)
 
 
-def again(verb: Any, found: Origin, options: Options, path: Path) -> Any:
+def again(verb: Any, number_origin: Origin, options: Options, path: Path) -> Any:
     """Return the entry at a path from the rows of its origin: the estimate of the last size."""
     if path[2] != "estimates":
-        errors = enough(found.rows, path[1]).to_dict("index")[path[1]]
+        errors = enough(number_origin.rows, path[1]).to_dict("index")[path[1]]
         return value_at(errors_json(errors), path[2:])
-    for name, label, numbers, *_ in estimates_from(found.rows, [path[1]]):
+    for name, label, numbers, *_ in estimates_from(number_origin.rows, [path[1]]):
         if (name, label) == (path[1], path[3]):
-            entry = {"samples": int(found.rows.dataset["group"].max()) + 1} | estimate_json.numbers(
-                Estimate(*numbers)
-            )
+            entry = {
+                "samples": int(number_origin.rows.dataset["group"].max()) + 1
+            } | estimate_json.numbers(Estimate(*numbers))
             return value_at(entry, path[5:])
     raise KeyError(path[3])

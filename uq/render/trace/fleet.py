@@ -1,4 +1,4 @@
-"""The numbers of `uq fleet`, and where they come from."""
+"""The numbers of `uq fleet` and their origins."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from uq.text.keys import Json, Options, Path
 from uq.text.quantities import read_threshold
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of fleets of a size."""
     try:
         size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
@@ -29,8 +29,8 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return fleet_json(fleet_of(result, size, by, allow, output))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a number of a fleet comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a number of a fleet."""
     rows = result.independent
-    states = states_of(rows.named_elements(said["output"])[0])
-    return Origin((cited(fleet), cited(Population)), rows, states, tuple(said["notes"]))
+    states = states_of(rows.named_elements(document["output"])[0])
+    return Origin((cited(fleet), cited(Population)), rows, states, tuple(document["notes"]))

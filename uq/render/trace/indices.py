@@ -1,4 +1,4 @@
-"""The numbers of `uq sensitivity`, and where they come from."""
+"""The numbers of `uq sensitivity` and their origins."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,23 +16,23 @@ from uq.result.result import Result
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of the indices: of the target alone that a path names, if it names one."""
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the indices, of one target if the path names one."""
     named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
-    found = sensitivities(result, options.get("method"), named, options.get("regime"))
-    return sensitivity_json(found)
+    indices = sensitivities(result, options.get("method"), named, options.get("regime"))
+    return sensitivity_json(indices)
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where an index comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of an index."""
     if regime := options.get("regime"):
         result = result.within_regime(regime)
     rows = result.ranked.first_rows
-    by = (estimator_of(said["method"], *path[2:3]),)
+    by = (estimator_of(document["method"], *path[2:3]),)
     if path[0] != "outputs":
         return Origin(by, rows)
-    entry = said["outputs"][path[1]]
-    (target,) = chosen(rows, said["method"], [path[1]])
+    entry = document["outputs"][path[1]]
+    (target,) = chosen(rows, document["method"], [path[1]])
     sample = replace(sample_of(rows), values=target.values)
     states = {"in groups with a value in each row": len(np.unique(sample.groups[sample.whole]))}
     dropped = len(np.unique(sample.groups[~sample.whole]))
@@ -41,17 +41,17 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
 
 
 def estimator_of(method: str, key: str = "") -> Citation:
-    """Return what a method estimates, and whose estimator it is.
+    """Return question, estimator and references of a method.
 
     Parameters
     ----------
     method : str
     key : str
-        Of the kind of index; "" if not one of its own.
+        Key of the kind of index; "" for none.
     """
-    own = METHODS[method]
-    kinds = [f" ({kind.words})" for kind in own.kinds if kind.key == key]
+    estimator = METHODS[method]
+    kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]
     code = f"uq.indices.methods.METHODS['{method}']"
-    said = [own.source, own.intervals and f"intervals: {own.intervals}"]
-    sources = (*filter(None, said), *cited(own.estimate).sources)
-    return Citation(f"{own.question}{''.join(kinds)}", code, sources)
+    references = [estimator.source, estimator.intervals and f"intervals: {estimator.intervals}"]
+    sources = (*filter(None, references), *cited(estimator.estimate).sources)
+    return Citation(f"{estimator.question}{''.join(kinds)}", code, sources)

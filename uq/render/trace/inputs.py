@@ -1,4 +1,4 @@
-"""The numbers of the inputs that a report shows, and where they come from."""
+"""The numbers of the inputs that a report shows and their origins."""
 
 from typing import Any
 
@@ -10,20 +10,20 @@ from uq.stats.estimate_json import number
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return quantiles of the inputs: of their laws as ``stated``, and as ``sampled``."""
     given, weights = laws_and_values(result), weights_of_samples(result)
-    found = {}
+    entries = {}
     for name in path[:1] if set(path[:1]) & set(given) else given:
-        one = compare(*given[name], weights)
+        comparison = compare(*given[name], weights)
         quantiles = {
             kind: dict(zip(map(repr, PROBABILITIES), map(number, values), strict=True))
-            for kind, values in (("stated", one.stated), ("sampled", one.sampled))
+            for kind, values in (("stated", comparison.stated), ("sampled", comparison.sampled))
         }
-        found[name] = quantiles | {"distance": one.distance}
-    return found
+        entries[name] = quantiles | {"distance": comparison.distance}
+    return entries
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a number of an input comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a number of an input."""
     return Origin((cited(compare),), result.independent)

@@ -1,4 +1,4 @@
-"""The numbers of `uq update`, and where they come from."""
+"""The numbers of `uq update` and their origins."""
 
 from collections.abc import Callable
 from typing import Any
@@ -27,14 +27,14 @@ _PARTS: dict[str, Callable[..., Any]] = {
 }
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of what inspections say."""
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the posterior numbers."""
     texts = [options["by"]] if "by" in options else []
     return learnt_json(learnt(result, read_times("by", texts, result)))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a number that inspections say comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a posterior number."""
     by: list[Callable[..., Any]] = [posterior]
     if path[0] == "inputs":
         by += [inputs_learnt, quantiles if "quantiles" in path else moments_of_rows]
@@ -42,4 +42,4 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
         by += [remaining, over_shared if "over_shared" in path else Population]
     elif path[0] in _PARTS:
         by.append(_PARTS[path[0]])
-    return Origin(tuple(map(cited, by)), result.independent, notes=tuple(said["notes"]))
+    return Origin(tuple(map(cited, by)), result.independent, notes=tuple(document["notes"]))

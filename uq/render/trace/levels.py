@@ -1,4 +1,4 @@
-"""The numbers of `uq levels`, and where they come from."""
+"""The numbers of `uq levels` and their origins."""
 
 from typing import Any
 
@@ -16,14 +16,14 @@ from uq.stats.variance_components import nested_shares
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
-    """Return the JSON of the shares: of the element alone that a path names, if it names one."""
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the shares, of one element if the path names one."""
     named = output_in(split_name(path[1])[1]) if path[:1] == ("outputs",) and path[1:] else None
     return levels_json(by_level(result, named))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a share comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a share."""
     rows = result.independent
     if path[0] == "outputs":
         inside = split_name(path[1])[1]

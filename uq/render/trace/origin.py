@@ -1,4 +1,4 @@
-"""Where a number comes from."""
+"""Origin of a number: estimators, rows and their states."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,16 +9,16 @@ from uq.result.result import Result
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a number comes from.
+    """Estimators and rows of a number.
 
     Attributes
     ----------
     estimators : tuple of Citation
         Of the number, and of its interval.
     rows : xarray.Dataset
-        The rows of the result that it rests on: from them alone it can be computed again.
+        The rows of the result that suffice to recompute it.
     states : dict of str to int
-        How many of these have a value, failed, are censored and so on.
+        Number of these rows with a value, failed, censored and so on.
     notes : tuple of str
         Sentences on it.
     """
@@ -30,6 +30,6 @@ class Origin:
 
 
 def rows_behind(result: Result) -> Result:
-    """Return the independent rows of a result; all of them where that none is says why."""
+    """Return the independent rows of a result, or all rows if none is independent."""
     rows = result.independent
     return rows if len(rows) else result

@@ -29,7 +29,7 @@ class Run(NamedTuple):
 
 
 def runs_of(rows: Result) -> list[Run]:
-    """Return the numbers of some rows of a result as runs, block by block."""
+    """Return the numbers of rows as runs, block by block."""
     numbers, blocks = rows.dataset["row"].values, rows.dataset["block"].values
     return [
         Run(label, *run)
@@ -45,7 +45,7 @@ def _runs(numbers: NDArray[np.int64]) -> list[tuple[int, int, int, int]]:
     steps = np.diff(numbers)
     usual = int(np.median(steps)) if len(steps) else 1
     parts = np.split(numbers, np.flatnonzero(steps != usual) + 1)
-    return [(int(one[0]), int(one[-1]), usual, len(one)) for one in parts]
+    return [(int(run[0]), int(run[-1]), usual, len(run)) for run in parts]
 
 
 def in_words(runs: list[Run], most: int = 4) -> str:

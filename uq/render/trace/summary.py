@@ -1,4 +1,4 @@
-"""The numbers of `uq summary`, and where they come from."""
+"""The numbers of `uq summary` and their origins."""
 
 from collections.abc import Callable
 from typing import Any
@@ -20,12 +20,12 @@ from uq.text.keys import Json, Options, Path
 COUNTED = ("failed", "undefined", "censored", "never")
 
 WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
-"""What is said of weighted rows -> what computes it."""
+"""Quality of weighted rows -> its estimator."""
 
 Functions = tuple[Callable[..., Any], ...]
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of a summary, with the statistics that only the report shows.
 
     Parameters
@@ -41,19 +41,19 @@ def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
     -------
     dict
     """
-    found = _found(result, options, path)
-    whole = summary_json(found)
+    summary = _summary_of(result, options, path)
+    whole = summary_json(summary)
     if path[:1] == (BOUNDARY,):
         whole |= boundary_json(boundary(result))
-    for name, one in found.outputs.items():
-        others = [each for each in one.statistics if not each.is_read_by(Reader.JSON)]
+    for name, described in summary.outputs.items():
+        others = [each for each in described.statistics if not each.is_read_by(Reader.JSON)]
         for parent, _, entry in written(others):
             put(whole["outputs"][name], parent, entry)
     return whole
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a number of a summary comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a number of a summary."""
     if regime := options.get("regime"):
         result = result.within_regime(regime)
     if path[0] in ("samples", "status"):
@@ -65,65 +65,73 @@ def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
         return Origin((cited(uncertainty_exponent),), compared_rows(result))
     if path[0] in WEIGHTS:
         return Origin((cited(WEIGHTS[path[0]]),), rows)
-    return in_summary(_found(result, {}, path), rows, path)
+    return summary_origin(_summary_of(result, {}, path), rows, path)
 
 
-def in_summary(found: Summary, rows: Result, path: Path) -> Origin:
-    """Return where a share of a category or a number of an output comes from.
+def summary_origin(summary: Summary, rows: Result, path: Path) -> Origin:
+    """Return the origin of a share of a category or a number of an output.
 
     Parameters
     ----------
-    found : Summary
+    summary : Summary
     rows : Result
-        Those that it describes.
+        The rows that it describes.
     path : tuple of str
     """
     if path[0] in ("regime", "categories"):
         name, label = (REGIME, path[1]) if path[0] == REGIME else path[1:3]
-        return Origin(tuple(map(cited, found.shares[name][label].by)), rows)
+        return Origin(tuple(map(cited, summary.shares[name][label].by)), rows)
     states = states_of(rows.named_elements(path[1])[0])
-    by = (fits_of,) if path[2] == "fits" else functions_of(found.outputs[path[1]], path[2:])
-    notes = () if found.rows_used else tuple(found.notes)  # why no row is used
+    by = (fits_of,) if path[2] == "fits" else functions_of(summary.outputs[path[1]], path[2:])
+    notes = () if summary.rows_used else tuple(summary.notes)  # why no row is used
     return Origin(tuple(map(cited, by)), rows, states, notes)
 
 
 def states_of(element: Element) -> dict[str, int]:
     """Return how many rows of an element have a value, failed, are censored and so on."""
     counts = {name: int(getattr(element, name).sum()) for name in COUNTED}
-    some = {name: count for name, count in counts.items() if count}
-    return {"with a value": int(element.present.sum())} | some
+    nonzero = {name: count for name, count in counts.items() if count}
+    return {"with a value": int(element.present.sum())} | nonzero
 
 
-def _found(result: Result, options: Options, path: Path) -> Summary:
-    known, output = result.output_names, _output(path)
+def _summary_of(result: Result, options: Options, path: Path) -> Summary:
+    names, output = result.output_names, _output(path)
     if path[:1] == ("categories",):
         output = path[1].partition("[")[0] if path[1:] else ""
     elif path and path[0] != "outputs":
-        output = next(iter(known))  # counts and regimes need no output
-    analysis = result.analysis_of(output if output in known else None)
+        output = next(iter(names))  # counts and regimes need no output
+    analysis = result.analysis_of(output if output in names else None)
     return summarise(result, analysis, regime=options.get("regime"), fits="fits" in path)
 
 
 def functions_of(described: Described, path: Path) -> Functions:
-    """Return the functions that compute what stands at a path of the JSON of an element."""
+    """Return the estimators of the number at a path in the JSON of an element."""
     for name, statistics in described.parts.items():
         for parent, members, entry in written(statistics):
             rest = path[len(parent) :]
             if path[: len(parent)] == parent and (not rest or rest[0] in entry):
-                meant = [one for one in members if _means(one, rest)] or members
-                chosen = [_under_assumption(one, rest) for one in meant]
-                by = [function for one in chosen for function in one.by or (STATISTICS[name],)]
+                meant = [statistic for statistic in members if _means(statistic, rest)] or members
+                chosen = [_under_assumption(statistic, rest) for statistic in meant]
+                by = [
+                    function
+                    for statistic in chosen
+                    for function in statistic.by or (STATISTICS[name],)
+                ]
                 return tuple(dict.fromkeys(by))
     return (STATISTICS[path[0]],)  # the study does not ask for it
 
 
-def _means(one: Statistic, rest: Path) -> bool:
-    last = one.key[-1]
+def _means(statistic: Statistic, rest: Path) -> bool:
+    last = statistic.key[-1]
     return any(part == last or part.startswith(f"{last}_") for part in rest)
 
 
-def _under_assumption(one: Statistic, rest: Path) -> Statistic:
-    return one.otherwise if one.otherwise is not None and "kaplan_meier" in rest else one
+def _under_assumption(statistic: Statistic, rest: Path) -> Statistic:
+    return (
+        statistic.otherwise
+        if statistic.otherwise is not None and "kaplan_meier" in rest
+        else statistic
+    )
 
 
 def _output(path: Path) -> str:

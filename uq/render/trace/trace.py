@@ -1,4 +1,4 @@
-"""One number of a result: where it comes from, and the same computed again."""
+"""Origin of one number of a result, and its recomputation."""
 
 import json
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256",
 
 @dataclass(frozen=True)
 class Trace:
-    """Where a number comes from.
+    """Origin of a number, and its recomputation.
 
     Attributes
     ----------
@@ -31,18 +31,18 @@ class Trace:
         None.
     estimators : tuple of Citation
     rows_used, rows : int
-        Number of the rows that it rests on, and of all.
+        Numbers of the rows behind it, and of all rows.
     runs : list of Run
-        Which.
+        The rows behind it.
     states : dict of str to int
-        How many of them have a value, failed and so on.
+        Number of these rows with a value, failed and so on.
     notes : tuple of str
     recorded : dict
-        How the rows were drawn.
+        Attributes of the design of the rows.
     versions : dict of str to str
         The code of the model, and the versions that computed the rows.
     versions_here : dict of str to str
-        Those that differ here, where the number is computed.
+        Versions that differ at the recomputation.
     """
 
     key: str
@@ -100,8 +100,8 @@ def trace(result: AnyResult, key: str, model: str | None = None) -> pd.Series:
     >>> bool(found["value"] == uq.summary(ds).loc["y", "q0.5"]), found["equal"]
     (True, True)
     """
-    found = trace_json(traced(Result.of(result), key, model))
-    return pd.Series(found, dtype=object, name=found.pop("key"))
+    entries = trace_json(traced(Result.of(result), key, model))
+    return pd.Series(entries, dtype=object, name=entries.pop("key"))
 
 
 def traced(result: Result, key: str, model: str | None = None) -> Trace:
@@ -109,15 +109,15 @@ def traced(result: Result, key: str, model: str | None = None) -> Trace:
     parts = taken_apart(key.strip(), {name: verb.options for name, verb in VERBS.items()})
     verb, path = VERBS[parts.verb], parts.path
     options = parts.options | ({"model": model} if model else {})
-    said, numbers = {}, {}
+    document, numbers = {}, {}
     try:
-        said = verb.says(result, options, path)
-        numbers = numbers_in(value_at(said, path))
+        document = verb.json_of(result, options, path)
+        numbers = numbers_in(value_at(document, path))
     except (KeyError, InputError):  # no such output
         pass
     if not path or not numbers:
-        raise no_such_key(parts, verb.says(result, options, ()), VERBS)
-    origin = verb.origin(result, options, path, said)
+        raise no_such_key(parts, verb.json_of(result, options, ()), VERBS)
+    origin = verb.origin(result, options, path, document)
     here = {
         name: now for name, now in provenance().items() if result.dataset.attrs.get(name) != now
     }
@@ -142,7 +142,7 @@ def traced(result: Result, key: str, model: str | None = None) -> Trace:
     )
 
 
-def trace_json(one: Trace) -> dict[str, Any]:
+def trace_json(record: Trace) -> dict[str, Any]:
     """Return a trace in plain data.
 
     Returns
@@ -153,19 +153,24 @@ def trace_json(one: Trace) -> dict[str, Any]:
         ``of``, ``which`` (runs), and how many have a value, failed and so on; ``notes``; how the
         rows were drawn (``seed`` and more); ``versions``, and ``versions_here`` that differ.
     """
-    which = [run._asdict() for run in one.runs]
+    which = [run._asdict() for run in record.runs]
     return {
-        "key": one.key,
-        **one.numbers,
-        "equal": one.equal,
-        "again": dict(one.again),
-        "estimators": [each._asdict() for each in one.estimators],
-        "rows": {"used": one.rows_used, "of": one.rows, "which": which, "states": dict(one.states)},
-        "notes": list(one.notes),
-        **one.recorded,
-        "code": one.versions.get("code"),
-        "versions": {name: made for name, made in one.versions.items() if name != "code"},
-        "versions_here": dict(one.versions_here),
+        "key": record.key,
+        **record.numbers,
+        "equal": record.equal,
+        "again": dict(record.again),
+        "estimators": [each._asdict() for each in record.estimators],
+        "rows": {
+            "used": record.rows_used,
+            "of": record.rows,
+            "which": which,
+            "states": dict(record.states),
+        },
+        "notes": list(record.notes),
+        **record.recorded,
+        "code": record.versions.get("code"),
+        "versions": {name: made for name, made in record.versions.items() if name != "code"},
+        "versions_here": dict(record.versions_here),
     }
 
 

@@ -1,4 +1,4 @@
-"""The numbers of `uq twin`, and where they come from."""
+"""The numbers of `uq twin` and their origins."""
 
 from typing import Any
 
@@ -12,13 +12,13 @@ from uq.stats.control_variate import controlled_mean, controlled_share
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the estimates with a twin."""
     return twin_json(with_twin(result, options.get("model")))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where an estimate with a twin comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of an estimate with a twin."""
     rows = result.independent
     states = states_of(rows.named_elements(path[1])[0]) if path[0] == "outputs" else {}
     by = controlled_mean if path[2:3] == ("mean",) else controlled_share

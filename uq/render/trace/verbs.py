@@ -1,4 +1,4 @@
-"""The verbs whose numbers have keys. To add one, write what it says and where that comes from."""
+"""The verbs whose numbers have keys. To add one, write its JSON and origins."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -20,9 +20,9 @@ from uq.result.result import Result
 from uq.text.keys import SUMMARY, Json, Options, Path, value_at
 
 
-def from_the_rows(verb: "Verb", found: Origin, options: Options, path: Path) -> Any:
-    """Return what the verb says of the rows of an origin alone."""
-    return value_at(verb.says(found.rows, options, path), path)
+def from_the_rows(verb: "Verb", number_origin: Origin, options: Options, path: Path) -> Any:
+    """Return the number at a path, computed from the rows of its origin alone."""
+    return value_at(verb.json_of(number_origin.rows, options, path), path)
 
 
 class Verb(NamedTuple):
@@ -30,32 +30,32 @@ class Verb(NamedTuple):
 
     Attributes
     ----------
-    says : callable
+    json_of : callable
         Result, options, path -> its JSON, as far as the path needs it.
     origin : callable
         Result, options, path of a number, and the JSON it is in -> `Origin`.
     options : tuple of str
-        Those of the command that change its numbers; of a name that ends with a dot, more follows.
+        Options of the command that change its numbers; names that end with a dot are prefixes.
     again : callable
         Verb, origin, options, path -> the entry at the path, from the rows of the origin.
     """
 
-    says: Callable[[Result, Options, Path], dict[str, Any]]
+    json_of: Callable[[Result, Options, Path], dict[str, Any]]
     origin: Callable[[Result, Options, Path, Json], Origin]
     options: tuple[str, ...] = ()
     again: Callable[["Verb", Origin, Options, Path], Any] = from_the_rows
 
 
 VERBS: dict[str, Verb] = {
-    SUMMARY: Verb(summary.says, summary.origin, ("regime",)),
-    "answer": Verb(answer.says, answer.origin),
-    "inputs": Verb(inputs.says, inputs.origin),
-    "sensitivity": Verb(indices.says, indices.origin, ("method", "regime")),
-    "levels": Verb(levels.says, levels.origin),
-    "fleet": Verb(fleet.says, fleet.origin, ("size", "by", "allow", "output")),
-    "update": Verb(learning.says, learning.origin, ("by",)),
-    "convergence": Verb(convergence.says, convergence.origin, (), convergence.again),
-    "twin": Verb(two_fidelities.says, two_fidelities.origin),
-    "what-if": Verb(what_if.says, what_if.origin, ("uncertain.", "dependence.")),
+    SUMMARY: Verb(summary.json_of, summary.origin, ("regime",)),
+    "answer": Verb(answer.json_of, answer.origin),
+    "inputs": Verb(inputs.json_of, inputs.origin),
+    "sensitivity": Verb(indices.json_of, indices.origin, ("method", "regime")),
+    "levels": Verb(levels.json_of, levels.origin),
+    "fleet": Verb(fleet.json_of, fleet.origin, ("size", "by", "allow", "output")),
+    "update": Verb(learning.json_of, learning.origin, ("by",)),
+    "convergence": Verb(convergence.json_of, convergence.origin, (), convergence.again),
+    "twin": Verb(two_fidelities.json_of, two_fidelities.origin),
+    "what-if": Verb(what_if.json_of, what_if.origin, ("uncertain.", "dependence.")),
 }
 """By name; the answer is a part of the summary, and a report shows the inputs."""

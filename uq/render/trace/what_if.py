@@ -1,4 +1,4 @@
-"""The numbers of `uq what-if`, and where they come from."""
+"""The numbers of `uq what-if` and their origins."""
 
 from typing import Any
 
@@ -10,20 +10,20 @@ from uq.result.result import Result
 from uq.text.keys import Json, Options, Path
 
 
-def says(result: Result, options: Options, path: Path) -> dict[str, Any]:
+def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of a result under the laws that the options set."""
     return what_if_json(_answer(result, options))
 
 
-def origin(result: Result, options: Options, path: Path, said: Json) -> Origin:
-    """Return where a number under other laws comes from."""
+def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
+    """Return the origin of a number under other laws."""
     rows = result.independent
     if path[0] in ("samples", "status", "rows_used"):
-        return summary.origin(result, {}, path, said)
+        return summary.origin(result, {}, path, document)
     if path[0] in ("effective_rows", "pareto_k"):
         return Origin((cited(what_if), cited(summary.WEIGHTS[path[0]])), rows)
-    found = summary.in_summary(_answer(result, options).summary, rows, path)
-    return Origin((cited(what_if), *found.estimators), rows, found.states)
+    base = summary.summary_origin(_answer(result, options).summary, rows, path)
+    return Origin((cited(what_if), *base.estimators), rows, base.states)
 
 
 def _answer(result: Result, options: Options) -> WhatIf:

@@ -121,10 +121,10 @@ def test_regimes_are_named_with_their_shares():
     shares = summarised(ds)["regime"]
     assert len(conclusions.regimes) == 2
     for regime in conclusions.regimes:
-        share, low, high = numbers(rf"# % \(# to # %\) {regime.said}\.", regime.sentence)
-        expected = [100 * shares[regime.said][key] for key in ("share", "low", "high")]
+        share, low, high = numbers(rf"# % \(# to # %\) {regime.predicate}\.", regime.sentence)
+        expected = [100 * shares[regime.predicate][key] for key in ("share", "low", "high")]
         assert [share, low, high] == pytest.approx(expected, abs=0.05)
-    assert all(regime.said in conclusions.regimes_sentence for regime in conclusions.regimes)
+    assert all(regime.predicate in conclusions.regimes_sentence for regime in conclusions.regimes)
 
 
 @pytest.mark.parametrize("rows", [1, 5])

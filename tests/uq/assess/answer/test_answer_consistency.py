@@ -184,7 +184,7 @@ def test_no_input_moves_an_event_that_no_single_input_decides():
         for event in conclusions.lead.events if conclusions.lead else ():
             if event.ranking is not None and event.ranking.denies_a_leader:
                 assert not any(
-                    event.said in advice.text
+                    event.predicate in advice.text
                     for advice in conclusions.advice
                     if advice.rule == "tighten"
                 )

@@ -50,7 +50,7 @@ def of_regimes(share_of_start, samples=400, is_initial=True, of_pairs=False):
 def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
     ds = of_regimes(0.95)
     conclusions = answer(ds)
-    word = conclusions.regimes[0].said
+    word = conclusions.regimes[0].predicate
     share, low, high, *_ = numbers(
         rf"The start \(x2\) decides whether it is {word}: # % \(# to # %\) of the variance,"
         r" the machine # % \(# to # %\)\.",
@@ -82,7 +82,7 @@ def test_single_inputs_are_called_so_where_another_level_decides():
     assert conclusions.regimes[0].decided_by.startswith(
         f"Of single inputs, decided most by {by}: from "
     )
-    traced = trace(ds, f"answer/regimes/{conclusions.regimes[0].said}/decided_by")
+    traced = trace(ds, f"answer/regimes/{conclusions.regimes[0].predicate}/decided_by")
     assert traced["sentence"] == conclusions.regimes[0].decided_by and traced["equal"]
     assert "x1 would again contribute most" not in conclusions.enough.sentence
     other = answer(of_regimes(0.05))

@@ -169,5 +169,5 @@ def test_a_regime_that_no_first_row_of_a_sample_has_is_not_ranked(nested):
     attrs |= {"may_be_undefined": 0}
     attrs |= {"flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
     conclusions = answer(ds.assign(regime=("row", rare.astype(np.int8), attrs)))
-    (rough,) = [regime for regime in conclusions.regimes if regime.said == "rough"]
+    (rough,) = [regime for regime in conclusions.regimes if regime.predicate == "rough"]
     assert rough.decided_by == "No ranking of the inputs: no row that it could rest on is rough."

@@ -52,7 +52,7 @@ def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):
     few = answer(ds).lead.ranking
     alone = answer(first_samples(ds, 300)).lead.ranking
     assert few.contributions == alone.contributions
-    assert few.what == f"{alone.what}, by the first 300 rows"
+    assert few.index_meaning == f"{alone.index_meaning}, by the first 300 rows"
 
 
 def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_it():
@@ -74,7 +74,7 @@ def test_what_decides_that_an_angle_is_too_large_is_that_of_its_magnitude():
     ds["turn"].attrs["units"] = "rad"
     lead = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
     assert lead.ranking.leader.inputs == ("x1",)  # of the signed value, as it says
-    assert lead.ranking.what.endswith("of the angle with its sign")
+    assert lead.ranking.index_meaning.endswith("of the angle with its sign")
     assert "raises its signed value" in lead.ranking.leader.effect
     (event,) = lead.events
     assert event.decided_by.startswith("Decided most by x4: from 0 % where it is below 0.")

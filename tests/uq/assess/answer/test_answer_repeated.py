@@ -41,7 +41,7 @@ def test_other_seeds_find_a_share_where_the_answer_says():
 def test_an_estimate_without_an_interval_says_nothing_of_other_seeds():
     assert all(map(np.isnan, found_again(Estimate(1.0), True)))
     (quantity,) = answer(asking(linear(samples=5), outputs=["y"])).quantities
-    assert quantity.repeated.what == ""
+    assert quantity.repeated.subject == ""
 
 
 def test_the_quantile_and_the_input_that_contributes_most_are_said():

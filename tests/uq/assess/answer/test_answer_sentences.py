@@ -149,7 +149,7 @@ def test_a_quantile_moves_where_no_probability_is_asked_for():
     before, after, low, high = numbers(
         r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
         r" from # to # \(# to #\)\.",
-        remedy.said,
+        remedy.sentence,
     )
     shares = np.hypot(0.05, 4 * 0.05), np.hypot(0.05, 4 * 0.025)  # of sd, as y = x1 + ... + 4 x4
     middle = 0.5 + 4 * 0.5 + (before - 0.5 - 4 * 0.5 + 1.645 * shares[0])
@@ -180,8 +180,8 @@ def test_a_ranking_of_lives_says_that_it_integrates_nothing():
         "analysis": {"outputs": ["life", "y"]},
     }
     life, y = answer(computed(study_of(tables, "sample_models:SCALED"))).quantities
-    assert life.ranking.what.endswith(", of lives as computed")
-    assert "integrated" not in y.ranking.what
+    assert life.ranking.index_meaning.endswith(", of lives as computed")
+    assert "integrated" not in y.ranking.index_meaning
 
 
 def test_no_single_input_explains_much():
@@ -221,8 +221,8 @@ def test_the_rarer_regimes_say_what_decides_them():
     ]
     ds = kinds(samples=400)
     first, second = answer(ds).main_regimes
-    assert (first.said, second.said) == ("slow", "fast")
-    assert [cause.said for cause in answer(ds).regime_causes] == ["fast"]
+    assert (first.predicate, second.predicate) == ("slow", "fast")
+    assert [cause.predicate for cause in answer(ds).regime_causes] == ["fast"]
     *_, never, below, always, above = numbers(
         r"# % \(# to # %\) fast\. Decided most by x1: from # % where it is below # m"
         r" to # % where it is above # m\.",

@@ -43,7 +43,7 @@ def test_tolerances_that_help_about_as_much_are_named_together():
     now, then, low, high = numbers(
         r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
         r" from # to # \(# to #\)\.",
-        advice.said,
+        advice.sentence,
     )
     assert now == pytest.approx(quantile(ALIKE), abs=0.03)
     assert low < then < high and low < quantile(ALIKE | {"x4": 0.025}) < high
@@ -54,7 +54,7 @@ def test_tolerances_that_help_about_as_much_are_named_together():
         advice.sure.promised,
     )
     assert studied < now < sure <= low
-    assert advice.text == f"{advice.said} {advice.sure.promised} {advice.also}"
+    assert advice.text == f"{advice.sentence} {advice.sure.promised} {advice.also}"
 
 
 def test_each_tolerance_has_its_line_in_the_report():

@@ -68,7 +68,7 @@ def test_a_bound_that_many_rows_have_is_not_said_to_be_exceeded():
     lead = answer(cycles).lead
     assert lead.promise.sentence == "With 95 % confidence, at least 95 % reach 3 s."
     assert lead.promise.opening().endswith("at least 95 % reach")
-    assert lead.events[0].said == "end before 5 s"  # those that end at 5 s are not among them
+    assert lead.events[0].predicate == "end before 5 s"  # those that end at 5 s are not among them
     gaps = valued(lambda x, *_: np.maximum(x - 0.97, 0) * -1.0)
     assert answer(gaps).lead.promise.sentence == (
         "With 95 % confidence, at least 95 % do not fall below 0 m. 97.8 % of the rows share the"
@@ -98,7 +98,7 @@ def test_what_the_rows_cannot_show_is_no_advice():
     asked = {"thresholds": {"found": 0.0}, "wanted": {"found": "above"}}
     whole = answer(valued(lambda x, y, *_: x - 0.5 + 0.1 * y - 0.05, samples=1000, **asked))
     (advice,) = [remedy for remedy in whole.advice if remedy.rule == "tighten"]
-    assert advice.tightened.what == "the 5 % quantile"
+    assert advice.tightened.statistic == "the 5 % quantile"
     assert not any(tolerance.may_stay for tolerance in [advice.tightened, *advice.alike])
 
 

@@ -162,7 +162,8 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     (event,) = conclusions.lead.events
     figure = plots.event_probability(ds, event.name)
     (panel,) = figure.axes
-    assert panel.get_title("left") == f"Time until the depth is reached\nRows that {event.said}"
+    title = f"Time until the depth is reached\nRows that {event.predicate}"
+    assert panel.get_title("left") == title
     assert event.decided_by.startswith("Decided most by rate")
     assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
     drawn = panel.patches[-1].get_data().values
