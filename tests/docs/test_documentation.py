@@ -22,7 +22,6 @@ from matplotlib import pyplot
 
 import uq as public
 from uq import plots
-from uq.result.result import Result
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.cli.summary_tables import show_summary

@@ -5,7 +5,6 @@ from functools import wraps
 
 import numpy as np
 
-from uq.result.result import Result
 from uq.assess.comparison import comparison
 from uq.assess.summary import summarise
 from uq.assess.summary_json import comparison_json, summary_json

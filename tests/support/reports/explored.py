@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 import uq.render.html
-from uq.result.result import Result
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside

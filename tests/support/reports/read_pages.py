@@ -2,7 +2,6 @@
 
 from html.parser import HTMLParser
 
-from uq.result.result import Result
 from uq.render.html.page import page
 from uq.result.result import Result
 

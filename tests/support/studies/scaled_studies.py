@@ -2,7 +2,6 @@
 
 from computed import study_of
 
-from uq.result.result import Result
 from uq.assess.population import Population
 from uq.assess.scaling import population, why_not_integrated
 from uq.result.elements import independent_rows, replicates_of

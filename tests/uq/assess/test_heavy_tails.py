@@ -7,7 +7,6 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
-from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.expected_widths import expected_widths
 from uq.assess.findings import Findings

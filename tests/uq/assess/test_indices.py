@@ -6,7 +6,6 @@ from asked_indices import INPUTS, indices, ishigami, sensitivities
 from computed import kinds, linear, with_output
 
 import uq
-from uq.result.result import Result
 from uq.assess.sensitivities import methods
 from uq.contract import Status
 from uq.errors import InputError

@@ -8,7 +8,6 @@ from asked_indices import sensitivities
 from computed import asking, compared, linear, summarised, with_output
 from scipy import stats
 
-from uq.result.result import Result
 from uq.assess.convergence import enough
 from uq.assess.expected_widths import expected_widths
 from uq.assess.statistics.between_regimes import between_share

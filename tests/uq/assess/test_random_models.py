@@ -6,7 +6,6 @@ from asked_indices import sensitivities
 from computed import computed, summarised, with_seed, with_status
 from noisy_studies import noisy
 
-from uq.result.result import Result
 from uq.assess.comparison import compare
 from uq.assess.convergence import running_estimates
 from uq.assess.expected_widths import expected_widths

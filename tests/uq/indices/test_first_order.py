@@ -7,7 +7,6 @@ from computed import asking, linear, with_output
 from scipy import special
 from scipy.stats import qmc
 
-from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.answer.rankings import unexplained

@@ -9,7 +9,6 @@ from asked_indices import sensitivities, values
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
-from uq.result.result import Result
 from uq.assess import sensitivities as module
 from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from uq.result.result import Result
 from uq.errors import InputError
 from uq.learning import inspection_log
 from uq.learning.inspections import Inspection, InspectionKind, read_inspections

@@ -11,7 +11,6 @@ from computed import linear
 from learnt_studies import exactly, measured, wear
 from scipy.stats import lognorm, norm
 
-from uq.result.result import Result
 from uq.errors import InputError, RunError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result

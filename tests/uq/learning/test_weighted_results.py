@@ -8,7 +8,6 @@ from scipy.stats import lognorm
 
 import uq as api
 from uq import plots
-from uq.result.result import Result
 from uq.errors import InputError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result

@@ -12,7 +12,6 @@ from computed import computed, linear, study_of
 from in_memory import compute
 
 import uq
-from uq.result.result import Result
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.contract import Status

@@ -8,7 +8,6 @@ import pytest
 import xarray as xr
 from learnt_studies import measured, wear
 
-from uq.result.result import Result
 from uq.errors import InputError
 from uq.execution import runner
 from uq.explore.updating import update

@@ -6,7 +6,6 @@ import pytest
 from computed import as_text, asking, computed
 from input_studies import UNIFORM, inputs_of, tables
 
-from uq.result.result import Result
 from uq.assess.comparison import comparison
 from uq.errors import InputError
 from uq.render.html.page import page

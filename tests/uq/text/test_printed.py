@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from computed import asking, linear, with_output
 
-from uq.result.result import Result
 from uq.render.html.page import page
 from uq.result.result import Result
 from uq.text.numbers import minus, printed

@@ -3,7 +3,6 @@
 import numpy as np
 from computed import asking, kinds
 
-from uq.result.result import Result
 from uq.render.html.page import page
 from uq.result.result import Result
 

@@ -9,7 +9,6 @@ from computed import linear, with_output, with_status
 from markupsafe import escape
 from matplotlib.figure import Figure
 
-from uq.result.result import Result
 from uq.contract import Status
 from uq.plots import FIGURES
 from uq.render.html.layout import templates

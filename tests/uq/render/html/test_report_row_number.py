@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from computed import linear
 
-from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside
 from uq.result.elements import independent_rows
