@@ -88,5 +88,5 @@ def nearest(name: str, choices: Iterable[str]) -> str:
         To be appended to an error line.
     """
     by_lower = {choice.lower(): choice for choice in choices}
-    found = get_close_matches(name.lower(), by_lower, n=1)
-    return f"; did you mean '{by_lower[found[0]]}'?" if found else ""
+    close = get_close_matches(name.lower(), by_lower, n=1)
+    return f"; did you mean '{by_lower[close[0]]}'?" if close else ""

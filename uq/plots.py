@@ -139,8 +139,8 @@ def save_all(result: Result, folder: str | Path) -> list[Path]:
     try:
         return [
             path
-            for one in drawables(FIGURES, Findings(result))
-            for path in write(one.draw(), folder / one.file)
+            for drawable in drawables(FIGURES, Findings(result))
+            for path in write(drawable.draw(), folder / drawable.file)
         ]
     except OSError as error:
         raise InputError(

@@ -86,48 +86,54 @@ def notebook(answer: Answer) -> str:
 
 def sayings(quantities: Sequence[Quantity]) -> Markup:
     """Return what is known of some quantities, in sentences."""
-    found = []
-    for one in quantities:
+    sentences = []
+    for quantity in quantities:
         lines = [
-            keyed_sentences.promise(one),
-            keyed_sentences.basis(one),
-            keyed_sentences.likely(one),
+            keyed_sentences.promise(quantity),
+            keyed_sentences.basis(quantity),
+            keyed_sentences.likely(quantity),
         ]
         lines += [
-            *keyed_sentences.events(one),
-            keyed_sentences.leader(one),
-            keyed_sentences.repeated(one),
+            *keyed_sentences.events(quantity),
+            keyed_sentences.leader(quantity),
+            keyed_sentences.repeated(quantity),
         ]
-        lines += keyed_sentences.earliest(one)
+        lines += keyed_sentences.earliest(quantity)
         items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
-        title = capitalized(one.words)
-        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
-    return Markup("").join(found)
+        title = capitalized(quantity.words)
+        sentences.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
+    return Markup("").join(sentences)
 
 
 def regimes(answer: Answer) -> Markup:
     """Return the shares of the regimes, and what decides them."""
-    items = (Markup("<li>{}</li>").format(keyed_sentences.regime(one)) for one in answer.regimes)
+    items = (
+        Markup("<li>{}</li>").format(keyed_sentences.regime(regime)) for regime in answer.regimes
+    )
     return Markup("<ul>{}</ul>").format(Markup("").join(items)) if answer.regimes else Markup()
 
 
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    own = [keyed_sentences.enough(answer), keyed_sentences.levels(answer), folded.unsettled(answer)]
-    causes = [keyed_sentences.cause_of(one) for one in answer.regime_causes]
+    sentences = [
+        keyed_sentences.enough(answer),
+        keyed_sentences.levels(answer),
+        folded.unsettled(answer),
+    ]
+    causes = [keyed_sentences.cause_of(cause) for cause in answer.regime_causes]
     shares = keyed_sentences.shares(answer.main_regimes)
     mixing = keyed_sentences.mixing(answer)
     if answer.regimes_first:
         parts = [
             _large(shares),
             _line(mixing) if mixing else mixing,
-            *_under(own),
+            *_under(sentences),
             *map(_line, causes),
             *parts,
         ]
     else:
-        parts += [*_under(own), _line(shares) if shares else shares]
+        parts += [*_under(sentences), _line(shares) if shares else shares]
         decided = folded.items([*causes, answer.starts_alike])
         parts.append(folded.folded("What decides the regime", decided))
     parts.append(folded.folded("What it assumes", folded.items(answer.assumptions)))
@@ -136,9 +142,9 @@ def _verdict(answer: Answer) -> Markup:
     return _block("verdict", parts)
 
 
-def _under(own: Sequence[Markup]) -> Iterator[Markup]:
+def _under(sentences: Sequence[Markup]) -> Iterator[Markup]:
     """Yield whether the rows are enough, which level decides, and what is to be unfolded."""
-    again, levels, unsettled = own
+    again, levels, unsettled = sentences
     yield _line(levels) if levels else levels
     yield _small(again) if again else again
     yield unsettled
@@ -158,8 +164,12 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     yield from map(_line, keyed_sentences.others(lead))
     if answer.regimes_first:
         return
-    elements = [one for one in answer.quantities[1:] if one.output == lead.output]
-    promised = [one for one in elements if one.promise is not None and one.promise.sentence]
+    elements = [element for element in answer.quantities[1:] if element.output == lead.output]
+    promised = [
+        quantity
+        for quantity in elements
+        if quantity.promise is not None and quantity.promise.sentence
+    ]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:
         yield _small(
             Markup("{}: {}").format(plain(printed(other.place)), keyed_sentences.promise(other))
@@ -179,46 +189,50 @@ def _ranking(answer: Answer) -> Markup:
         return _block("ranking", [title, _line(why)])
     note = _small(" ".join(filter(None, (sentence(ranking.index_meaning), answer.ties))))
     largest = ranking.contributions[0].value
-    seen = [one for one in ranking.contributions if one.value >= _SEEN * largest]
+    seen = [
+        contribution
+        for contribution in ranking.contributions
+        if contribution.value >= _SEEN * largest
+    ]
     shown = enumerate(seen[:_MOST_BARS])
-    return _block("ranking", [title, *(_bar(lead, *one) for one in shown), note])
+    return _block("ranking", [title, *(_bar(lead, *bar) for bar in shown), note])
 
 
 def _levels(answer: Answer) -> Markup:
     """Return the levels as bars, of a study that is about the regimes."""
     if answer.levels is None or not answer.regimes_first:
         return Markup()
-    found = []
-    for one in answer.levels.levels:
-        track = bars.bar(one.share.value, one.share.low, one.share.high, (0.0, 1.0))
-        size = Contribution(one.inputs, (one.share,), share_of_variance=True).size
-        texts = capitalized(one.words), track, size, one.inputs_named
-        found.append(_BAR.format(*map(_shown, texts)))
-    return Markup("").join([*found, _small(f"Share of the variance of {answer.levels.subject}.")])
+    blocks = []
+    for level in answer.levels.levels:
+        track = bars.bar(level.share.value, level.share.low, level.share.high, (0.0, 1.0))
+        size = Contribution(level.inputs, (level.share,), share_of_variance=True).size
+        texts = capitalized(level.words), track, size, level.inputs_named
+        blocks.append(_BAR.format(*map(_shown, texts)))
+    return Markup("").join([*blocks, _small(f"Share of the variance of {answer.levels.subject}.")])
 
 
 def _first(answer: Answer) -> Markup:
     """Return which rows of a life end first, and why."""
-    found = [] if answer.lead is None else [*map(_line, keyed_sentences.earliest(answer.lead))]
+    lines = [] if answer.lead is None else [*map(_line, keyed_sentences.earliest(answer.lead))]
     title = Markup("<h3>What ends first</h3>")
-    return _block("first", [title, *found]) if found else Markup()
+    return _block("first", [title, *lines]) if lines else Markup()
 
 
-def _bar(lead: Quantity, number: int, one: Contribution) -> Markup:
+def _bar(lead: Quantity, number: int, level: Contribution) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
     assert lead.ranking is not None
     largest = lead.ranking.contributions[0].value
-    most = largest if one.unit.name else max(1.0, largest)
-    first = one.indices[0]
-    track = bars.bar(one.value, first.low, first.high, (0.0, most))
-    words, told = one.words, bool(one.effect)
-    if len(one.inputs) > _MOST_NAMED:
-        words, told = choices(map(called, one.inputs), _MOST_NAMED - 1), False
+    most = largest if level.unit.name else max(1.0, largest)
+    first = level.indices[0]
+    track = bars.bar(level.value, first.low, first.high, (0.0, most))
+    words, told = level.words, bool(level.effect)
+    if len(level.inputs) > _MOST_NAMED:
+        words, told = choices(map(called, level.inputs), _MOST_NAMED - 1), False
     return _BAR.format(
         plain(capitalized(words)),
         track,
-        keyed_sentences.size(lead, number, one),
-        keyed_sentences.effect(lead, number, one) if told else "",
+        keyed_sentences.size(lead, number, level),
+        keyed_sentences.effect(lead, number, level) if told else "",
     )
 
 
@@ -226,8 +240,8 @@ def _to_do(answer: Answer) -> Markup:
     if not answer.advice:
         return Markup()
     items = (
-        Markup("<li>{}{}</li>").format(keyed_sentences.advice(one), folded.below(one))
-        for one in answer.advice
+        Markup("<li>{}{}</li>").format(keyed_sentences.advice(advice), folded.below(advice))
+        for advice in answer.advice
     )
     title = Markup("<h3>What to do</h3>")
     return _block("todo", [title, Markup("<ul>{}</ul>").format(Markup("").join(items))])

@@ -65,20 +65,22 @@ class HtmlTable(NamedTuple):
     @property
     def scales(self) -> dict[str, tuple[float, float]]:
         """The ends of the scale of each kind of number: zero, and all numbers with intervals."""
-        found = {SHARE: (0.0, 1.0)}
-        for one in chain.from_iterable(self.rows):
-            if one.scale not in ("", SHARE):
-                low, high = found.get(one.scale, (0.0, 0.0))
-                known = [end for end in (one.key, *one.ends) if end is not None and isfinite(end)]
-                found[one.scale] = min(low, *known, 0.0), max(high, *known, 0.0)
-        return found
+        scales_of_columns = {SHARE: (0.0, 1.0)}
+        for entry in chain.from_iterable(self.rows):
+            if entry.scale not in ("", SHARE):
+                low, high = scales_of_columns.get(entry.scale, (0.0, 0.0))
+                ends = [
+                    end for end in (entry.key, *entry.ends) if end is not None and isfinite(end)
+                ]
+                scales_of_columns[entry.scale] = min(low, *ends, 0.0), max(high, *ends, 0.0)
+        return scales_of_columns
 
     def has_numbers(self, column: int) -> bool:
         """Whether a column is one of numbers, or of dashes in their place."""
         return any(row[column].key is not None or row[column].text == "-" for row in self.rows)
 
 
-def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
+def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     """Return the cell of a statistic, its interval below.
 
     Parameters
@@ -93,16 +95,16 @@ def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     -------
     Cell
     """
-    estimate = one.estimate
-    form = FORMS.get(split_name(one.of)[0])
-    text = one.words(per) + (f", of the {form}" if form else "")
-    worst = estimate_text.failed_bounds_text(one.failed, per)
+    estimate = statistic.estimate
+    form = FORMS.get(split_name(statistic.of)[0])
+    text = statistic.words(per) + (f", of the {form}" if form else "")
+    worst = estimate_text.failed_bounds_text(statistic.failed, per)
     small = (
-        one.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
+        statistic.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
         f"with failed rows {worst}" if worst else "",
-        one.more,
+        statistic.more,
     )
-    last = inf if estimate.value == inf and one.otherwise is None else None
+    last = inf if estimate.value == inf and statistic.otherwise is None else None
     key = estimate.value if isfinite(estimate.value) else last
     ends = (estimate.low, estimate.high)
     return Cell(text, "; ".join(filter(None, small)), key, scale=scale, ends=ends)
@@ -111,6 +113,6 @@ def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
 def without_empty_columns(table: HtmlTable) -> HtmlTable:
     """Return a table without its empty columns; the first column stays."""
     first, *others = zip(table.header, *table.rows, strict=True)
-    filled = (one for one in others if any(cell.text not in ("", "-") for cell in one[1:]))
+    filled = (row for row in others if any(cell.text not in ("", "-") for cell in row[1:]))
     header, *rows = zip(first, *filled, strict=True)
     return table._replace(header=header, rows=rows)

@@ -33,7 +33,7 @@ class Convergence(NamedTuple):
     pictures: list[Picture]
 
 
-def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
+def convergence_of(findings: Findings, outcomes: list[Outcome]) -> Convergence:
     """Return the convergence of a result.
 
     Parameters
@@ -46,30 +46,39 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
     -------
     Convergence
     """
-    if not found:
+    if not outcomes:
         return Convergence(None, [], "there is no numeric output", [])
     try:
         errors = enough(findings.result)
     except InputError as refused:
         return Convergence(None, [], str(refused), [])
     lines = [
-        (one, cast(pd.Series, errors.loc[one.name])) for one in found if one.name in errors.index
+        (outcome, cast(pd.Series, errors.loc[outcome.name]))
+        for outcome in outcomes
+        if outcome.name in errors.index
     ]
-    rows = [_row(one, line) for one, line in lines if line[["sampling", "own"]].notna().any()]
+    rows = [
+        _row(outcome, line) for outcome, line in lines if line[["sampling", "own"]].notna().any()
+    ]
     header = ("output", "unit", "estimate", "half-width of the interval", "error of the rows")
     table = without_empty_columns(HtmlTable("Sampling error", header, rows)) if rows else None
-    warnings = [f"{one.name}: {line['warning']}" for one, line in lines if line["warning"]]
+    warnings = [f"{outcome.name}: {line['warning']}" for outcome, line in lines if line["warning"]]
     drawn = list(pictures(findings, "convergence"))
     return Convergence(table, warnings, findings.running.attrs.get("refused", ""), drawn)
 
 
-def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
+def _row(outcome: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
     cells = (
-        Cell(number(error / one.unit.size), key=error, traced=traced)
+        Cell(number(error / outcome.unit.size), key=error, traced=traced)
         if error == error
         else Cell("-")
         for name in ("sampling", "own")
         for error in [float(errors[name])]
-        for traced in [key_of("outputs", one.name, f"{name}_error", verb="convergence")]
+        for traced in [key_of("outputs", outcome.name, f"{name}_error", verb="convergence")]
     )
-    return Cell(one.name, one.place), one.unit_cell, Cell(str(errors["estimate"])), *cells
+    return (
+        Cell(outcome.name, outcome.place),
+        outcome.unit_cell,
+        Cell(str(errors["estimate"])),
+        *cells,
+    )

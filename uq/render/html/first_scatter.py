@@ -43,8 +43,16 @@ def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[
 
     Where it names none, that over which the mean rank of the element varies most.
     """
-    own = [one for one in answered if one.name == element.name]
-    rankings = [one.ranking for one in own] + [event.ranking for one in own for event in one.events]
-    leaders = [one.leader for one in rankings if one is not None]
-    named = [name for one in leaders if one is not None for name in one.inputs if name in inputs]
+    quantities = [quantity for quantity in answered if quantity.name == element.name]
+    rankings = [quantity.ranking for quantity in quantities] + [
+        event.ranking for quantity in quantities for event in quantity.events
+    ]
+    leaders = [ranking.leader for ranking in rankings if ranking is not None]
+    named = [
+        name
+        for contribution in leaders
+        if contribution is not None
+        for name in contribution.inputs
+        if name in inputs
+    ]
     return (named or leading(inputs, element))[0]

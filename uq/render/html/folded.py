@@ -20,8 +20,8 @@ def folded(title: str, content: Markup) -> Markup:
 
 def items(lines: Iterable[str]) -> Markup:
     """Return lines as a list; "" without any."""
-    found = Markup("").join(Markup("<li>{}</li>").format(_shown(one)) for one in lines if one)
-    return Markup("<ul>{}</ul>").format(found) if found else found
+    entries = Markup("").join(Markup("<li>{}</li>").format(_shown(line)) for line in lines if line)
+    return Markup("<ul>{}</ul>").format(entries) if entries else entries
 
 
 def unsettled(answer: Answer) -> Markup:
@@ -29,24 +29,32 @@ def unsettled(answer: Answer) -> Markup:
     return folded("What is not settled besides", items(answer.enough.others))
 
 
-def below(one: Advice) -> Markup:
+def below(advice: Advice) -> Markup:
     """Return what belongs to a piece of advice: what other tolerances would change."""
-    if len(one.tolerances) < 2:
+    if len(advice.tolerances) < 2:
         return Markup()
-    return folded("Half the scatter of each input", _tolerances(one))
+    return folded("Half the scatter of each input", _tolerances(advice))
 
 
 def _tolerances(advice: Advice) -> Markup:
     """Return a table: what half the scatter of each input would make of each number."""
-    known, above = advice.tolerances, {advice.key, *(one.key for one in advice.alike)}
-    numbers = {one.statistic: one for one in known}
-    lines = [["As studied", *(_number(one.text(one.before)) for one in numbers.values())]]
-    for inputs in dict.fromkeys(one.inputs for one in known):
-        own = {one.statistic: one for one in known if one.inputs == inputs}
+    tolerances, above = advice.tolerances, {advice.key, *(alike.key for alike in advice.alike)}
+    numbers = {tolerance.statistic: tolerance for tolerance in tolerances}
+    lines = [
+        [
+            "As studied",
+            *(_number(tolerance.text(tolerance.before)) for tolerance in numbers.values()),
+        ]
+    ]
+    for inputs in dict.fromkeys(tolerance.inputs for tolerance in tolerances):
+        by_statistic = {
+            tolerance.statistic: tolerance for tolerance in tolerances if tolerance.inputs == inputs
+        }
         cells = (
-            _cell(own[what], above) if what in own else Markup("<td></td>") for what in numbers
+            _cell(by_statistic[what], above) if what in by_statistic else Markup("<td></td>")
+            for what in numbers
         )
-        law = Markup("<small>{}</small>").format(_shown(next(iter(own.values())).law))
+        law = Markup("<small>{}</small>").format(_shown(next(iter(by_statistic.values())).law))
         lines.append([_shown(capitalized(called_together(inputs))) + law, *cells])
     head = Markup("").join(
         Markup('<th scope="col" class="number">{}</th>').format(
@@ -66,12 +74,12 @@ def _number(text: str) -> Markup:
     return Markup('<td class="number">{}</td>').format(_shown(text))
 
 
-def _cell(one: TighterTolerance, above: Collection[str]) -> Markup:
+def _cell(tolerance: TighterTolerance, above: Collection[str]) -> Markup:
     """Return a number with its interval, and with its key where no sentence above has it."""
-    text = one.text(one.after)
-    number = _shown(text) if one.key in above else keyed_sentences.keyed(text, one.key)
+    text = tolerance.text(tolerance.after)
+    number = _shown(text) if tolerance.key in above else keyed_sentences.keyed(text, tolerance.key)
     return Markup('<td class="number">{}<small>{}</small></td>').format(
-        number, _shown(one.interval)
+        number, _shown(tolerance.interval)
     )
 
 

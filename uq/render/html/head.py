@@ -9,7 +9,7 @@ from uq.render.html.pictures import Picture
 _FIGURE = Markup("<figure{}>{}</figure>")  # the verdict says of what
 
 
-def headline(found: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
+def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
     """Return the answer as HTML; takes the figure that it shows out of those drawn.
 
     Parameters
@@ -20,13 +20,15 @@ def headline(found: Answer, drawn: list[Picture], by_regime: list[Picture]) -> M
     by_regime : list of Picture
         The figures of the rows by their regimes, which the answer may be about.
     """
-    lead = found.lead
-    own = [(drawn, one) for one in drawn if lead is not None and one.of.name == lead.output]
-    if found.regimes_first:
-        own = [*((by_regime, one) for one in by_regime), *own]
-    if not own:
-        return fragment(found)
-    among, shown = own[0]
+    lead = answer.lead
+    figures = [
+        (drawn, figure) for figure in drawn if lead is not None and figure.of.name == lead.output
+    ]
+    if answer.regimes_first:
+        figures = [*((by_regime, figure) for figure in by_regime), *figures]
+    if not figures:
+        return fragment(answer)
+    among, shown = figures[0]
     among.remove(shown)
     kind = Markup(' class="image"') if shown.is_image else ""
-    return fragment(found, _FIGURE.format(kind, shown.html))
+    return fragment(answer, _FIGURE.format(kind, shown.html))

@@ -42,7 +42,7 @@ class IndexTable(NamedTuple):
     @property
     def columns(self) -> int:
         """Of its widest table."""
-        return max((len(one.header) for one in self.tables), default=0)
+        return max((len(table.header) for table in self.tables), default=0)
 
     @property
     def output(self) -> str:
@@ -80,26 +80,31 @@ def sensitivity_of(findings: Findings) -> list[MethodTable]:
 
 def _method(findings: Findings, name: str) -> MethodTable:
     try:
-        found = findings.sensitivities(name)
+        sensitivities = findings.sensitivities(name)
     except InputError as error:
         return MethodTable(name, refused=str(error))
-    used = f"from {counted(found.rows_used, 'row')}"
-    if found.groups_dropped:
-        used += f"; {counted(found.groups_dropped, 'group')} with missing values dropped"
-    subjects = (_subject(findings.result, name, one) for one in found.targets.values())
+    used = f"from {counted(sensitivities.rows_used, 'row')}"
+    if sensitivities.groups_dropped:
+        used += f"; {counted(sensitivities.groups_dropped, 'group')} with missing values dropped"
+    subjects = (
+        _subject(findings.result, name, target_indices)
+        for target_indices in sensitivities.targets.values()
+    )
     return MethodTable(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(result: Result, method: str, found: TargetIndices) -> IndexTable:
-    name, indices = found.name, found.indices
+def _subject(result: Result, method: str, target_indices: TargetIndices) -> IndexTable:
+    name, indices = target_indices.name, target_indices.indices
     words = capitalized(readable(subject(result, name)))
-    if found.refused:
-        return IndexTable(name, words, notes=(f"no indices by {method}: {found.refused}",))
-    kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
+    if target_indices.refused:
+        return IndexTable(name, words, notes=(f"no indices by {method}: {target_indices.refused}",))
+    kinds, pairs = target_indices.kinds(), target_indices.kinds(of_pairs=True)
     of = f"{NumberTarget(result, name).name} by {method}"
     listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
-    tables = tuple(_table(caption, one, indices, traced) for caption, one in listed if one)
+    tables = tuple(
+        _table(caption, index_kind, indices, traced) for caption, index_kind in listed if index_kind
+    )
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
         tables += (HtmlTable(f"Share of noise in the variance of {of}", ("", "share"), line),)
@@ -114,12 +119,19 @@ def of_output(methods: Sequence[MethodTable], output: str) -> list[IndexTable]:
     methods : sequence of MethodTable
     output : str
     """
-    found: dict[str, IndexTable] = {}
-    for one in (one for method in methods for one in method.subjects if one.output == output):
-        known = found.get(one.name, IndexTable(one.name, one.words))
-        notes = (*dict.fromkeys(known.notes + one.notes),)
-        found[one.name] = known._replace(tables=known.tables + one.tables, notes=notes)
-    return list(found.values())
+    tables: dict[str, IndexTable] = {}
+    for index_table in (
+        index_table
+        for method in methods
+        for index_table in method.subjects
+        if index_table.output == output
+    ):
+        merged = tables.get(index_table.name, IndexTable(index_table.name, index_table.words))
+        notes = (*dict.fromkeys(merged.notes + index_table.notes),)
+        tables[index_table.name] = merged._replace(
+            tables=merged.tables + index_table.tables, notes=notes
+        )
+    return list(tables.values())
 
 
 def _table(
@@ -129,19 +141,28 @@ def _table(
     traced: Callable[..., str],
 ) -> HtmlTable:
     def cells(label: str, estimates: Sequence[Estimate]) -> Iterator[Cell]:
-        for kind, one in zip(values, estimates, strict=True):
+        for kind, estimate in zip(values, estimates, strict=True):
             dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
             path = (kind.key, label) if label in values[kind] else dummy
-            yield _cell(kind, one, traced(*path) if path != dummy or kind in indices.nulls else "")
+            yield _cell(
+                kind, estimate, traced(*path) if path != dummy or kind in indices.nulls else ""
+            )
 
     rows = [
-        (Cell(label, BY_CORRELATION * (label in indices.by_correlation)), *cells(label, found))
-        for label, found in lines(values, indices.nulls)
+        (Cell(label, BY_CORRELATION * (label in indices.by_correlation)), *cells(label, of_kinds))
+        for label, of_kinds in lines(values, indices.nulls)
     ]
     return HtmlTable(caption, ("input", *(kind.words for kind in values)), rows)
 
 
-def _cell(kind: IndexKind, one: Estimate, traced: str) -> Cell:
-    key = one.value if isfinite(one.value) else None
+def _cell(kind: IndexKind, estimate: Estimate, traced: str) -> Cell:
+    key = estimate.value if isfinite(estimate.value) else None
     scale = {"variance": SHARE, "p-value": ""}.get(kind.unit, kind.key)
-    return Cell(kind.text(one.value), kind.interval(one), key, traced, scale, (one.low, one.high))
+    return Cell(
+        kind.text(estimate.value),
+        kind.interval(estimate),
+        key,
+        traced,
+        scale,
+        (estimate.low, estimate.high),
+    )

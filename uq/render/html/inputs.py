@@ -78,9 +78,9 @@ def _uncertain(result: Result) -> HtmlTable:
         quantiles = [Cell("")] * 3
         if name in given:
             law_of, _ = given[name]
-            found = compare(*given[name], weights).sampled
+            sampled = compare(*given[name], weights).sampled
             unit = unit_of_input(result, name) if law_of.times is None else DisplayUnit()
-            quantiles = _quantiles(name, unit, found)
+            quantiles = _quantiles(name, unit, sampled)
         rows.append(
             (
                 _name(result, name),
@@ -93,18 +93,21 @@ def _uncertain(result: Result) -> HtmlTable:
     return without_empty_columns(HtmlTable("Uncertain inputs", header, rows))
 
 
-def _quantiles(name: str, unit: DisplayUnit, found: Floats) -> list[Cell]:
+def _quantiles(name: str, unit: DisplayUnit, quantiles: Floats) -> list[Cell]:
     """Return quantiles to the digits that tell them apart."""
-    step = np.ptp(found) / unit.per / 30
+    step = np.ptp(quantiles) / unit.per / 30
     places = max(0, -floor(log10(step))) if step > 0 else 0
-    texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
+    texts = (
+        f"{float(quantile) / unit.per:.{places}f}" if places else unit.number(quantile)
+        for quantile in quantiles
+    )
     return [
         Cell(
             beside(text, unit.name).replace(" ", "\u00a0"),
-            key=float(one),
+            key=float(quantile),
             traced=key_of(name, "sampled", repr(p), verb="inputs"),
         )
-        for text, one, p in zip(texts, found, PROBABILITIES, strict=True)
+        for text, quantile, p in zip(texts, quantiles, PROBABILITIES, strict=True)
     ]
 
 

@@ -13,7 +13,7 @@ def inspections_csv(result: Result) -> str:
     if not inspections:
         return ""
     text = io.StringIO()
-    columns = dict.fromkeys(name for one in inspections for name in one)
+    columns = dict.fromkeys(name for inspection in inspections for name in inspection)
     lines = csv.DictWriter(text, list(columns), lineterminator="\n")
     lines.writeheader()
     lines.writerows(inspections)

@@ -34,19 +34,21 @@ def levels_of(findings: Findings) -> LevelTables | None:
     """Return the shares of a result; None where no sample has several rows, or with weights."""
     if not findings.result.is_nested or findings.result.has_weights:
         return None
-    found = findings.levels
+    decomposition = findings.levels
     rows, notes = [], []
-    for name, one in found.outputs.items():
+    for name, shares in decomposition.outputs.items():
         shown = NumberTarget(findings.result, name).name
-        rows.append((Cell(shown), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
-        notes += [f"{sentence} ({shown})" for sentence in one.sentences]
-    if (another := found.another_regime) is not None:
-        said = another.reason or share_text(another)
-        notes.append(f"probability that a repeat ends in another regime: {said}")
-    on = {level: found.inputs_on(level) for level in LEVELS}
+        rows.append(
+            (Cell(shown), *(_cell(name, source, shares.shares[source]) for source in SOURCES))
+        )
+        notes += [f"{sentence} ({shown})" for sentence in shares.sentences]
+    if (another := decomposition.another_regime) is not None:
+        probability = another.reason or share_text(another)
+        notes.append(f"probability that a repeat ends in another regime: {probability}")
+    on = {level: decomposition.inputs_on(level) for level in LEVELS}
     notes += [f"{level}: {', '.join(map(called, names))}" for level, names in on.items() if names]
     return LevelTables(
-        found.size, HtmlTable("Shares of the variance", ("output", *SOURCES), rows), notes
+        decomposition.size, HtmlTable("Shares of the variance", ("output", *SOURCES), rows), notes
     )
 
 

@@ -23,10 +23,10 @@ def status_table(result: Result, summary: Summary) -> HtmlTable:
     """Return the number and share of rows by status, its meaning, and the first message."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
-    for label, found in summary.status.items():
+    for label, row_count in summary.status.items():
         example = str(result.dataset["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
-        share = found / max(summary.samples, 1)
-        count = Cell(str(found), key=float(found), traced=key_of("status", label))
+        share = row_count / max(summary.samples, 1)
+        count = Cell(str(row_count), key=float(row_count), traced=key_of("status", label))
         cells = (count, Cell(percent(share), key=share, scale=SHARE))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "first message")
@@ -37,12 +37,12 @@ def category_table(name: str, shares: Shares) -> HtmlTable:
     """Return the share of each label of a category among the independent rows."""
     rows = [
         (
-            Cell(one.label),
-            Cell(f"{count}", key=float(count), traced=key_of(*one.key, "count")),
-            _share(one.estimate)._replace(traced=key_of(*one.key, "share")),
+            Cell(statistic.label),
+            Cell(f"{count}", key=float(count), traced=key_of(*statistic.key, "count")),
+            _share(statistic.estimate)._replace(traced=key_of(*statistic.key, "share")),
         )
-        for one in shares.values()
-        for count in [one.facts["count"]]
+        for statistic in shares.values()
+        for count in [statistic.facts["count"]]
     ]
     title = f"{capitalized(name)}, with 95 % intervals"
     return HtmlTable(title, (name, "rows", "share"), rows)
@@ -52,21 +52,23 @@ def regime_tables(findings: Findings) -> list[HtmlTable]:
     """Return the share of each regime, and how intermingled they are where that is known."""
     if not findings.summary.regimes:
         return []
-    found = [category_table(REGIME, findings.summary.regimes)]
-    one = findings.boundary
-    if one is not None and one.estimate.has_interval:
+    tables = [category_table(REGIME, findings.summary.regimes)]
+    boundary = findings.boundary
+    if boundary is not None and boundary.estimate.has_interval:
         caption = "Boundary between the regimes, with 95 % interval"
-        traced = cell(one)._replace(traced=key_of(*one.key))
-        line = (Cell(one.label), traced, Cell(in_words(one)))
-        found.append(HtmlTable(caption, ("", "value", "meaning"), [line]))
-    return found
+        traced = cell(boundary)._replace(traced=key_of(*boundary.key))
+        line = (Cell(boundary.label), traced, Cell(in_words(boundary)))
+        tables.append(HtmlTable(caption, ("", "value", "meaning"), [line]))
+    return tables
 
 
-def _share(one: Estimate) -> Cell:
-    if isnan(one.value):
+def _share(estimate: Estimate) -> Cell:
+    if isnan(estimate.value):
         return Cell("-")
-    below = percent_interval(one.low, one.high) if one.has_interval else ""
-    return Cell(percent(one.value), below, one.value, "", SHARE, (one.low, one.high))
+    below = percent_interval(estimate.low, estimate.high) if estimate.has_interval else ""
+    return Cell(
+        percent(estimate.value), below, estimate.value, "", SHARE, (estimate.low, estimate.high)
+    )
 
 
 _VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance", "joint_bounds")
@@ -88,7 +90,7 @@ class Outcome:
     def __init__(self, name: str, place: str, declared: Output, described: Described):
         self.name, self.place, self.declared = name, place, declared
         self.parts = described.parts
-        quantiles = (one.estimate.value for one in described.parts["quantiles"])
+        quantiles = (statistic.estimate.value for statistic in described.parts["quantiles"])
         unit = unit_of(described.units, typical(quantiles))
         self.unit = unit._replace(name=unbroken(unit.name))
 
@@ -107,84 +109,92 @@ class Outcome:
         """The unit of the other cells; empty for a pure number."""
         return Cell("" if self.unit.name == "1" else self.unit.name)
 
-    def per(self, one: Statistic) -> float:
+    def per(self, statistic: Statistic) -> float:
         """Return the length of the unit in which a statistic is shown."""
-        return self.unit.size if one.unit == self.declared.unit else 1.0
+        return self.unit.size if statistic.unit == self.declared.unit else 1.0
 
-    def scale(self, one: Statistic) -> str:
+    def scale(self, statistic: Statistic) -> str:
         """Return the scale of its bars: values of the output share one."""
-        is_value = one.key[0] in _VALUES and one.unit == self.declared.unit
+        is_value = statistic.key[0] in _VALUES and statistic.unit == self.declared.unit
         return self.declared.unit if is_value else ""
 
 
 def outcomes(result: Result, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
     names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
-    found = []
+    of_outputs = []
     for element in result.independent.elements(list(names)):
         described = summary.outputs[element.name]
         place = place_in_words(result, element)
-        found.append(Outcome(element.name, place, element.declared, described))
-    return found
+        of_outputs.append(Outcome(element.name, place, element.declared, described))
+    return of_outputs
 
 
-def result_tables(found: list[Outcome]) -> Iterator[HtmlTable]:
+def result_tables(of_outputs: list[Outcome]) -> Iterator[HtmlTable]:
     """Yield the tables of statistics that are not empty."""
     shown = [
-        (outcome, one)
+        (outcome, statistic)
         for part in STATISTICS
-        for outcome in found
-        for one in outcome.parts[part]
-        if one.is_read_by(Reader.REPORT)
+        for outcome in of_outputs
+        for statistic in outcome.parts[part]
+        if statistic.is_read_by(Reader.REPORT)
     ]
-    for listing in dict.fromkeys(one.kind.listing for _, one in shown):
-        own = [(outcome, one) for outcome, one in shown if one.kind.listing == listing]
-        yield _table(listing, found, own)
+    for listing in dict.fromkeys(statistic.kind.listing for _, statistic in shown):
+        listed = [
+            (outcome, statistic)
+            for outcome, statistic in shown
+            if statistic.kind.listing == listing
+        ]
+        yield _table(listing, of_outputs, listed)
 
 
 def _table(
-    listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, Statistic]]
+    listing: Listing, of_outputs: list[Outcome], shown: list[tuple[Outcome, Statistic]]
 ) -> HtmlTable:
     """Lay out statistics in columns, in the order of `STATISTICS`."""
-    columns = tuple(dict.fromkeys(_heading(one) for _, one in shown))
+    columns = tuple(dict.fromkeys(_heading(statistic) for _, statistic in shown))
     rows: list[tuple[Cell, ...]] = []
-    for outcome in found:
-        own = [one for of, one in shown if of is outcome]
-        rows += _rows(listing, outcome, own, columns)
+    for outcome in of_outputs:
+        statistics = [statistic for of, statistic in shown if of is outcome]
+        rows += _rows(listing, outcome, statistics, columns)
     header = (listing.first, listing.by or "unit", *columns)
     table = HtmlTable(listing.caption, header + ("note",) * bool(listing.by), rows)
     return table if listing.keeps_empty else without_empty_columns(table)
 
 
-def _heading(one: Statistic) -> str:
-    return one.label if one.heading is None else one.heading
+def _heading(statistic: Statistic) -> str:
+    return statistic.label if statistic.heading is None else statistic.heading
 
 
 def _rows(
-    listing: Listing, outcome: Outcome, own: list[Statistic], columns: tuple[str, ...]
+    listing: Listing, outcome: Outcome, statistics: list[Statistic], columns: tuple[str, ...]
 ) -> Iterator[tuple[Cell, ...]]:
     """Yield the row of an output, or one for each threshold of its statistics."""
-    for at in dict.fromkeys(one.at for one in own):
-        here = {_heading(one): one for one in own if one.at == at}
+    for at in dict.fromkeys(statistic.at for statistic in statistics):
+        here = {_heading(statistic): statistic for statistic in statistics if statistic.at == at}
         cells = [_cell(outcome, here.get(column), listing) for column in columns]
         if at is None:
             yield outcome.label, outcome.unit_cell, *cells
         else:
-            note = "; ".join(filter(None, (one.more for one in here.values())))
+            note = "; ".join(filter(None, (statistic.more for statistic in here.values())))
             sign = "magnitude " if outcome.declared.is_angle else ""
             place = Cell(f"{sign}{threshold(at, outcome.declared.unit)}", key=at)
             yield outcome.label, place, *cells, Cell(note)
 
 
-def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
-    if one is None:
+def _cell(outcome: Outcome, statistic: Statistic | None, listing: Listing) -> Cell:
+    if statistic is None:
         return Cell("")
-    traced = key_of("outputs", outcome.name, *one.key)
+    traced = key_of("outputs", outcome.name, *statistic.key)
     if listing.by:  # the small print has its own column
-        return cell(replace(one.best, more=""), scale=SHARE)._replace(traced=traced)
-    if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
-        return Cell("none", one.estimate.reason)
-    return cell(one, outcome.per(one), outcome.scale(one))._replace(traced=traced)
+        return cell(replace(statistic.best, more=""), scale=SHARE)._replace(traced=traced)
+    if (
+        statistic.estimate.reason
+        and isnan(statistic.estimate.value)
+        and statistic.rows_needed is None
+    ):
+        return Cell("none", statistic.estimate.reason)
+    return cell(statistic, outcome.per(statistic), outcome.scale(statistic))._replace(traced=traced)
 
 
 _WORDS = {
@@ -194,9 +204,12 @@ _WORDS = {
 }
 
 
-def words_used(found: list[Outcome]) -> list[str]:
+def words_used(of_outputs: list[Outcome]) -> list[str]:
     """Return what the counts mean that occur."""
     counted = {
-        one.key[-1] for outcome in found for one in outcome.parts["counts"] if one.estimate.value
+        statistic.key[-1]
+        for outcome in of_outputs
+        for statistic in outcome.parts["counts"]
+        if statistic.estimate.value
     }
     return [text for word, text in _WORDS.items() if word in counted]

@@ -22,7 +22,7 @@ class Group(NamedTuple):
     Attributes
     ----------
     name, meaning : str
-    said : Markup
+    sentences : Markup
         The answer, without what the head of the report says.
     tables : list of HtmlTable
     words : list of str
@@ -33,7 +33,7 @@ class Group(NamedTuple):
 
     name: str
     meaning: str
-    said: Markup
+    sentences: Markup
     tables: list[HtmlTable]
     words: list[str]
     pictures: list[Picture]
@@ -43,7 +43,7 @@ class Group(NamedTuple):
 def groups(
     findings: Findings,
     answer: Answer,
-    found: Sequence[Outcome],
+    outcomes: Sequence[Outcome],
     drawn: Sequence[Picture],
     methods: Sequence[MethodTable],
 ) -> Iterator[Group]:
@@ -61,17 +61,17 @@ def groups(
     """
     result = findings.result
     shown = result.shown_outputs(result.analysis)
-    for name in dict.fromkeys((*(one.output for one in answer.quantities), *shown)):
+    for name in dict.fromkeys((*(quantity.output for quantity in answer.quantities), *shown)):
         if name == REGIME:  # it has its own section
             continue
-        own = [one for one in found if one.output == name]
+        matching = [outcome for outcome in outcomes if outcome.output == name]
         group = Group(
             name,
             readable(str(result.dataset[name].attrs["long_name"])),
-            sayings([one for one in answer.quantities[1:] if one.output == name]),
-            [*_shares(findings, name), *result_tables(own)],
-            words_used(own),
-            [one for one in drawn if name in (one.of.name, output_of(one.of.name))],
+            sayings([quantity for quantity in answer.quantities[1:] if quantity.output == name]),
+            [*_shares(findings, name), *result_tables(matching)],
+            words_used(matching),
+            [figure for figure in drawn if name in (figure.of.name, output_of(figure.of.name))],
             of_output(methods, name),
         )
         if any(group[2:]):

@@ -82,7 +82,7 @@ def _content(result: Result, file: str) -> dict[str, Any]:
     findings = Findings(result)
     answer = conclude(findings)
     summary = findings.summary
-    found = outcomes(result, summary)
+    described = outcomes(result, summary)
     methods = sensitivity_of(findings)
     drawn = list(pictures(findings, "results", without=findings.absent))
     by_regime = list(pictures(findings, "rows"))
@@ -93,7 +93,7 @@ def _content(result: Result, file: str) -> dict[str, Any]:
         "design": result.design,
         "summary": summary,
         "answer": headed,
-        "groups": list(groups(findings, answer, found, drawn, methods)),
+        "groups": list(groups(findings, answer, described, drawn, methods)),
         "regimes_answered": regimes(answer),
         "inputs": list(input_tables(result)),
         "inputs_fixed": fixed_inputs(result),
@@ -102,11 +102,11 @@ def _content(result: Result, file: str) -> dict[str, Any]:
         "failed": lost,
         "regimes": regime_tables(findings),
         "rows_drawn": [
-            *(one for one in drawn if output_of(one.of.name) == REGIME),
+            *(figure for figure in drawn if output_of(figure.of.name) == REGIME),
             *by_regime,
         ],
         "regime_indices": of_output(methods, REGIME),
-        "convergence": convergence_of(findings, found),
+        "convergence": convergence_of(findings, described),
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),
         "fleet_notes": fleet_notes(findings),

@@ -23,26 +23,26 @@ def shortened(path: str) -> str:
     """
     if not _LINES.fullmatch(path):
         return path
-    found, words = [], iter(path.split())
+    parts, words = [], iter(path.split())
     here = start = (0, 0)
     for word in words:
         if word == "z":
-            found.append("z")
+            parts.append("z")
             here = start
             continue
         x, y = (round(float(next(words)) / STEP) for _ in range(2))
         if word == "M":
             start = here = x, y
-            found.append(f"M{_beside(x, y)}")
+            parts.append(f"M{_beside(x, y)}")
             continue
         (right, down), here = (x - here[0], y - here[1]), (x, y)
         if down == 0:
-            found.append(f"h{_text(right)}")
+            parts.append(f"h{_text(right)}")
         elif right == 0:
-            found.append(f"v{_text(down)}")
+            parts.append(f"v{_text(down)}")
         else:
-            found.append(f"l{_beside(right, down)}")
-    return "".join(found)
+            parts.append(f"l{_beside(right, down)}")
+    return "".join(parts)
 
 
 def _text(steps: int) -> str:

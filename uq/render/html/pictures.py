@@ -65,9 +65,11 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
     without : container of str
         Outputs whose figures are left out.
     """
-    for one in drawables(FIGURES, findings, section):
-        if one.subject.name not in without:
-            yield picture(one.draw(), readable(one.caption), one.file)._replace(of=one.subject)
+    for drawable in drawables(FIGURES, findings, section):
+        if drawable.subject.name not in without:
+            yield picture(drawable.draw(), readable(drawable.caption), drawable.file)._replace(
+                of=drawable.subject
+            )
 
 
 @styled

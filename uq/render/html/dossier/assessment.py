@@ -58,9 +58,15 @@ def quantities(findings: Findings, file: str) -> Iterator[Item]:
     result = findings.result
     asked, declared = result.analysis, result.outputs
     lines = [
-        (Cell(name), Cell(one.meaning), Cell(one.unit), Cell(one.kind), Cell(", ".join(one.dims)))
+        (
+            Cell(name),
+            Cell(output.meaning),
+            Cell(output.unit),
+            Cell(output.kind),
+            Cell(", ".join(output.dims)),
+        )
         for name in result.shown_outputs(asked)
-        for one in [declared[name]]
+        for output in [declared[name]]
     ]
     header = ("output", "meaning", "unit", "kind", "one for each")
     yield Item("Quantities of interest", tables=[HtmlTable("Outputs", header, lines)])
@@ -115,8 +121,8 @@ def inputs(findings: Findings, file: str) -> Iterator[Item]:
     yield Item("Dependence", text=independent, tables=correlations)
     levels = [
         (Cell(name), Cell(origin.level or ""))
-        for name, one in study.uncertain.items()
-        for origin in [study.uncertain[one.equals] if isinstance(one, Tied) else one]
+        for name, entry in study.uncertain.items()
+        for origin in [study.uncertain[entry.equals] if isinstance(entry, Tied) else entry]
     ]
     shared = (
         [HtmlTable("Level of each input", ("input", "level"), levels)] if result.is_nested else []

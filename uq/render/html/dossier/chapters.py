@@ -51,7 +51,7 @@ def chapters(result: Result, file: str) -> list[Chapter]:
     list of Chapter
     """
     findings = Findings(result)
-    return [Chapter(one, list(CONTENTS[one.name](findings, file))) for one in OUTLINE]
+    return [Chapter(title, list(CONTENTS[title.name](findings, file))) for title in OUTLINE]
 
 
 def dossier(result: Result, name: str) -> str:

@@ -66,16 +66,16 @@ def propagation(findings: Findings, file: str) -> Iterator[Item]:
 
 def convergence(findings: Findings, file: str) -> Iterator[Item]:
     """Yield whether the rows are enough."""
-    found = convergence_of(findings, outcomes(findings.result, findings.summary))
+    estimates = convergence_of(findings, outcomes(findings.result, findings.summary))
     yield Item("Verdict", text=verdict(findings))
-    refused = [found.refused] if found.refused else []
-    notes = [*found.warnings, *refused]
+    refused = [estimates.refused] if estimates.refused else []
+    notes = [*estimates.warnings, *refused]
     yield Item(
         "Sampling error, and numerical error of the rows",
-        tables=[found.table] if found.table else [],
+        tables=[estimates.table] if estimates.table else [],
         notes=notes,
     )
-    yield Item("Estimates against the number of rows", pictures=found.pictures, notes=refused)
+    yield Item("Estimates against the number of rows", pictures=estimates.pictures, notes=refused)
 
 
 def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
@@ -84,19 +84,19 @@ def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
     yield Item(
         "Methods",
         facts=[
-            (one.name, f"{METHODS[one.name].question}; {one.refused or one.used}")
-            for one in methods
+            (method.name, f"{METHODS[method.name].question}; {method.refused or method.used}")
+            for method in methods
         ],
         notes=[] if methods else ["The design of this study supports no sensitivity method."],
     )
-    subjects = [subject for one in methods for subject in one.subjects]
-    for name in dict.fromkeys(one.output for one in subjects):
+    subjects = [subject for method in methods for subject in method.subjects]
+    for name in dict.fromkeys(table.output for table in subjects):
         yield Item(f"Indices of {name}", subjects=of_output(methods, name))
 
 
 def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what is known of the quantities of interest."""
-    found = outcomes(findings.result, findings.summary)
+    described = outcomes(findings.result, findings.summary)
     of_jcgm = _coverage_intervals(findings)
     yield Item(
         "Estimate, standard uncertainty and coverage interval",
@@ -107,18 +107,22 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
         ],
     )
     drawn = list(pictures(findings, "results", without=findings.absent))
-    for name in dict.fromkeys(one.output for one in found):
+    for name in dict.fromkeys(outcome.output for outcome in described):
         yield Item(
             f"Statistics of {name}",
-            tables=list(result_tables([one for one in found if one.output == name])),
-            pictures=[one for one in drawn if name in (one.of.name, output_of(one.of.name))],
+            tables=list(
+                result_tables([outcome for outcome in described if outcome.output == name])
+            ),
+            pictures=[
+                figure for figure in drawn if name in (figure.of.name, output_of(figure.of.name))
+            ],
         )
     for name, shares in findings.summary.categories.items():
         yield Item(f"Statistics of {name}", tables=[category_table(name, shares)])
     if findings.summary.notes:
         yield Item("What the rows cannot show", text=findings.summary.notes)
     if findings.summary.regimes:
-        about = [one for one in drawn if output_of(one.of.name) == REGIME]
+        about = [figure for figure in drawn if output_of(figure.of.name) == REGIME]
         yield Item(
             "Regimes",
             tables=regime_tables(findings),
@@ -143,26 +147,30 @@ def _coverage_intervals(findings: Findings) -> HtmlTable:
         "from",
         "to",
     )
-    known = conclude(findings).quantities
-    rows = [_interval(findings, one, one.range) for one in known if one.range is not None]
+    quantities = conclude(findings).quantities
+    rows = [
+        _interval(findings, quantity, quantity.range)
+        for quantity in quantities
+        if quantity.range is not None
+    ]
     return HtmlTable("Estimates and coverage intervals", header, rows)
 
 
-def _interval(findings: Findings, one: Quantity, likely: Range) -> tuple[Cell, ...]:
-    unit, described = likely.unit, findings.summary.outputs[one.name]
+def _interval(findings: Findings, quantity: Quantity, likely: Range) -> tuple[Cell, ...]:
+    unit, described = likely.unit, findings.summary.outputs[quantity.name]
 
     def cell(value: float, *key: str) -> Cell:
         if value != value:
             return Cell("-")
-        traced = key_of("outputs", one.name, *key) if described.find(*key) else ""
+        traced = key_of("outputs", quantity.name, *key) if described.find(*key) else ""
         text = unit.number(value) if isfinite(value) else unit.text(value)
         return Cell(text, key=value if isfinite(value) else None, traced=traced)
 
     moments = (described.find(key) for key in ("mean", "sd"))
     return (
-        Cell(one.name, one.words),
+        Cell(quantity.name, quantity.words),
         Cell(unit.name),
-        *(cell(found.estimate.value, *found.key) for found in moments if found),
+        *(cell(statistic.estimate.value, *statistic.key) for statistic in moments if statistic),
         Cell(f"{100 * COVERAGE:g} %"),
         cell(likely.low.value, "quantiles", "0.05"),
         cell(likely.high.value, "quantiles", "0.95"),
@@ -172,18 +180,22 @@ def _interval(findings: Findings, one: Quantity, likely: Range) -> tuple[Cell, .
 def _estimators(findings: Findings) -> list[HtmlTable]:
     """Return what computes the statistics of the tables, and whom each of these cites."""
     shown = (
-        (name, one)
+        (name, statistic)
         for described in findings.summary.outputs.values()
         for name, several in described.parts.items()
-        for one in several
-        if one.is_read_by(Reader.REPORT)
+        for statistic in several
+        if statistic.is_read_by(Reader.REPORT)
     )
     functions = dict.fromkeys(
-        function for name, one in shown for function in one.by or (STATISTICS[name],)
+        function for name, statistic in shown for function in statistic.by or (STATISTICS[name],)
     )
     rows = [
-        (Cell(one.does), Cell("; ".join(one.sources) or "a definition"), Cell(one.code))
-        for one in map(cited, functions)
+        (
+            Cell(citation.does),
+            Cell("; ".join(citation.sources) or "a definition"),
+            Cell(citation.code),
+        )
+        for citation in map(cited, functions)
     ]
     header = ("estimator", "source", "function")
     return [HtmlTable("Estimators", header, rows)] if rows else []
@@ -191,8 +203,8 @@ def _estimators(findings: Findings) -> list[HtmlTable]:
 
 def studies(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what other assumptions would change."""
-    found = [one.text for one in conclude(findings).advice if one.tightened is not None]
-    yield Item("Less scatter of what matters most", text=found)
+    advised = [advice.text for advice in conclude(findings).advice if advice.tightened is not None]
+    yield Item("Less scatter of what matters most", text=advised)
     note = (
         "'uq what-if' shows the same rows under other laws, 'uq compare' two studies; neither is"
         " part of a result."
