@@ -17,6 +17,7 @@ from matplotlib import pyplot
 
 import uq as public
 from uq import plots
+from uq.result.result import Result
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.cli.summary_tables import show_summary
@@ -213,11 +214,11 @@ def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch,
     def number():
         ds = public.open_result("out.nc")
         public.summary(ds)
-        summary_json(summarise(ds))
-        show_summary(ds, summarise(ds))
+        summary_json(summarise(Result(ds)))
+        show_summary(Result(ds), summarise(Result(ds)))
         public.survival(ds, "life")
         public.compare(ds, ds)
-        page(ds, "out.nc")
+        page(Result(ds), "out.nc")
 
     _, first, second = SOURCES["docs/architecture.md"].split("## The path of a ")
     for text, action in ((first, row), (second, number)):

@@ -16,6 +16,7 @@ import generated  # noqa: E402
 from computed import kinds  # noqa: E402
 
 from uq import open_result, plots, sensitivity, summary  # noqa: E402
+from uq.result.result import Result
 from uq.assess.statistic import Statistic  # noqa: E402
 from uq.assess.statistics.table import STATISTICS  # noqa: E402
 from uq.indices.index import IndexKind, Indices  # noqa: E402
@@ -52,9 +53,9 @@ def toy_figure(no_other_figures, monkeypatch):
 
 def test_a_figure_is_drawn_reported_and_documented(toy_figure, tmp_path):
     ds = kinds(samples=32, analysis={"outputs": ["work", "life"]})
-    stems = {path.stem for path in plots.save_all(ds, tmp_path)}
+    stems = {path.stem for path in plots.save_all(Result(ds), tmp_path)}
     assert {"rows-in-order-work", "rows-in-order-life"} == stems
-    text = page(ds, "toy.nc")
+    text = page(Result(ds), "toy.nc")
     for output in ("work", "life"):
         meaning = ds[output].long_name
         assert f'aria-label="{meaning[:1].upper()}{meaning[1:]} row by row"' in text
@@ -158,7 +159,7 @@ def test_a_study_of_both_is_run_and_shown(
     assert found["method"] == "correlation"
     assert [one["value"] for one in found["outputs"]["y"]["R2"].values()] == list(values)
     assert f"x4  {values[3]:.3f}  0.000 to 1.000" in uq("sensitivity", "out.nc").out
-    text = page(ds, "out.nc")
+    text = page(Result(ds), "out.nc")
     assert "mirrored: pairs of opposite points" in text
     assert "squared correlation (R2)" in text and f"{values[3]:.3f}" in text
 
@@ -201,7 +202,7 @@ def test_a_statistic_is_one_entry_of_a_table(no_other_figures, uq, write_study, 
     assert apart["low"] < apart["value"] == pytest.approx(pair["b"]["value"] - entry["value"])
     assert "geometric mean" in uq("compare", "one.nc", "other.nc").out
 
-    report = page(open_result("one.nc"), "one.nc")
+    report = page(Result(open_result("one.nc")), "one.nc")
     assert f">{entry['value']:.5g}<" in report
     assert 'data-trace="outputs/y/geometric_mean"' in report
     traced = json.loads(uq("trace", "one.nc", "outputs/y/geometric_mean", "--json").out)
@@ -250,5 +251,5 @@ def test_a_law_is_accepted_drawn_shown_and_documented(
     assert uq("run", study(stated), "-o", "out.nc", "--workers", "0").code == 0
     ds = open_result("out.nc")
     assert float((ds["x1"] < 0.1).mean()) == pytest.approx(1 - np.exp(-0.5), abs=0.04)
-    assert "rayleigh: mode 0.1" in page(ds, "out.nc")
+    assert "rayleigh: mode 0.1" in page(Result(ds), "out.nc")
     assert plots.inputs(ds).axes

@@ -15,6 +15,7 @@ sys.path.insert(0, str(HOUSE / "docs"))
 import generated  # noqa: E402
 
 from uq import open_result, summary  # noqa: E402
+from uq.result.result import Result
 from uq.render.html.page import page  # noqa: E402
 from uq.study.schema import json_schema  # noqa: E402
 
@@ -110,7 +111,7 @@ def test_a_machine_is_listed_simulated_run_and_documented(
     ds = open_result("out.nc")
     np.testing.assert_allclose(ds["period"], 2 * np.pi * np.sqrt(ds["length"] / 9.81))
     assert summary(ds).index.tolist() == ["period"]
-    text = page(ds, "out.nc")
+    text = page(Result(ds), "out.nc")
     assert "time of one swing to and fro" in text and "Huygens" in text
     for table in (generated.parameters("pendulum"), generated.nomenclature()):
         assert "pivot to bob" in table

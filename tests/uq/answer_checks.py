@@ -10,6 +10,7 @@ from answer_whole_checks import denied_enough, denied_levels, denied_mixing
 from answered import numbers_in
 from scipy.stats import binomtest
 
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.result.elements import independent_rows, labels, named_elements, replicates_of
 from uq.result.result_file import failed
@@ -20,7 +21,7 @@ class Checker:
 
     def __init__(self, ds):
         self.ds, self.rows = ds, independent_rows(ds)
-        self.findings = Findings(ds)
+        self.findings = Findings(Result(ds))
 
     def wrong(self, found):
         """Return what is wrong with an answer, in words."""

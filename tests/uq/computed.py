@@ -5,6 +5,7 @@ from functools import wraps
 
 import numpy as np
 
+from uq.result.result import Result
 from uq.assess.comparison import comparison
 from uq.assess.summary import summarise
 from uq.assess.summary_json import comparison_json, summary_json
@@ -80,7 +81,7 @@ def kinds(method="monte-carlo", samples=64, replicates=1, analysis=None):
 
 def summarised(ds, **asked):
     """Return the summary of a result as JSON has it."""
-    return summary_json(summarise(ds, **asked))
+    return summary_json(summarise(Result(ds), **asked))
 
 
 def compared(*pair):

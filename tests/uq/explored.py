@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import uq.render.html
+from uq.result.result import Result
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside
@@ -22,7 +23,7 @@ PAGE = f"""<!DOCTYPE html><html lang=en><meta charset=utf-8>
 
 def explorer(ds):
     """Return a page with nothing else of a result."""
-    findings = Findings(ds)
+    findings = Findings(Result(ds))
     rows = rows_inside(findings, "a result.nc", conclude(findings).quantities)
     return PAGE + templates().get_template("explorer.html").render(rows_inside=rows)
 

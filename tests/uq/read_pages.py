@@ -2,6 +2,7 @@
 
 from html.parser import HTMLParser
 
+from uq.result.result import Result
 from uq.render.html.page import page
 
 
@@ -31,4 +32,4 @@ class Page(HTMLParser):
 
 
 def read(ds):
-    return Page(page(ds, "OUT.nc"))
+    return Page(page(Result(ds), "OUT.nc"))

@@ -2,6 +2,7 @@
 
 from computed import study_of
 
+from uq.result.result import Result
 from uq.assess.population import Population
 from uq.assess.scaling import population, why_not_integrated
 from uq.result.elements import independent_rows, replicates_of
@@ -28,8 +29,8 @@ def scaled_study(uncertain, design=None, samples=400, **tables):
 
 def populated(ds):
     rows = independent_rows(ds)
-    element = next(population(rows, ["life"]))
-    return Population(element, replicates_of(rows)), why_not_integrated(rows, element)
+    element = next(population(Result(rows), ["life"]))
+    return Population(element, replicates_of(rows)), why_not_integrated(Result(rows), element)
 
 
 WHOLE = {"a": lognormal(0.5), "z": NORMAL}

@@ -9,6 +9,7 @@ import sample_models
 from computed import asking, computed, linear, study_of, summarised, with_output
 
 import uq
+from uq.result.result import Result
 from uq.assess.statistic import Context
 from uq.assess.statistics.counts import accuracy
 from uq.assess.summary import summarise
@@ -46,7 +47,7 @@ ROUGH = replace(
 def accuracy_of(ds, name):
     """Return what is said of the accuracy of an output without dimensions."""
     (element,) = elements_of(ds, [name])
-    (found,) = accuracy(element, Context(ds, analysis_of(ds), None))
+    (found,) = accuracy(element, Context(Result(ds), analysis_of(ds), None))
     return found.facts["accuracy"]
 
 
@@ -78,18 +79,18 @@ def test_rows_beyond_the_accuracy_are_counted_and_reported(capsys):
     ds = rough()
     expected = int((ds["x1"] > 2 / 3).sum())
     assert 0 < expected < 60
-    summary = summarise(ds)
+    summary = summarise(Result(ds))
     assert summarised(ds)["outputs"]["y[side=left]"]["accuracy"] == {
         "asked": 0.04,
         "rows": 60,
         "missed": expected,
         "share": expected / 60,
     }
-    show_summary(ds, summary)
+    show_summary(Result(ds), summary)
     share = f"{100 * expected / 60:.1f} %"
     assert f"accuracy 0.04 not reached in {expected} rows ({share})" in capsys.readouterr().out
     assert uq.summary(ds).loc["y[side=left]", "accuracy_missed"] == expected
-    table = next(result_tables(outcomes(ds, summary)))
+    table = next(result_tables(outcomes(Result(ds), summary)))
     column = table.header.index("rows short of the accuracy")
     assert (table.rows[0][column].text, table.rows[0][column].more) == (str(expected), share)
 
@@ -97,7 +98,7 @@ def test_rows_beyond_the_accuracy_are_counted_and_reported(capsys):
 def test_nothing_is_reported_where_every_row_reaches_its_accuracy(capsys):
     ds = rough(0.05)
     assert summarised(ds)["outputs"]["y[side=left]"]["accuracy"]["missed"] == 0
-    show_summary(ds, summarise(ds))
+    show_summary(Result(ds), summarise(Result(ds)))
     assert "not reached" not in capsys.readouterr().out
 
 

@@ -8,6 +8,7 @@ from answered import lifetime, numbers
 from computed import asking, kinds, linear, with_output
 
 from uq import answer, trace
+from uq.result.result import Result
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
@@ -26,7 +27,7 @@ def test_enough_rows_say_so_with_what_another_seed_would_find():
         found.enough.sentence,
     )
     assert low < found.lead.promise.quantiles[0].value / 86400 < high
-    assert verdict(Findings(ds)) == ["Enough rows: what the study asks is settled."]
+    assert verdict(Findings(Result(ds))) == ["Enough rows: what the study asks is settled."]
     assert found.enough.sentence.split(":")[0] in fragment(found)
 
 
@@ -49,7 +50,7 @@ def test_rows_are_advised_for_what_the_study_is_about_alone():
     (said,) = found.enough.others
     assert said.startswith("The order of x") and "(meaning of even)" in said
     assert "What is not settled besides</summary><ul><li>The order of x" in fragment(found)
-    first, second = verdict(Findings(asked))
+    first, second = verdict(Findings(Result(asked)))
     assert first == "Enough rows for what the study is about."
     assert second.startswith("Not enough rows: the order of x")
     assert "what the study asks is settled" not in repr(found)

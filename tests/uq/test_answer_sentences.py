@@ -19,6 +19,7 @@ from computed import (
 from nested_studies import nested_result
 from scipy.stats import binomtest
 
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.facts import Answer
 from uq.assess.answer.parts import Event
@@ -233,7 +234,7 @@ def test_the_rarer_regimes_say_what_decides_them():
 
 @pytest.mark.parametrize("method", ["saltelli", "shapley", "sobol"])
 def test_nothing_is_settled_without_intervals(method):
-    found = Findings(linear(method, samples=512))
+    found = Findings(Result(linear(method, samples=512)))
     (said,) = verdict(found)
     assert said.startswith("Whether the rows are enough is not known: the rows of a")
     assert said.endswith("set replicates = 8.")

@@ -8,6 +8,7 @@ from computed import asking, compared, kinds, linear, summarised, with_output
 from scipy import stats
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.expected_widths import expected_widths
 from uq.assess.summary import summarise
 from uq.assess.summary_table import summary
@@ -70,11 +71,11 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     )
     assert cells["B1"].text == "needs 99 rows"
     assert compared(ds, ds)["outputs"]["life"]["b_lives"]["B1"]["difference"]["value"] is None
-    assert expected_widths(ds)["life"].quantiles[0.001] is None
+    assert expected_widths(Result(ds))["life"].quantiles[0.001] is None
 
 
 def found(ds):
-    return outcomes(ds, summarise(ds))
+    return outcomes(Result(ds), summarise(Result(ds)))
 
 
 def test_a_fitted_life_beyond_the_rows_is_called_extrapolated():

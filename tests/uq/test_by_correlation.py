@@ -5,6 +5,7 @@ from dependent_studies import entry_of, weighted
 
 import uq
 from uq import plots
+from uq.result.result import Result
 from uq.assess import sensitivities as module
 from uq.assess.answer.rankings import ranking_of
 from uq.assess.findings import Findings
@@ -33,7 +34,7 @@ def test_few_paths_do_not_show_that_an_input_has_no_effect():
 
 def test_the_remark_stands_beside_the_bar_in_table_figure_and_report(capsys):
     ds = weighted(0.9)
-    show(ds, module.sensitivities(ds))
+    show(Result(ds), module.sensitivities(Result(ds)))
     shown = capsys.readouterr().out.splitlines()
     line = next(one for one in shown if one.startswith("  x4 "))
     assert line.endswith("by correlation alone")
@@ -43,7 +44,7 @@ def test_the_remark_stands_beside_the_bar_in_table_figure_and_report(capsys):
     assert ["by correlation alone" in label for label in labels] == [
         "x_{4}" in one for one in labels
     ]
-    (method,) = sensitivity_of(Findings(ds))
+    (method,) = sensitivity_of(Findings(Result(ds)))
     beside = {row[0].text: row[0].more for row in method.subjects[0].tables[0].rows}
     assert beside == {"x1": "", "x2": "", "x3": "", "x4": "by correlation alone"}
     assert uq.sensitivity(ds)["by_correlation"].values.tolist() == [[False, False, False, True]]
@@ -53,5 +54,5 @@ def test_the_answer_does_not_count_a_share_by_correlation_as_a_contribution():
     # x4 is correlated with the only input that the model uses.
     ds = weighted(0.9)
     y = ds["x1"].values + 0.01 * ds["x2"].values
-    ranking = ranking_of(Findings(with_output(ds, "weighted", y)), "weighted", "shapley", ("", ""))
+    ranking = ranking_of(Findings(Result(with_output(ds, "weighted", y))), "weighted", "shapley", ("", ""))
     assert [one.inputs for one in ranking.contributions] == [("x1",)]

@@ -10,6 +10,7 @@ from computed import asking, compared, linear, summarised, with_status
 from scipy import stats
 
 from uq import compare, plots, summary
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.contract import Status
 from uq.errors import InputError
@@ -70,7 +71,7 @@ def test_failed_rows_bound_a_share():
 
 def test_each_number_has_a_key():
     ds, codes = with_period()
-    found = traced(ds, "categories/period/1")
+    found = traced(Result(ds), "categories/period/1")
     assert found.equal and found.numbers["share"] == (codes == 1).mean()
     assert found.estimators[0].does
 
@@ -125,7 +126,7 @@ def test_a_label_may_hold_what_separates_the_parts_of_a_name(label):
             key_of("outputs", target, "variance", verb="levels"),
             key_of("categories", name, label, "share"),
         ):
-            assert traced(one, key).equal
+            assert traced(Result(one), key).equal
 
 
 def with_sites(samples=200):
@@ -142,7 +143,7 @@ def test_a_category_with_dimensions_has_shares_of_each_element(uq, folder):
     assert list(found) == ["period[site=left]", "period[site=right]"]
     for i, of in enumerate(found.values()):
         assert of["1"]["share"] == (both[:, i] == 1).mean()
-    one = traced(ds, "categories/period[site=left]/1")
+    one = traced(Result(ds), "categories/period[site=left]/1")
     assert one.equal and one.numbers["share"] == (both[:, 0] == 1).mean()
     assert list(compared(ds, ds)["categories"]) == list(found)
     indices = sensitivities(ds, "regional", "period[site=left]")["outputs"]
@@ -168,11 +169,11 @@ def test_a_figure_shows_the_shares_of_each_label():
     with pytest.raises(InputError, match="'y' is no category"):
         plots.shares(ds, "y")
     assert {"shares-period"} == {
-        one.file for one in drawables({"shares": plots.FIGURES["shares"]}, Findings(ds))
+        one.file for one in drawables({"shares": plots.FIGURES["shares"]}, Findings(Result(ds)))
     }
 
 
 def test_it_has_no_thresholds_quantiles_or_lowest_row():
     ds, _ = with_period()
     with pytest.raises(InputError, match="'period' is a category, not a number"):
-        lowest_row(ds, "period")
+        lowest_row(Result(ds), "period")

@@ -7,6 +7,7 @@ from drawn import collisions
 
 import uq
 from models import beam, mole, vibrator
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
@@ -28,7 +29,7 @@ def dressed(ds, model):
 
 
 def figures(ds):
-    found = Findings(ds)
+    found = Findings(Result(ds))
     kinds_of = {name: one for name, one in FIGURES.items() if "running" not in one.needs}
     for one in drawables(kinds_of, found):
         figure = one.draw()

@@ -10,6 +10,7 @@ from dependent_studies import assert_near, entry_of, weighted
 
 from benchmarks.coverage import dependent, dependent_effects, problems
 from benchmarks.coverage.neighbours import by_neighbours
+from uq.result.result import Result
 from uq.assess.design_sample import sample_of
 from uq.indices import polynomials
 from uq.indices.index import SHAPLEY
@@ -27,7 +28,7 @@ def widths(found):
 
 
 def controlled_and_alone(ds, output):
-    sample = replace(sample_of(ds), values=ds[output].values)
+    sample = replace(sample_of(Result(ds)), values=ds[output].values)
     ours = METHODS["shapley"].indices(sample).values[SHAPLEY]
     return ours, dependent.of_paths_alone(ds, output)
 
@@ -134,7 +135,7 @@ def test_elements_of_an_output_add_up():
     r = 0.6
     ds = weighted(r, 256)
     both = np.stack([ds["weighted"].values, ds["x3"].values], axis=1)
-    found = METHODS["shapley"].indices(replace(sample_of(ds), values=both))
+    found = METHODS["shapley"].indices(replace(sample_of(Result(ds)), values=both))
     sizes = 6.0 + 4.0 * r, 1.0
     alone = {"x2": r**2 / 2, "x3": 1 - r**2 / 2}
     for name, value in dependent.of_normal(r).items():

@@ -6,6 +6,7 @@ import pytest
 from computed import as_text, asking, computed
 from input_studies import UNIFORM, inputs_of, tables
 
+from uq.result.result import Result
 from uq.assess.comparison import comparison
 from uq.errors import InputError
 from uq.render.html.page import page
@@ -44,9 +45,9 @@ def test_a_result_is_reported_and_compared_without_the_file(springs, no_other_fi
     ds = computed(load_study(springs / "study.toml"))
     (springs / "springs.csv").unlink()
     other = computed(study_from_text(as_text(tables({"x1": UNIFORM, "x2": UNIFORM}))))
-    assert "empirical: file springs.csv, column k" in page(ds, "springs.nc")
+    assert "empirical: file springs.csv, column k" in page(Result(ds), "springs.nc")
     stated = 'empirical(file = "springs.csv", column = "k")'
-    (change,) = comparison(ds, other).changed
+    (change,) = comparison(Result(ds), Result(other)).changed
     assert change.name == "x1" and change.first.startswith(stated)
 
 

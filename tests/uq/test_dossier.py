@@ -9,6 +9,7 @@ from computed import computed, kinds, linear, with_status
 from learnt_studies import measured, wear
 from nested_studies import nested
 
+from uq.result.result import Result
 from uq.contract import Status
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
@@ -31,7 +32,7 @@ def plain(no_other_figures):
     """Return the dossier of a result as words."""
 
     def text(ds, name="out.nc"):
-        drawn = re.sub(r"<(style|script)>.*?</\1>", " ", dossier(ds, name), flags=re.DOTALL)
+        drawn = re.sub(r"<(style|script)>.*?</\1>", " ", dossier(Result(ds), name), flags=re.DOTALL)
         return " ".join(html.unescape(re.sub(r"<[^>]+>", " ", drawn)).split())
 
     return text
@@ -40,7 +41,7 @@ def plain(no_other_figures):
 def found_in(ds):
     """Return what a result provides: heading -> title of an item -> item."""
     return {
-        one.heading.name: {item.title: item for item in one.items} for one in chapters(ds, "out.nc")
+        one.heading.name: {item.title: item for item in one.items} for one in chapters(Result(ds), "out.nc")
     }
 
 
@@ -99,9 +100,9 @@ def test_its_numbers_are_those_of_the_result(no_other_figures):
         "1 of 384 rows failed; the study allows 10 %."
         in found["propagation"]["Rows that could not be computed"].text[0]
     )
-    keys = set(re.findall(r'data-trace="(.*?)"', dossier(ds, "out.nc")))
+    keys = set(re.findall(r'data-trace="(.*?)"', dossier(Result(ds), "out.nc")))
     assert {"outputs/y/mean", "status/ok", "outputs/y/thresholds/5.0/above"} <= keys
-    assert all(traced(ds, html.unescape(key)).equal for key in sorted(keys)[::5])
+    assert all(traced(Result(ds), html.unescape(key)).equal for key in sorted(keys)[::5])
 
 
 def test_a_design_without_statistics_says_what_it_lacks(plain):
@@ -118,7 +119,7 @@ def test_it_is_one_file_in_which_nothing_acts(uq, folder, no_other_figures):
     ended = uq("report", "out.nc", "--dossier")
     assert (ended.code, ended.out, ended.err) == (0, "out-dossier.html\n", "")
     text = (folder / "out-dossier.html").read_text()
-    assert text == dossier(ds, "out.nc") and HOSTILE not in text
+    assert text == dossier(Result(ds), "out.nc") and HOSTILE not in text
     assert "://" not in text.replace("http://www.w3.org/2000/svg", "")
     assert "default-src 'none'" in text
     ids, links = re.findall(r' id="(.*?)"', text), re.findall(r'href="#(.*?)"', text)
@@ -129,7 +130,7 @@ def test_it_is_one_file_in_which_nothing_acts(uq, folder, no_other_figures):
 
 def test_it_is_shown_and_printed_without_complaint(browser, tmp_path, no_other_figures):
     path = tmp_path / "out-dossier.html"
-    path.write_text(dossier(crossed(), "out.nc"), encoding="utf-8")
+    path.write_text(dossier(Result(crossed()), "out.nc"), encoding="utf-8")
     for width in (400, 1400):
         browser.open(path, width=width)
         assert browser.value("document.documentElement.scrollWidth") <= width

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from computed import asking, kinds, linear, with_output
 
+from uq.result.result import Result
 from uq.assess.answer.answer import answer, conclude
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.earliest import earliest_rows, ranks
@@ -39,14 +40,14 @@ def test_the_earliest_rows_are_named_with_the_command_that_shows_the_first():
     shown = [float(life) * found.unit.per for _, life in named]
     assert shown == pytest.approx(ds["life"].values[order], rel=5e-3)
     assert found.command == "uq row OUT --lowest life"
-    assert lowest_row(ds, "life").number == found.rows[0]
+    assert lowest_row(Result(ds), "life").number == found.rows[0]
 
 
 def test_commands_that_compute_rows_name_a_model_that_is_not_installed():
-    own = Findings(kinds(analysis={"outputs": ["life"]}))
+    own = Findings(Result(kinds(analysis={"outputs": ["life"]})))
     assert answer(own.ds).lead.earliest.command.endswith("]' --model FILE")
     assert rows_inside(own, "a.nc")["model"] == " --model FILE"
-    assert rows_inside(Findings(lived(lambda x1, x4: x1)), "a.nc")["model"] == ""
+    assert rows_inside(Findings(Result(lived(lambda x1, x4: x1))), "a.nc")["model"] == ""
 
 
 def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_medians():
@@ -171,7 +172,7 @@ def test_page_terminal_and_json_say_the_same():
     html = str(fragment(found))
     assert "What ends first" in html and said.command in html
     assert said.sentence in repr(found) and said.first in repr(found)
-    plain = answer_json(conclude(Findings(ds)))["quantities"]["life"]["earliest"]
+    plain = answer_json(conclude(Findings(Result(ds))))["quantities"]["life"]["earliest"]
     assert (
         plain["lives"] == dict(zip(map(str, said.rows), said.lives, strict=True))
         and plain["sentence"] == said.sentence

@@ -6,6 +6,7 @@ from computed import asking, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
+from uq.result.result import Result
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.summary import summarise
 from uq.assess.summary_table import summary
@@ -80,11 +81,11 @@ def test_values_and_angles_have_bounds_too():
     value = found["y"]["quantiles"]
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
-    bounds = summarise(ds).outputs["y"].find("quantiles", "0.05").failed
+    bounds = summarise(Result(ds)).outputs["y"].find("quantiles", "0.05").failed
     assert failed_bounds_text(bounds).startswith("up to")
     highest = summarised(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
     assert highest["failed_high"] is None and "failed_high_never" not in highest
-    highest = summarise(asking(ds, quantiles=[0.95])).outputs["y"].find("quantiles", "0.95").failed
+    highest = summarise(Result(asking(ds, quantiles=[0.95]))).outputs["y"].find("quantiles", "0.95").failed
     assert failed_bounds_text(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
     assert len(whole) and found["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.errors import InputError
 from uq.render.figures.catalogue import drawables
@@ -19,14 +20,14 @@ from uq.render.figures.catalogue import drawables
 
 def files(ds):
     """Return the names of the files of all figures of a result."""
-    return {one.file for one in drawables(plots.FIGURES, Findings(ds))}
+    return {one.file for one in drawables(plots.FIGURES, Findings(Result(ds)))}
 
 
 @pytest.mark.slow
 def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
     asked = {"outputs": ["life", "angle", "regime"], "thresholds": {"life": 1.0}}
     ds = kinds(samples=96, analysis=asked | {"sensitivity": ["pawn"]})
-    paths = plots.save_all(ds, tmp_path / "new" / "figures")
+    paths = plots.save_all(Result(ds), tmp_path / "new" / "figures")
     assert {path.suffix for path in paths} == {".png", ".svg", ".pdf"}
     stems = {path.stem for path in paths}
     assert {"histogram-angle", "lifetime-life", "pairs", "inputs", "pawn-angle"} < stems
@@ -79,7 +80,7 @@ def test_panels_need_axes_of_a_grid():
     ids=["one figure", "all figures"],
 )
 def test_the_same_result_gives_the_same_bytes(tmp_path, ds, included):
-    once, again = (plots.save_all(ds, tmp_path / name) for name in ("once", "again"))
+    once, again = (plots.save_all(Result(ds), tmp_path / name) for name in ("once", "again"))
     stems = {path.stem for path in once}
     assert included <= stems == files(ds)
     assert len(once) == 3 * len(stems)
@@ -91,7 +92,7 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     draw, drawn = Figure.draw, []
     monkeypatch.setattr(Figure, "draw", lambda *given: (drawn.append(given), draw(*given)))
     ds = linear("morris", samples=8, replicates=2)
-    paths = plots.save_all(ds, tmp_path)
+    paths = plots.save_all(Result(ds), tmp_path)
     assert len(drawn) == len(paths) == 3 * len(files(ds))
 
 
@@ -124,11 +125,11 @@ def test_categories_alone_have_the_indices_of_each():
 @pytest.mark.slow
 def test_categories_alone_are_drawn(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
-    stems = {path.stem for path in plots.save_all(ds, tmp_path)}
+    stems = {path.stem for path in plots.save_all(Result(ds), tmp_path)}
     assert stems == files(ds)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="file: cannot create this folder"):
-        plots.save_all(linear(), tmp_path / "file")
+        plots.save_all(Result(linear()), tmp_path / "file")

@@ -3,6 +3,7 @@
 from computed import asking, kinds, linear, with_output
 
 from uq import plots
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
@@ -11,7 +12,7 @@ from uq.render.html.pictures import pictures
 
 
 def captions(ds):
-    return [one.caption for one in drawables(FIGURES, Findings(ds))]
+    return [one.caption for one in drawables(FIGURES, Findings(Result(ds)))]
 
 
 def test_captions_name_outputs_and_events_in_words():
@@ -34,7 +35,7 @@ def test_outputs_of_one_meaning_have_pictures_that_do_not_share_identifiers():
     ds = with_output(linear(samples=100), "z", linear(samples=100)["x1"].values)
     ds["z"].attrs["long_name"] = ds["y"].attrs["long_name"]
     first, second = (
-        one for one in pictures(Findings(ds), "results") if one.caption == "Value of the function"
+        one for one in pictures(Findings(Result(ds)), "results") if one.caption == "Value of the function"
     )
     identifiers = [set(one.html.split('id="')[1:]) for one in (first, second)]
     names = [{one.split('"')[0] for one in own} for own in identifiers]

@@ -7,6 +7,7 @@ from computed import asking, linear, with_output
 from scipy import special
 from scipy.stats import qmc
 
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.answer.rankings import unexplained
@@ -188,8 +189,8 @@ def test_what_leads_alone_is_called_so_and_what_is_beyond_single_inputs_stated(o
 
 def test_random_balance_is_a_method_by_name_and_ranks_nothing():
     ds = linear(samples=400)
-    assert methods(ds) == ("first-order",)
+    assert methods(Result(ds)) == ("first-order",)
     asked = asking(ds, outputs=["y"], sensitivity=["rbd-fast"])
-    assert methods(asked) == ("rbd-fast",)
+    assert methods(Result(asked)) == ("rbd-fast",)
     assert answer(asked).lead.ranking.method == "first-order"
     assert answer(asked).lead.ranking.contributions == answer(ds).lead.ranking.contributions

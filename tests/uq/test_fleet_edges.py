@@ -5,6 +5,7 @@ import pytest
 from computed import computed, study_of
 from scipy import special, stats
 
+from uq.result.result import Result
 from uq.assess.fleet import fleet_of
 from uq.assess.fleet_json import fleet_json
 from uq.assess.random_effects import Noisy
@@ -37,7 +38,7 @@ SHARED_Z = {"z": NORMAL | {"level": "shared"}, "a": lognormal(0.5)}
 
 def test_worlds_whose_units_never_end_have_no_end_of_the_band():
     ds = rows(SHARED_Z, {"never_above": 0.5})
-    found = fleet_of(ds, 4)
+    found = fleet_of(Result(ds), 4)
     assert found.first[0.5].high.numbers == (np.inf,) * 3
     assert found.first[0.95].estimate.value == np.inf
     assert 0 < found.first[0.95].low.low < found.first[0.95].low.high < 2
@@ -47,7 +48,7 @@ def test_worlds_whose_units_never_end_have_no_end_of_the_band():
 
 
 def test_a_single_replicate_has_numbers_without_intervals():
-    found = fleet_of(rows(SHARED_Z, method="halton", samples=64), 50, [0.3])
+    found = fleet_of(Result(rows(SHARED_Z, method="halton", samples=64)), 50, [0.3])
     for one in found.by[0.3]:
         assert np.isfinite([one.estimate.value, one.low.value, one.high.value]).all()
         assert np.isnan([one.estimate.low, one.low.low, one.high.high]).all()
@@ -56,7 +57,7 @@ def test_a_single_replicate_has_numbers_without_intervals():
 
 def test_replicates_that_agree_keep_the_interval_of_a_band():
     ds = rows(SHARED_Z, method="halton", samples=64, replicates=8)
-    found = fleet_of(ds, 50, [0.3])
+    found = fleet_of(Result(ds), 50, [0.3])
     for one in (*found.by[0.3], found.first[0.5]):
         for end in (one.low, one.high):
             assert end.low <= end.value <= end.high
@@ -65,12 +66,12 @@ def test_replicates_that_agree_keep_the_interval_of_a_band():
 def test_units_that_all_end_at_one_time_end_then():
     ds = rows({"z": NORMAL}, units=4)
     same = ds.assign(life=ds["life"].copy(data=np.full(400, 2.0)))
-    assert fleet_of(same, 4).first[0.5].estimate.numbers == pytest.approx((2.0, 2.0, 2.0))
+    assert fleet_of(Result(same), 4).first[0.5].estimate.numbers == pytest.approx((2.0, 2.0, 2.0))
 
 
 def test_failed_rows_may_have_ended_at_once():
     ds = rows({"z": NORMAL}, {"fail_above": 0.5}, units=4)
-    assert fleet_of(ds, 2).first[0.5].failed.low == 0.0
+    assert fleet_of(Result(ds), 2).first[0.5].failed.low == 0.0
 
 
 def test_units_that_do_not_differ_are_counted():
@@ -78,7 +79,7 @@ def test_units_that_do_not_differ_are_counted():
     inputs = SHARED_Z | {"b": lognormal(0.5), "c": {"equals": "b"}}
     ds = rows(inputs, units=2)
     life = np.exp(ds["z"].values / 2)
-    found = fleet_of(ds.assign(life=ds["life"].copy(data=life)), 2, [1.0], plain=True)
+    found = fleet_of(Result(ds.assign(life=ds["life"].copy(data=life))), 2, [1.0], plain=True)
     assert found.by[1.0][0].estimate.value == pytest.approx(2 * np.mean(life < 1))
 
 
@@ -102,7 +103,7 @@ def test_a_band_whose_worlds_are_of_two_kinds_is_in_order(count):
     z = np.where(np.arange(100) < count, -3.0, 0.0)
     ds["life"].values *= np.exp((z - ds["z"].values) / 2)
     ds["z"].values[:] = z
-    found = fleet_of(ds, 50, [0.3, 1.0, 2.0], allow=3)
+    found = fleet_of(Result(ds), 50, [0.3, 1.0, 2.0], allow=3)
     for one in (*found.first.values(), *(each for two in found.by.values() for each in two)):
         assert one.low.value <= one.high.value
         for end in (one.low, one.high):

@@ -8,6 +8,7 @@ from fleet_studies import LISTED, SHARED, brute_force, fleet_result, fleet_study
 
 import uq as api
 from benchmarks.coverage import fleets as counted
+from uq.result.result import Result
 from uq.assess.fleet import fleet_of
 from uq.assess.fleet_json import fleet_json
 from uq.assess.fleets import units_of
@@ -39,18 +40,18 @@ def test_many_worlds_are_computed_in_blocks(monkeypatch):
 
 def test_lives_as_computed_where_nothing_is_to_be_integrated():
     ds = fleet_result(units=6, samples=50)
-    found = fleet_of(ds, 5, [5e5], allow=1, plain=True)
+    found = fleet_of(Result(ds), 5, [5e5], allow=1, plain=True)
     assert found.integrated == ()
     element = next(elements_of(ds, ["life"]))
     ended = (element.values < 5e5).astype(float).reshape(50, 6, 1)
     assert found.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
     with pytest.raises(InputError, match="set units = 7; .* depth is not"):
-        fleet_of(ds, 7, plain=True)
+        fleet_of(Result(ds), 7, plain=True)
 
 
 def test_no_power_of_the_mean():
     """Units of a sample agree: the mean of powers is not the power of the mean."""
-    found = fleet_of(fleet_result(), 50, [5e5]).by[5e5]
+    found = fleet_of(Result(fleet_result()), 50, [5e5]).by[5e5]
     p = found[0].estimate.value / 50
     assert found[1].estimate.value > 2 * (1 - p) ** 50
 
@@ -60,17 +61,17 @@ def test_repeats_are_chance_within_a_unit():
     laws = {"depth": LISTED, "threshold": lognormal(1.0, 1e-10, level="chance")}
     ds = fleet_result(units=3, samples=40, design={"repeats": 4}.items(), **laws)
     element = next(elements_of(ds, ["life"]))
-    ended = units_of(ds, element).ended(5e5)
+    ended = units_of(Result(ds), element).ended(5e5)
     assert ended.shape == (40, 3, 1)
     assert ended[..., 0] == pytest.approx(element.below(5e5).reshape(40, 3, 4).mean(axis=2))
-    found = fleet_of(ds, 2, [5e5]).by[5e5][1].estimate
+    found = fleet_of(Result(ds), 2, [5e5]).by[5e5][1].estimate
     pairs = [brute_force(world, 2, 0) for world in ended[..., 0]]
     assert found.value == pytest.approx(np.mean(pairs))
 
 
 def test_points_over_what_is_shared_state_what_they_assume():
     """Where units are only counted; not where the probability is known in each world."""
-    counted_units = fleet_of(fleet_result(units=4, samples=100, depth=LISTED), 4, [5e5])
+    counted_units = fleet_of(Result(fleet_result(units=4, samples=100, depth=LISTED)), 4, [5e5])
     said = "the 5 and 95 % points assume probits of the units' probability are about normal"
     assert any(note.startswith(said) for note in counted_units.notes)
     for one in counted_units.by[5e5]:
@@ -82,13 +83,13 @@ def test_points_over_what_is_shared_state_what_they_assume():
     of_numbers = table["assumes"].loc[["failed", "at_most_allowed"]]
     assert all("about normal" in text for text in of_numbers)
     assert not any(api.fleet(fleet_result(), 4, by=5e5)["assumes"])
-    known = fleet_of(fleet_result(), 4, [5e5])
+    known = fleet_of(Result(fleet_result()), 4, [5e5])
     assert not any("assume" in note for note in known.notes)
 
 
 def test_a_fleet_of_one_is_a_unit():
     ds = fleet_result()
-    found = fleet_of(ds, 1, [5e5])
+    found = fleet_of(Result(ds), 1, [5e5])
     table = summary(ds).loc["life"]
     assert found.first[0.5].estimate.value == pytest.approx(table["q0.5"], rel=1e-9)
 
@@ -96,9 +97,9 @@ def test_a_fleet_of_one_is_a_unit():
 def test_more_units_than_there_are_is_refused():
     ds = fleet_result(units=3, samples=30, depth=LISTED)
     with pytest.raises(InputError, match="set units = 4; .* depth is not") as refused:
-        fleet_of(ds, 4)
+        fleet_of(Result(ds), 4)
     assert str(refused.value).count("\n") == 0
-    assert fleet_of(ds, 3).samples == 30
+    assert fleet_of(Result(ds), 3).samples == 30
 
 
 @pytest.mark.parametrize(
@@ -113,7 +114,7 @@ def test_more_units_than_there_are_is_refused():
 )
 def test_mistakes_are_sentences(options, words):
     with pytest.raises(InputError, match=words):
-        fleet_of(fleet_result(), **options)
+        fleet_of(Result(fleet_result()), **options)
 
 
 def test_a_horizon_before_the_time_is_refused():
@@ -121,9 +122,9 @@ def test_a_horizon_before_the_time_is_refused():
     life = ds["life"].values
     cut = with_output(ds, "life", np.minimum(life, 1e6), "lifetime", life > 1e6)
     with pytest.raises(InputError, match="censored before 2000000.0 s"):
-        fleet_of(cut, 2, [2e6])
-    found = fleet_of(cut, 3, [9e5])
-    assert found.by[9e5][1].estimate.value == fleet_of(ds, 3, [9e5]).by[9e5][1].estimate.value
+        fleet_of(Result(cut), 2, [2e6])
+    found = fleet_of(Result(cut), 3, [9e5])
+    assert found.by[9e5][1].estimate.value == fleet_of(Result(ds), 3, [9e5]).by[9e5][1].estimate.value
 
 
 @pytest.mark.slow
@@ -132,11 +133,11 @@ def test_failed_rows_are_taken_at_best_and_at_worst():
     status, life = ds["status"].values.copy(), ds["life"].values.copy()
     status[::40], life[::40] = 1, np.nan
     lost = ds.assign(status=ds["status"].copy(data=status), life=ds["life"].copy(data=life))
-    found = fleet_of(lost, 4, [5e5])
+    found = fleet_of(Result(lost), 4, [5e5])
     assert found.samples == 90
     assert any("10 of 400 rows failed" in note for note in found.notes)
     failed, kept = found.by[5e5]
-    whole = fleet_of(ds, 4, [5e5]).by[5e5]
+    whole = fleet_of(Result(ds), 4, [5e5]).by[5e5]
     for one, truth in zip((failed, kept), whole, strict=True):
         assert one.failed.low < one.estimate.low < one.estimate.high < one.failed.high
         assert one.failed.low < truth.estimate.value < one.failed.high
@@ -145,23 +146,23 @@ def test_failed_rows_are_taken_at_best_and_at_worst():
 
 
 def test_no_more_than_the_fleet_can_end():
-    kept = fleet_of(fleet_result(units=4, samples=100, depth=LISTED), 4, [5e5], allow=4)
+    kept = fleet_of(Result(fleet_result(units=4, samples=100, depth=LISTED)), 4, [5e5], allow=4)
     for one in (kept.by[5e5][1].estimate, kept.by[5e5][1].low, kept.by[5e5][1].high):
         assert one.numbers == (1.0, 1.0, 1.0) and not one.assumes
 
 
 def test_nothing_shared_has_no_band():
     ds = fleet_result(rate=lognormal(SHARED, 1e-9))
-    assert fleet_of(ds, 1, [5e5]).by[5e5][0].low.reason == "samples share nothing that varies"
+    assert fleet_of(Result(ds), 1, [5e5]).by[5e5][0].low.reason == "samples share nothing that varies"
 
 
 def test_a_few_shared_values_have_no_points_between_them():
     listed = {"distribution": "discrete-choice", "values": [1e-9, 2e-9], "level": "shared"}
     both = {"rate": listed, "depth": LISTED}
-    (failed, _) = fleet_of(fleet_result(units=10, **both), 1, [5e5]).by[5e5]
+    (failed, _) = fleet_of(Result(fleet_result(units=10, **both)), 1, [5e5]).by[5e5]
     assert np.isfinite(failed.estimate.value)
     assert "one of a few values" in failed.low.reason == failed.high.reason
-    known = fleet_of(fleet_result(units=10, rate=listed), 1, [5e5]).by[5e5][0]
+    known = fleet_of(Result(fleet_result(units=10, rate=listed)), 1, [5e5]).by[5e5][0]
     assert known.low.value < known.high.value  # each probability is known
 
 

@@ -9,6 +9,7 @@ from fleet_studies import LISTED, OWN, SHARED, brute_force, fleet_result, lognor
 from scipy import special, stats
 
 from benchmarks.coverage import fleets as counted
+from uq.result.result import Result
 from uq.assess.fleet import fleet_of
 from uq.assess.fleets import units_of
 from uq.result.elements import elements_of
@@ -17,7 +18,7 @@ from uq.stats.counting import at_most
 
 def test_the_first_of_many_by_brute_force():
     """The first of 40,000 units, exactly, and drawn one by one in 400 other worlds."""
-    found = fleet_of(fleet_result(samples=2000), 40_000).first[0.5]
+    found = fleet_of(Result(fleet_result(samples=2000)), 40_000).first[0.5]
     rng = np.random.default_rng(1)
     depths = np.array([rng.standard_normal(40_000).min() for _ in range(400)])
     lives = 1e6 * np.exp(OWN * depths - SHARED * rng.standard_normal(400))
@@ -31,10 +32,10 @@ def test_the_first_of_many_by_brute_force():
 
 def test_units_and_the_exact_law_agree():
     """Fleets counted from units, and exactly from the same samples."""
-    exact = fleet_of(fleet_result(units=20), 5, [5e5], allow=1)
+    exact = fleet_of(Result(fleet_result(units=20)), 5, [5e5], allow=1)
     ds = fleet_result(units=20)
     element = next(elements_of(ds, ["life"]))
-    units = units_of(ds, element)
+    units = units_of(Result(ds), element)
     assert (units.integrated, units.varying) == (("depth",), ())
     p = element.below(5e5).reshape(200, 20, 1)
     counted_kept = at_most(p, 5, 1).mean()
@@ -58,7 +59,7 @@ def test_what_is_shared_is_integrated_outside_the_product():
     ds = computed(study)
     element = next(elements_of(ds, ["life"]))
     exponents = element.declared.scales
-    units = units_of(ds, element)
+    units = units_of(Result(ds), element)
     assert units.integrated == ("a", "b")
     own, shared = abs(exponents["a"]) * OWN, abs(exponents["b"]) * SHARED
     drawn = sum(exponents[name] * np.log(ds[name].values) for name in ("a", "b"))
@@ -67,7 +68,7 @@ def test_what_is_shared_is_integrated_outside_the_product():
     z = np.linspace(-8, 8, 4001)
     p = special.ndtr((-1.0 - shared * z) / own)
     truth = np.average(special.bdtr(2, 100, p), weights=np.exp(-(z**2) / 2))
-    kept = fleet_of(ds, 100, [time], allow=2).by[time][1]
+    kept = fleet_of(Result(ds), 100, [time], allow=2).by[time][1]
     assert kept.estimate.value == pytest.approx(truth, abs=1e-6)
     assert "exact" in kept.estimate.reason
     best = special.bdtr(2, 100, special.ndtr((-1.0 - shared * stats.norm.ppf(0.95)) / own))
@@ -127,7 +128,7 @@ def test_each_level_is_integrated_where_it_belongs(beside, allow):
         for one in rest.reshape(6, 4, repeats) - 2 * SHARED * at
     ]
     truth = np.average(np.reshape(kept, (-1, 6)).mean(axis=1), weights=np.exp(-(z**2) / 2))
-    units = units_of(ds, next(elements_of(ds, ["life"])))
+    units = units_of(Result(ds), next(elements_of(ds, ["life"])))
     assert set(units.integrated) == {"b", *inside}
     found = units.fleet(size, allow, None)
     assert found.below(time).value == pytest.approx(1 - truth, abs=5e-3)
@@ -138,7 +139,7 @@ def test_bands_of_units_that_end_together():
     """With nothing own, the life of all units has the law of what they share."""
     ds = scaled_fleet({"b": B_SHARED, "z": NORMAL | {"level": "shared"}}, samples=400, units=1)
     rest = np.exp(ds["z"].values / 2)
-    found = fleet_of(ds, 1000, [1.0]).first[0.5]
+    found = fleet_of(Result(ds), 1000, [1.0]).first[0.5]
     for one, share in ((found.low, 0.05), (found.estimate, 0.5), (found.high, 0.95)):
         below = special.ndtr(np.log(one.value / rest) / (2 * SHARED)).mean()
         assert below == pytest.approx(share, abs=1e-4)
@@ -155,7 +156,7 @@ def test_a_shared_input_that_depends_on_another_is_integrated():
     tables = {"dependence": TIED}
     for own in ({"z": NORMAL}, {"a": lognormal(OWN, 1.0)}):
         ds = scaled_fleet(own | shared, samples=300, units=3, **tables)
-        found = fleet_of(ds, 2, [1.0])
+        found = fleet_of(Result(ds), 2, [1.0])
         assert "b" in found.integrated
         spread = OWN if "a" in own else 0.25
         z = np.linspace(-6, 6, 2001)
@@ -176,7 +177,7 @@ def test_what_is_not_integrated_says_why():
         ),
         ({"b": B_SHARED}, {"settings": {"horizon": 1.5}}, "b not integrated: .* are censored"),
     ):
-        notes = fleet_of(scaled_fleet({"z": NORMAL} | inputs, **tables), 2, [0.1]).notes
+        notes = fleet_of(Result(scaled_fleet({"z": NORMAL} | inputs, **tables)), 2, [0.1]).notes
         assert any(re.match(words, note) for note in notes), notes
 
 

@@ -9,6 +9,7 @@ from asked_indices import sensitivities
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
+from uq.result.result import Result
 from uq.assess import sensitivities as module
 from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError
@@ -231,7 +232,7 @@ def test_dependent_inputs_are_refused_by_methods_that_assume_independence(monkey
     ds = linear(samples=128)
     why = "the inputs of this study depend on each other"
     monkeypatch.setattr(module, "why_dependent", lambda ds: why)
-    assert module.methods(ds) == ("delta",)
+    assert module.methods(Result(ds)) == ("delta",)
     assert sensitivities(ds)["method"] == "delta"
     for method in ("rbd-fast", "hdmr"):
         with pytest.raises(InputError, match="inputs of this study depend on each other"):

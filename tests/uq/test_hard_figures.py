@@ -8,6 +8,7 @@ from computed import asking, computed, kinds, linear, study_of, with_output
 from drawn import collisions, words
 
 from uq import plots
+from uq.result.result import Result
 from uq.assess.sensitivities import sensitivities
 from uq.indices.index import Null
 from uq.render.figures.figure import lay_out
@@ -79,7 +80,7 @@ def test_the_interval_of_one_number_of_samples_is_seen():
 
 def test_limits_that_coincide_are_one_line_of_the_legend():
     ds = linear(samples=100, analysis={"sensitivity": ["rbd-fast"]})
-    found = sensitivities(ds, "rbd-fast", "y").targets["y"]
+    found = sensitivities(Result(ds), "rbd-fast", "y").targets["y"]
     (kind,) = found.indices.nulls
     same = replace(found.indices, nulls={kind: Null(0.1, 0.1)})
     (legend,) = plots.index_bars(ds, "y", found=replace(found, indices=same)).legends

@@ -23,6 +23,7 @@ from rare_studies import linear as rare_linear
 from sample_models import SIDES, ok, simple
 
 import uq as package
+from uq.result.result import Result
 from uq.assess.effects import effects
 from uq.assess.summary import summarise
 from uq.contract import Output
@@ -105,7 +106,7 @@ def test_an_output_far_from_zero_shows_the_digits_that_tell_rows_apart():
     far = FAR + linear(samples=500)["y"].values
     ds = of_values(far, tolerance={"coverage": 0.95, "confidence": 0.95})
     assert summarised(ds)["outputs"]["z"]["sd"] == pytest.approx(np.std(far - FAR, ddof=1))
-    for one in summarise(ds).outputs["z"].statistics:
+    for one in summarise(Result(ds)).outputs["z"].statistics:
         if one.key[0] in ("mean", "quantiles", "tolerance"):
             assert float(one.words()) == pytest.approx(one.estimate.value, abs=0.06)
             assert len(set(one.interval().split(" to "))) == 2 - (not one.estimate.has_interval)

@@ -7,6 +7,7 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.expected_widths import expected_widths
 from uq.assess.findings import Findings
@@ -94,7 +95,7 @@ def test_an_output_without_a_heavy_tail_stands_as_it_is():
 
 def test_reports_say_what_the_indices_are_of():
     ds = asking(heavy(samples=128), outputs=["work"], sensitivity=["sobol"])
-    (method,) = sensitivity_of(Findings(ds))
+    (method,) = sensitivity_of(Findings(Result(ds)))
     (subject,) = method.subjects
     assert subject.words == "Logarithm of the meaning of work"
     assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.what
@@ -102,7 +103,7 @@ def test_reports_say_what_the_indices_are_of():
 
 def test_plans_and_convergence_name_and_judge_the_same_number():
     ds = heavy(samples=128)
-    work = expected_widths(asking(ds, outputs=["work", "y"]))
+    work = expected_widths(Result(asking(ds, outputs=["work", "y"])))
     assert work["work"].indices["ST"] == pytest.approx(work["y"].indices["ST"])
     found = uq.running_estimates(ds, "work")
     assert set(found[found["estimate"] == "ST x4"]["output"]) == {"log(work)"}

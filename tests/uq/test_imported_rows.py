@@ -8,6 +8,7 @@ from computed import as_text, compared, computed, summarised, with_output
 from input_studies import UNIFORM, refusal, tables
 
 import uq
+from uq.result.result import Result
 from uq.assess.convergence import running_estimates
 from uq.assess.pairing import Kinship, kinship
 from uq.assess.survival import survival
@@ -181,12 +182,12 @@ def test_the_statement_does_not_change_the_rows(table):
 def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     folder, x = table
     one = result_of(folder, independent=True)
-    assert kinship(one, result_of(folder, independent=True, seed=5)) is Kinship.ROWS_IMPORTED
+    assert kinship(Result(one), Result(result_of(folder, independent=True, seed=5))) is Kinship.ROWS_IMPORTED
     found = compared(one, one)
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
     assert found["pairing"] == "rows" and found["outputs"]["y"]["sd"]["difference"] == same
     lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
     (folder / "rows.csv").write_text("\n".join(lines))
     other = result_of(folder, independent=True, seed=5)
-    assert kinship(one, other) is Kinship.UNKNOWN_IMPORTED
+    assert kinship(Result(one), Result(other)) is Kinship.UNKNOWN_IMPORTED
     assert compared(one, other)["pairing"] == "unknown"

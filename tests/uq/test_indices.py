@@ -6,16 +6,17 @@ from asked_indices import INPUTS, indices, ishigami, sensitivities
 from computed import kinds, linear, with_output
 
 import uq
+from uq.result.result import Result
 from uq.assess.sensitivities import methods
 from uq.contract import Status
 from uq.errors import InputError
 
 
 def test_method_is_the_studys_or_the_designs_own():
-    assert methods(linear("saltelli")) == ("sobol",)
-    assert methods(linear("halton", 128)) == ("first-order",)
+    assert methods(Result(linear("saltelli"))) == ("sobol",)
+    assert methods(Result(linear("halton", 128))) == ("first-order",)
     ds = linear(samples=128, analysis={"sensitivity": ["pawn", "delta"]})
-    assert methods(ds) == ("pawn", "delta")
+    assert methods(Result(ds)) == ("pawn", "delta")
     assert sensitivities(ds)["method"] == "pawn"
     assert sensitivities(ds, "rbd-fast")["method"] == "rbd-fast"
 

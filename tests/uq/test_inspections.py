@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from uq.result.result import Result
 from uq.errors import InputError
 from uq.learning import inspection_log
 from uq.learning.inspections import Inspection, InspectionKind, read_inspections
@@ -189,7 +190,7 @@ def test_tables_of_a_toml_file():
 def test_each_measurement_counts_once_and_none_contradicts_another():
     read("A,2,life,survived,,,,,", "A,2,life,survived,,,,,", "A,1,life,ended,,,,,")
     with pytest.raises(InputError) as refused:
-        inspection_log.all_of(xr.Dataset(), inspection_log.read(FILE))
+        inspection_log.all_of(Result(xr.Dataset()), inspection_log.read(FILE))
     again, *contradictions = refused.value.lines
     assert again == (
         "found.csv, line 3 (unit A, life, survived): already used by found.csv, line 2; a"

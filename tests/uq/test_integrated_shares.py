@@ -9,6 +9,7 @@ from computed import computed, once, study_of
 from nested_studies import CHANCE, OWN, SHARED
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.fleet import fleet_of
 from uq.assess.level_shares import by_level
 from uq.errors import InputError
@@ -53,8 +54,8 @@ def scaled_result(**options):
 
 def test_what_only_scales_a_life_has_a_known_share():
     ds = scaled_result(samples=400)
-    found = by_level(ds).outputs["log(life)"]
-    plain = by_level(ds, plain=True).outputs["log(life)"]
+    found = by_level(Result(ds)).outputs["log(life)"]
+    plain = by_level(Result(ds), plain=True).outputs["log(life)"]
     assert set(found.integrated) == {"a", "b", "c"} and plain.integrated == ()
     total = sum(OF_LOG_LIFE.values())
     for level, variance in OF_LOG_LIFE.items():
@@ -72,12 +73,12 @@ def test_with_everything_integrated_shares_are_exact():
     """One row of each sample is enough: nothing that the rows cannot tell apart is left."""
     uncertain = {name: law for name, law in SCALING.items() if name != "z"}
     ds = computed(scaled(uncertain, units=1, repeats=1, samples=10))
-    found = by_level(ds).outputs["log(life)"]
+    found = by_level(Result(ds)).outputs["log(life)"]
     variances = {SHARED: 0.16, OWN: 0.09, CHANCE: 0.25}
     for level, variance in variances.items():
         assert found.shares[level].numbers == pytest.approx([variance / 0.5] * 3, rel=1e-9)
     assert found.variance == pytest.approx(0.5, rel=1e-9)
-    assert "set repeats" in by_level(ds, plain=True).outputs["log(life)"].shares[CHANCE].reason
+    assert "set repeats" in by_level(Result(ds), plain=True).outputs["log(life)"].shares[CHANCE].reason
 
 
 @pytest.mark.parametrize(
@@ -93,7 +94,7 @@ def test_with_everything_integrated_shares_are_exact():
 def test_what_is_not_integrated_on_one_level_needs_one_row_a_sample(level, units, repeats):
     uncertain = SCALING | {"z": NORMAL | {"level": level}}
     ds = computed(scaled(uncertain, units=units, repeats=repeats, samples=2000))
-    found = by_level(ds).outputs["log(life)"]
+    found = by_level(Result(ds)).outputs["log(life)"]
     variances = {SHARED: 0.16, OWN: 0.09, CHANCE: 0.25}
     variances[level] += 0.25
     for name, variance in variances.items():
@@ -107,13 +108,13 @@ def test_powers_that_cancel_do_not_vary():
     ds = computed(scaled(uncertain, units=1, repeats=1)).copy(deep=True)
     ds["life"].values[:] = np.exp(ds["z"].values / 2)
     ds["life"].attrs["scales"] = json.dumps({"a": 1.0, "c": -1.0})
-    found = by_level(ds).outputs["log(life)"]
+    found = by_level(Result(ds)).outputs["log(life)"]
     assert found.shares[SHARED].numbers == (1.0, 1.0, 1.0)
-    first = fleet_of(ds, 1000).first[0.5]
+    first = fleet_of(Result(ds), 1000).first[0.5]
     assert first.estimate.value == pytest.approx(np.median(ds["life"]), rel=0.1)
     ds["life"].attrs["scales"] = json.dumps({"a": 1.0})
     with pytest.raises(InputError, match="a fleet of 1000 needs samples of as many units, now 1"):
-        fleet_of(ds, 1000)
+        fleet_of(Result(ds), 1000)
 
 
 @pytest.mark.parametrize(("method", "said"), [("sobol", ""), ("saltelli", " and method = 'monte")])
@@ -122,14 +123,14 @@ def test_what_to_set_is_possible_in_the_design(method, said):
     design = {"method": method, "units": 1, "repeats": 1, "samples": 64, "replicates": 8}
     ds = computed(scaled(uncertain, **design))
     (reason,) = {
-        by_level(ds, plain=True).outputs["log(life)"].shares[one].reason for one in (OWN, SHARED)
+        by_level(Result(ds), plain=True).outputs["log(life)"].shares[one].reason for one in (OWN, SHARED)
     }
     assert reason.startswith(
         f"a single unit cannot show what is shared and what is own; set units = 2{said}"
     )
     with pytest.raises(InputError, match=rf"in \[design\] set units = 9{said}"):
-        fleet_of(ds, 9, plain=True)
-    band = fleet_of(ds, 1, [1.0], plain=True).by[1.0][0].low.reason
+        fleet_of(Result(ds), 9, plain=True)
+    band = fleet_of(Result(ds), 1, [1.0], plain=True).by[1.0][0].low.reason
     assert band == reason
 
 
@@ -137,7 +138,7 @@ def test_what_the_rows_cannot_tell_apart_stays_so():
     """Two levels with something else that varies, in one row of each sample."""
     uncertain = SCALING | {"z": NORMAL, "c": LISTED | {"level": SHARED}}
     ds = computed(scaled(uncertain, units=1, repeats=1))
-    found = by_level(ds).outputs["log(life)"]
+    found = by_level(Result(ds)).outputs["log(life)"]
     assert "set units = 2" in found.shares[SHARED].reason and np.isnan(found.shares[OWN].value)
     assert found.shares[CHANCE].numbers == (0.0, 0.0, 0.0)
     assert "c not integrated: its law is one of listed values" in found.sentences
@@ -165,8 +166,8 @@ TRUNCATED = {"distribution": "uniform", "lower": 0.2, "upper": 3.0}
 def test_each_by_its_law_given_the_rest(uncertain, tables):
     """The plain shares of many rows lie in the intervals."""
     ds = scaled_result(uncertain=uncertain, tables=tables.items(), samples=4000)
-    found = by_level(ds).outputs["log(life)"]
-    plain = by_level(ds, plain=True).outputs["log(life)"]
+    found = by_level(Result(ds)).outputs["log(life)"]
+    plain = by_level(Result(ds), plain=True).outputs["log(life)"]
     assert "a" in found.integrated
     assert found.variance == pytest.approx(plain.variance, rel=0.03)
     for level in (SHARED, OWN, CHANCE):
@@ -177,16 +178,16 @@ def test_each_by_its_law_given_the_rest(uncertain, tables):
 
 def test_what_is_not_integrated_says_why():
     never = computed(scaled(tables={"settings": {"never_above": 1.0}}.items()))
-    (name, found), *_ = by_level(never).outputs.items()
+    (name, found), *_ = by_level(Result(never)).outputs.items()
     assert name == "rank(life)" and found.integrated == ()
     assert "b and a and c not integrated: the lives are replaced by their ranks" in found.sentences
     cut = computed(scaled(tables={"settings": {"horizon": 2.0}}.items()))
-    assert "replaced by their ranks" in " ".join(by_level(cut).outputs["rank(life)"].sentences)
+    assert "replaced by their ranks" in " ".join(by_level(Result(cut)).outputs["rank(life)"].sentences)
 
 
 def test_replicates_are_what_is_independent_where_inputs_are_integrated():
     ds = computed(scaled(method="sobol", samples=32, replicates=8))
-    found = by_level(ds).outputs["log(life)"].shares
+    found = by_level(Result(ds)).outputs["log(life)"].shares
     total = sum(OF_LOG_LIFE.values())
     for level, variance in OF_LOG_LIFE.items():
         assert found[level].low < variance / total < found[level].high

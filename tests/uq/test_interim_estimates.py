@@ -8,6 +8,7 @@ import xarray as xr
 from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import study, tables
 
+from uq.result.result import Result
 from uq.assess import stopping
 from uq.execution import runner
 from uq.stats import group_sequential
@@ -31,7 +32,7 @@ def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
 def look_at(ds, **until):
     """Look at a result of the model with one output of every kind."""
     given = tables(until, samples=256) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
-    return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, ds)
+    return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, Result(ds))
 
 
 def test_the_element_that_is_known_worst_decides():
@@ -50,11 +51,11 @@ def test_a_share_is_of_the_rows_that_did_not_fail():
     of = study(0.1, above=4.0, samples=200, settings={"fail_above": 0.5})
     ds = computed(of)
     sound = ds["y"].values[~np.isnan(ds["y"].values)]
-    found = stopping.interim_estimate(of.design, ds).estimate
+    found = stopping.interim_estimate(of.design, Result(ds)).estimate
     assert len(sound) < 150 and found.value == (sound > 4.0).mean()
     assert found.low < found.value < found.high
     whole = computed(study(0.1, above=4.0, samples=200))
-    narrower = stopping.interim_estimate(of.design, whole).estimate
+    narrower = stopping.interim_estimate(of.design, Result(whole)).estimate
     assert found.high - found.low > 1.2 * (narrower.high - narrower.low)
 
 
@@ -81,7 +82,7 @@ def test_a_goal_out_of_reach_is_said_once_at_the_first_look_and_at_the_end(tmp_p
     (line,) = [one for one in said if "budget" in one]
     assert line.startswith("after 256 samples mean of y is ")
     needed = float(re.search(r"needs about (\S+) samples, more than the budget of 2048", line)[1])
-    half = stopping.interim_estimate(of.design, ds).half_width
+    half = stopping.interim_estimate(of.design, Result(ds)).half_width
     assert needed == pytest.approx(2048 * (half / 1e-9) ** 2, rel=0.5)
     (note,) = summarised(ds)["notes"]
     assert "was not reached: by the scatter of all rows it needs about " in note
@@ -90,7 +91,7 @@ def test_a_goal_out_of_reach_is_said_once_at_the_first_look_and_at_the_end(tmp_p
 def test_a_goal_within_reach_is_not_called_out_of_reach(tmp_path):
     said = []
     of = study(0.07, samples=1024)
-    at_end = stopping.interim_estimate(of.design, computed(of))
+    at_end = stopping.interim_estimate(of.design, Result(computed(of)))
     assert at_end.required < at_end.half_width < 2 * at_end.required
     runner.run(of, tmp_path / "out.nc", workers=0, say=said.append)
     assert not [one for one in said if "budget" in one]

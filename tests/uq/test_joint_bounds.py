@@ -8,6 +8,7 @@ from computed import UNIFORM, as_text, computed, kinds, study_of, summarised
 from scipy import stats
 
 import uq
+from uq.result.result import Result
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.answer.quantities import quantities
@@ -86,7 +87,7 @@ def test_a_summary_has_them_beside_each_output():
     got = [found[f"work[side={side}]"]["joint_bounds"]["upper"] for side in ("left", "right")]
     got += [-found["angle"]["joint_bounds"]["lower"], found["angle"]["joint_bounds"]["upper"]]
     assert got == expected
-    assert rows_needed(ds, analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
+    assert rows_needed(Result(ds), analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
 
 
 def test_lives_are_never_or_beyond_the_horizon():
@@ -117,7 +118,7 @@ def test_bounds_that_lack_rows_are_not_settled():
         "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
         "analysis": {"joint_bounds": {"y": "both"}, "max_failed": 0.2},
     }
-    few = Findings(computed(study_of(tables)))
+    few = Findings(Result(computed(study_of(tables))))
     said = "the joint bounds that the study asks for need 93 rows"
     assert f"Not enough rows: {said}; about 93 rows in all would settle it." in verdict(few)
     failing = computed(study_of(tables | {"settings": {"fail_above": 0.9}}))
@@ -125,7 +126,7 @@ def test_bounds_that_lack_rows_are_not_settled():
     joint = summarised(failing)["outputs"]["y"]["joint_bounds"]
     assert joint == {"lower": None, "upper": None, "rows_needed": None}
     assert np.isnan(uq.summary(failing)["joint_rows_needed"].item())
-    found = Findings(failing)
+    found = Findings(Result(failing))
     said = "oo many rows failed for the joint bounds that the study asks for"
     assert f"T{said}. More rows would not help." in verdict(found)
     advice = {one.rule: one.text for one in conclude(found).advice}
@@ -160,7 +161,7 @@ def test_mistakes_are_one_line(asked, method, words):
 
 def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
-    found = {one.name: one.promise for one in quantities(Findings(ds))}
+    found = {one.name: one.promise for one in quantities(Findings(Result(ds)))}
     bounds = summarised(ds)["outputs"]
     one, angle = found["work[side=left]"], found["angle"]
     assert one.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(one.lower)
@@ -172,13 +173,13 @@ def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     assert " and stay below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
     assert not found["life[side=left,depth=0.5]"].joint
-    said = answer_json(conclude(Findings(ds)))["quantities"]["work[side=left]"]["promise"]
+    said = answer_json(conclude(Findings(Result(ds))))["quantities"]["work[side=left]"]["promise"]
     assert said["joint"] == ["work", "angle"] and said["upper"] == one.upper
 
 
 def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
     ds = kinds(samples=80, analysis={"joint_bounds": {"work": "upper"}})
-    one = next(one for one in quantities(Findings(ds)) if one.output == "work").promise
+    one = next(one for one in quantities(Findings(Result(ds))) if one.output == "work").promise
     assert np.isnan(one.upper) and "With 95 % confidence" not in one.sentence
     assert one.basis.startswith("No joint tolerance bound: it needs 93 rows.")
 
@@ -190,6 +191,6 @@ def test_both_joint_bounds_of_one_output_are_one_sentence():
         "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
         "analysis": {"joint_bounds": {"y": "both"}},
     }
-    (one,) = quantities(Findings(computed(study_of(tables))))
+    (one,) = quantities(Findings(Result(computed(study_of(tables)))))
     words = r"With 95 % confidence, at least 95 % stay above \S+ and stay below \S+\."
     assert re.fullmatch(words, one.promise.sentence), one.promise.sentence

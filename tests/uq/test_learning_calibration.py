@@ -7,6 +7,7 @@ from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
 from scipy import stats
 
 from models.analytic import EXPONENTIAL_WEAR
+from uq.result.result import Result
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
 from uq.study.evaluate import evaluate
@@ -81,7 +82,7 @@ def test_ranks_of_the_truth_are_uniform(problem):
     ranks = {name: [] for name in names}
     for number in np.unique(world)[:REPETITIONS]:
         truth = truths.isel(sample=world == number)
-        found = posterior(rows, read_tables(inspect(truth, rng)))
+        found = posterior(Result(rows), read_tables(inspect(truth, rng)))
         unit = found.units["A"]
         for name in names:
             drawn = rows[name].values[unit.rows]
@@ -101,7 +102,7 @@ def worlds():
 @pytest.mark.slow
 def test_it_agrees_with_a_random_walk_that_runs_the_model(worlds):
     lives = np.array([6e5, 1e6, 1.2e6])
-    found = posterior(worlds, read_tables(measured(*lives)))
+    found = posterior(Result(worlds), read_tables(measured(*lives)))
     assert_agrees(worlds, found, random_walks(lives))
 
 
@@ -126,7 +127,7 @@ def test_it_agrees_with_openturns(worlds):
         chain = ot.RandomWalkMetropolisHastings(ot.JointDistribution(laws), list(middle), moves)
         chain.setLikelihood(ot.LogNormal(), seen, one_hot, ot.Sample(np.eye(3).tolist()))
         walks.append(np.log(np.asarray(chain.getSample(8_000))[500:]))
-    found = posterior(worlds, read_tables(measured(*lives, cv=0.2)))
+    found = posterior(Result(worlds), read_tables(measured(*lives, cv=0.2)))
     assert_agrees(worlds, found, np.stack(walks))
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.campaigns import apart, campaign, worlds
+from uq.result.result import Result
 from uq.learning.epistemic_band import over_shared
 from uq.learning.posterior import posterior
 from uq.learning.posterior_result import as_result
@@ -36,7 +37,7 @@ def covered(rods, count):
     for number in np.unique(rods["world"].values)[:count]:
         truth, rows = apart(rods, number)
         found, last = campaign(truth, rng)
-        learnt = posterior(rows, found)
+        learnt = posterior(Result(rows), found)
         if any(one.refusal for one in learnt.weights):
             refused += 1
             continue
@@ -44,9 +45,9 @@ def covered(rods, count):
         true = truth["wear_coefficient"].values[0]
         low, high = quantiles(everyone.scale, everyone.weights.weights)
         coefficient.append(low <= true <= high)
-        after = as_result(rows, learnt, found, 0.0)
+        after = as_result(Result(rows), learnt, found, 0.0)
         life = lifetimes(after, "first_time_to_depth")[-1]
-        low, high = over_shared(after, life, 0.0, 2 * last).values()
+        low, high = over_shared(Result(after), life, 0.0, 2 * last).values()
         share = np.searchsorted(everywhere, 2 * last * true) / len(everywhere)
         ended.append(low <= share <= high)
         lives = rows["first_time_to_depth"].values[:, -1] * rows["wear_coefficient"].values

@@ -7,6 +7,7 @@ import pytest
 from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
+from uq.result.result import Result
 from uq.errors import RunError
 from uq.explore.updating import update
 from uq.learning.posterior_inputs import inputs_learnt
@@ -75,8 +76,8 @@ CASES = {
 def held_by(ds, rate, name, life, unit):
     """Yield what has an interval in a posterior, and whether that holds the closed form."""
     time = life.ppf(0.2)
-    after = next(one for one in inputs_learnt(ds) if one.name == name).posterior
-    left = next(one for one in remaining(ds, [time]) if one.unit == unit)
+    after = next(one for one in inputs_learnt(Result(ds)) if one.name == name).posterior
+    left = next(one for one in remaining(Result(ds), [time]) if one.unit == unit)
     for what, found, exact in (
         ("mean", after.mean, rate.mean()),
         ("sd", after.sd, rate.std()),

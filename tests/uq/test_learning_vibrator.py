@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from computed import computed
 
+from uq.result.result import Result
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
 from uq.learning.trust import distrust
@@ -41,7 +42,7 @@ def test_it_finds_the_worse_bearing():
             }
             for output, sd in ERRORS.items()
         ]
-        found = posterior(rows, read_tables(seen))
+        found = posterior(Result(rows), read_tables(seen))
         if distrust(found):
             continue
         weights = found.units["A"].weights.weights

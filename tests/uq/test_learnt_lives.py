@@ -5,6 +5,7 @@ import pytest
 from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
+from uq.result.result import Result
 from uq.assess.population import Population
 from uq.assess.posterior_scale import LearntScale
 from uq.assess.row_inputs import inputs_of
@@ -23,7 +24,7 @@ SEEN = 1.5e6
 
 def element_of(told, samples=2000):
     unit = as_unit(update(wear(samples=samples), told), "A")
-    return next(population(unit, ["life"])), unit["rate"].values
+    return next(population(Result(unit), ["life"])), unit["rate"].values
 
 
 def truncated(rate):
@@ -50,7 +51,7 @@ def test_a_life_known_within_a_narrow_window_is_that_life():
         {"unit": "A", "output": "life", "kind": "survived", "time": 4e5},
         {"unit": "A", "output": "life", "kind": "ended", "time": 4e5 * 1.002},
     ]
-    found = posterior(wear(samples=6000), read_tables(told)).units["A"]
+    found = posterior(Result(wear(samples=6000)), read_tables(told)).units["A"]
     depth, weights = np.log(found.scale), found.weights.weights
     mean, cov = exactly([4e5 * 1.001], cv=1e-9)
     center = np.average(depth, weights=weights)
@@ -62,7 +63,7 @@ def test_a_life_known_within_a_narrow_window_is_that_life():
 def test_a_unit_seen_running_has_not_ended_before():
     told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
     ds = update(wear(samples=2000), [told])
-    unit = next(one for one in remaining(ds, [SEEN, 2e6]) if one.unit == "A")
+    unit = next(one for one in remaining(Result(ds), [SEEN, 2e6]) if one.unit == "A")
     assert unit.runs.value == 1.0 and unit.by[SEEN].value == 0.0
     assert unit.life[0.05].value < unit.life[0.5].value < unit.life[0.95].value
 
@@ -81,7 +82,7 @@ def test_each_row_is_the_law_of_its_life_given_a_measurement(time):
 
 @pytest.mark.parametrize("exponent", [-1.0, 2.0])
 def test_without_inspections_it_is_the_law_of_the_study(exponent):
-    inputs = inputs_of(wear(samples=50))
+    inputs = inputs_of(Result(wear(samples=50)))
     of = ("rate",), inputs.laws["rate"], inputs.bounds["rate"], exponent, inputs.values["rate"]
     lives = np.append(np.linspace(5e5, 2e6, 48), [np.inf, np.nan])
     found = LearntScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
@@ -96,11 +97,11 @@ def test_an_input_on_which_other_outputs_depend_is_not_integrated():
     rows["life_error"] = 1e-3 * rows["life"]
     kept = {name: one for name, one in rows["life"].attrs.items() if name != "scales"}
     rows["life_error"].attrs = kept
-    assert posterior(rows, told).scale.name == "depth"  # errors scale with their lives
+    assert posterior(Result(rows), told).scale.name == "depth"  # errors scale with their lives
     rows["power"] = rows["life"] * 2
     rows["power"].attrs = kept
-    assert list(dependent_outputs(rows, "depth")) == ["power"]
-    found = posterior(rows, told)
+    assert list(dependent_outputs(Result(rows), "depth")) == ["power"]
+    found = posterior(Result(rows), told)
     assert found.scale is None
     (why,) = found.not_integrated
     assert why == "depth is not integrated: power depends on it otherwise."
@@ -109,7 +110,7 @@ def test_an_input_on_which_other_outputs_depend_is_not_integrated():
 def test_a_unit_never_inspected_runs_on_where_all_is_shared_with_one_that_does():
     rows = wear(samples=2000, rate="shared", depth="shared", units=2)
     told = {"unit": "A", "output": "life", "kind": "survived", "time": 7e5}
-    (anyone, inspected) = remaining(update(rows, [told]), [1e6])
+    (anyone, inspected) = remaining(Result(update(rows, [told])), [1e6])
     assert anyone.runs.value == pytest.approx(1, abs=1e-4)
     assert anyone.by[1e6].value == pytest.approx(inspected.by[1e6].value, abs=0.02)
 
@@ -118,7 +119,7 @@ def test_the_mean_of_an_integrated_input_scatters_as_its_interval_says():
     """Values drawn as evenly as its law would seem to scatter three times as much."""
     lives = measured(6e5, 1e6, 1.2e6, cv=0.3)
     found = [
-        next(one.posterior.mean for one in inputs_learnt(ds) if one.name == "depth[unit=A]")
+        next(one.posterior.mean for one in inputs_learnt(Result(ds)) if one.name == "depth[unit=A]")
         for seed in range(20)
         for ds in [update(wear(samples=300, seed=seed, rate="shared", units=3), lives)]
     ]
@@ -132,6 +133,6 @@ def test_no_end_of_an_interval_lies_before_a_time_that_the_unit_outlived():
     rows["life"].attrs.pop("scales")
     told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
     unit = as_unit(update(rows, [told]), "A")
-    (element,) = population(unit, ["life"])
+    (element,) = population(Result(unit), ["life"])
     assert element.law is None
     assert Population(element, None).quantile(0.01).low >= SEEN

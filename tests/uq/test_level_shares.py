@@ -8,6 +8,7 @@ from nested_studies import CHANCE, LEVELS, OWN, SHARED, VARIANCES, nested, neste
 from noisy_studies import noisy
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.level_shares import by_level
 from uq.errors import InputError
 from uq.result.variables import error_name
@@ -15,7 +16,7 @@ from uq.result.variables import error_name
 
 def test_shares_of_the_linear_function():
     ds = nested_result(samples=2000, units=3, repeats=3)
-    found = by_level(ds).outputs["y"]
+    found = by_level(Result(ds)).outputs["y"]
     assert found.variance == pytest.approx(14 / 12, rel=0.05)
     for level, variance in VARIANCES.items():
         one = found.shares[level]
@@ -29,7 +30,7 @@ def test_the_solver_has_the_share_of_its_stated_error():
     ds = nested_result(samples=200)
     scale = 1e-2
     with_error = with_output(ds, error_name("y"), np.full(ds.sizes["sample"], scale))
-    found = by_level(with_error).outputs
+    found = by_level(Result(with_error)).outputs
     assert list(found) == ["y"]
     assert found["y"].shares["solver"].value == pytest.approx(scale**2 / found["y"].variance)
 
@@ -39,47 +40,47 @@ def test_lives_are_apportioned_by_their_logarithm():
     life = np.exp(3 * ds["y"].values)
     lives = with_output(ds, "life", life, "lifetime", np.zeros(len(life)))
     error = with_output(lives, error_name("life"), 0.1 * life)
-    found = by_level(asking(error, thresholds={"life": [1e6]}, outputs=["life"])).outputs
+    found = by_level(Result(asking(error, thresholds={"life": [1e6]}, outputs=["life"]))).outputs
     assert list(found) == ["log(life)", "P(life<1000000.0)"]
-    expected = by_level(ds).outputs["y"].shares
+    expected = by_level(Result(ds)).outputs["y"].shares
     for level in VARIANCES:
         assert found["log(life)"].shares[level].numbers == pytest.approx(expected[level].numbers)
     assert found["log(life)"].shares["solver"].value == pytest.approx(
         0.01 / found["log(life)"].variance
     )
     endless = with_output(ds, "life", np.where(life > 1e6, np.inf, life), "lifetime", life < 0)
-    assert list(by_level(endless, "life").outputs) == ["rank(life)"]
+    assert list(by_level(Result(endless), "life").outputs) == ["rank(life)"]
 
 
 def test_a_heavy_tail_is_replaced_and_the_note_promises_nothing_else():
     ds = nested_result(samples=100)
     heavy = with_output(ds, "w", np.exp(12 * ds["y"].values))
-    (name, found), *_ = by_level(heavy, "w").outputs.items()
+    (name, found), *_ = by_level(Result(heavy), "w").outputs.items()
     assert name == "log(w)"
     assert found.sentences[0].endswith(": these are shares of the variance of its logarithm")
 
 
 def test_a_random_model_differs_by_chance():
     ds = computed(noisy("monte-carlo", 400, 1, units=2, repeats=2))
-    found = by_level(ds, "y").outputs["y"].shares
+    found = by_level(Result(ds), "y").outputs["y"].shares
     assert found[SHARED].numbers == (0.0, 0.0, 0.0)
     assert found[OWN].low < 0.5 < found[OWN].high
     assert found[CHANCE].low < 0.5 < found[CHANCE].high
     plain = computed(noisy("monte-carlo", 400, 1))
-    assert "set repeats = 2" in by_level(plain, "y").outputs["y"].shares[CHANCE].reason
+    assert "set repeats = 2" in by_level(Result(plain), "y").outputs["y"].shares[CHANCE].reason
 
 
 def test_rows_that_do_not_follow_the_laws_have_no_shares():
     ds = computed(nested(method="morris", units=1, repeats=1))
     with pytest.raises(InputError, match="no shares: the rows of a 'morris' design do not follow"):
-        by_level(ds)
+        by_level(Result(ds))
 
 
 def test_python_terminal_json_and_report_agree(uq, tmp_path, no_other_figures):
     path, result = tmp_path / "nested.toml", tmp_path / "nested.nc"
     path.write_text(nested(samples=20).text)
     assert uq("run", path, "-o", result, "--workers", "0").code == 0
-    known = by_level(api.open_result(result)).outputs["y"].shares
+    known = by_level(Result(api.open_result(result))).outputs["y"].shares
     table = api.levels(api.open_result(result))
     assert dict(table.sizes) == {"output": 1, "level": 4}
     found = strict_json(uq("levels", result, "--json").out)
@@ -115,4 +116,4 @@ def test_an_unknown_output_is_one_line(uq, tmp_path):
 def test_errors_are_no_outputs_of_their_own():
     ds = nested_result()
     with_error = with_output(ds, error_name("y"), np.zeros(ds.sizes["sample"]))
-    assert list(by_level(with_error).outputs) == ["y"]
+    assert list(by_level(Result(with_error)).outputs) == ["y"]

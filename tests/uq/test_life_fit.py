@@ -5,6 +5,7 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
+from uq.result.result import Result
 from uq.assess import life_quantiles
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
@@ -78,7 +79,7 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
 def test_fits_are_a_table_and_in_json():
     life = lives(sample(LOGNORMAL))
     table = uq.life_fits(life, "life")
-    entries = summary_json(summarise(life, fits=True))["outputs"]["life"]["fits"]
+    entries = summary_json(summarise(Result(life), fits=True))["outputs"]["life"]["fits"]
     assert table.index.to_list() == [("life", "weibull"), ("life", "lognormal")]
     good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
     assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]
@@ -172,7 +173,7 @@ def test_beside_quantiles_of_censored_rows_stand_those_of_kaplan_and_meier_as_b_
     assert entry["quantiles"]["0.5"]["kaplan_meier"] == entry["b_lives"]["B50"]
     plain = entry["quantiles"]["0.05"]
     assert plain["value"] is None and plain["censored"]
-    assert summarise(ds).outputs["life"].find("quantiles", "0.05").words() == "-"
+    assert summarise(Result(ds)).outputs["life"].find("quantiles", "0.05").words() == "-"
     low = plain["kaplan_meier"]
     assert low["low"] < WEIBULL.ppf(0.05) < low["high"] and "censoring" in low["assumes"]
 

@@ -8,6 +8,7 @@ from asked_indices import sensitivities
 from computed import asking, compared, linear, summarised, with_output
 from scipy import stats
 
+from uq.result.result import Result
 from uq.assess.convergence import enough
 from uq.assess.expected_widths import expected_widths
 from uq.assess.statistics.between_regimes import between_share
@@ -58,12 +59,12 @@ def test_a_mean_whose_variance_is_open_comes_with_a_caution(capsys):
     assert moments(stats.expon().rvs(1000, random_state=rng)).caution is None
 
     ds = heavy(2.2)
-    summary = summarise(ds)
+    summary = summarise(Result(ds))
     entry = summarised(ds)["outputs"]["z"]
     assert entry["mean_interval"]["low"] and "too narrow" in entry["caution"]
-    (table,) = result_tables(outcomes(ds, summary))
+    (table,) = result_tables(outcomes(Result(ds), summary))
     assert any(entry["caution"] in cell.more for cell in table.rows[0])
-    show_summary(ds, summary)
+    show_summary(Result(ds), summary)
     assert "may be too narrow" in " ".join(capsys.readouterr().out.split())
 
 
@@ -93,7 +94,7 @@ def test_every_reader_reports_it():
         line["tail_k"] > 1 and np.isnan(line[["mean", "mean_low", "sd", "sd_low"]].tolist()).all()
     )
     assert enough(ds, "z").loc["z", "estimate"] == "median"
-    assert expected_widths(ds)["z"].mean is None
+    assert expected_widths(Result(ds))["z"].mean is None
     z = compared(ds, asking(light, outputs=["z"]))["outputs"]["z"]
     for one in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
         assert one["low"] is None and one["high"] is None
@@ -124,7 +125,7 @@ def test_the_terminal_and_the_report_give_the_reason(uq, folder):
     write(ds, Path("z.nc").absolute())
     out = " ".join(uq("summary", "z.nc").out.split())
     assert "with k above 1 there is no mean; use quantiles" in out
-    table = next(result_tables(outcomes(ds, summarise(ds))))
+    table = next(result_tables(outcomes(Result(ds), summarise(Result(ds)))))
     cells = dict(zip(table.header, table.rows[0], strict=True))
     assert cells["mean"].text == "none" and "no mean" in cells["mean"].more
     assert "no mean" not in cells["sd"].more and "no variance" in cells["sd"].more

@@ -6,6 +6,7 @@ from computed import asking, compared, computed, linear, summarised, with_output
 from nested_studies import nested, nested_result
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.pairing import Kinship, kinship
 from uq.assess.sampled_inputs import drawn_inputs, laws_and_values
 from uq.assess.sensitivities import ONE_ROW, sensitivities
@@ -99,10 +100,10 @@ def test_an_even_design_needs_replicates():
 
 def test_indices_come_from_one_row_of_each_sample():
     ds = nested_result(samples=300)
-    found = sensitivities(ds)
+    found = sensitivities(Result(ds))
     assert found.rows_used == 300
     assert ONE_ROW in found.targets["y"].indices.notes
-    few = sensitivities(nested_result(samples=16)).targets["y"]
+    few = sensitivities(Result(nested_result(samples=16))).targets["y"]
     assert few.refused.endswith(ONE_ROW)
 
 
@@ -141,12 +142,12 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
 
 def test_studies_with_one_seed_are_not_paired_row_by_row():
     ds, other = nested_result(), nested_result(seed=6)
-    assert kinship(ds, other) is Kinship.STRANGERS
-    assert kinship(ds, ds) is Kinship.ROWS_SAME
-    assert kinship(ds, nested_result(samples=32)) is Kinship.UNKNOWN
-    assert kinship(ds, linear(seed=5)) is Kinship.UNKNOWN
+    assert kinship(Result(ds), Result(other)) is Kinship.STRANGERS
+    assert kinship(Result(ds), Result(ds)) is Kinship.ROWS_SAME
+    assert kinship(Result(ds), Result(nested_result(samples=32))) is Kinship.UNKNOWN
+    assert kinship(Result(ds), Result(linear(seed=5))) is Kinship.UNKNOWN
     even = nested_result(method="sobol", replicates=4)
-    assert kinship(even, even) is Kinship.REPLICATES
+    assert kinship(Result(even), Result(even)) is Kinship.REPLICATES
     difference = compared(ds, other)["outputs"]["y"]["mean"]["difference"]
     assert difference["low"] < 0 < difference["high"]
 
@@ -155,14 +156,14 @@ def test_a_run_stops_by_intervals_of_samples():
     until = {"output": "y", "half_width": 0.01}
     study = nested(levels=SHARED_ALONE, samples=64, units=8, until=until)
     ds = computed(study)
-    found = interim_estimate(study.design, ds).estimate
+    found = interim_estimate(study.design, Result(ds)).estimate
     alone = mean_interval(one_of_each_sample(ds)["y"].values)  # at the only check
     assert (found.low, found.high) == pytest.approx(alone)
 
 
 def test_inputs_are_compared_with_their_laws_by_one_row_of_each_sample():
     ds = nested_result()
-    assert [len(values) for _, values in laws_and_values(ds).values()] == [16, 16, 16]
+    assert [len(values) for _, values in laws_and_values(Result(ds)).values()] == [16, 16, 16]
     assert [len(values) for values in drawn_inputs(nested()).values()] == [16, 16, 16]
 
 

@@ -10,6 +10,7 @@ from command_line import everything, strict_json
 from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
 
+from uq.result.result import Result
 from uq.errors import InputError, RunError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
@@ -82,7 +83,7 @@ def test_intervals_rest_on_independent_repetitions(result, found):
     after = learnt_json(learnt(found))["inputs"]["rate[unit=A]"]["posterior"]
     assert after["mean_low"] < after["mean"] < after["mean_high"]
     assert after["sd_low"] < after["sd"] < after["sd_high"]
-    assert own_rows(prior_of(found)).identical(result)
+    assert own_rows(Result(prior_of(Result(found)))).identical(result)
 
 
 def test_bits_taught_are_exact(found):
@@ -145,7 +146,7 @@ def test_several_units_of_a_sample():
     mean, cov = start + gain @ (np.log(lives) - look @ start), prior - gain @ look @ prior
     for i, unit in enumerate("AB"):
         assert_exact(found, mean[[i, 2]], cov[np.ix_([i, 2], [i, 2])], unit)
-    assert own_rows(prior_of(found)).identical(ds)
+    assert own_rows(Result(prior_of(Result(found)))).identical(ds)
 
 
 @pytest.mark.slow
@@ -154,7 +155,7 @@ def test_designs_with_replicates(method):
     ds = wear(samples=64, method=method, replicates=8)
     found = update(ds, FAR, **SMALL)
     assert_exact(found, *exactly([2e7], cv=0.05))
-    assert own_rows(prior_of(found)).identical(ds)
+    assert own_rows(Result(prior_of(Result(found)))).identical(ds)
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import pytest
 from answered import lifetime
 from computed import asking, kinds, summarised
 
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.sensitivities import sensitivities
@@ -22,14 +23,14 @@ def life(monkeypatch):
 
 
 def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
-    table = sensitivity_json(sensitivities(life))["outputs"]["log(life)"]["S1"]
+    table = sensitivity_json(sensitivities(Result(life)))["outputs"]["log(life)"]["S1"]
     ranking = answer_json(answer(life))["quantities"]["life"]["ranking"]
     shares = {k: v for one in ranking["contributions"] for k, v in one["inputs"].items()}
     assert shares["rate"] == table["rate"]
     percent = [round(100 * table["rate"][end]) for end in ("value", "low", "high")]
     text = "{} % ({} to {} %)".format(*percent)
     assert f"Rate contributes most: {text}" in ranking["sentence"]
-    text_of_page = re.sub(r"<[^>]+>", "", page(life, "life.nc")).replace("\xa0", " ")
+    text_of_page = re.sub(r"<[^>]+>", "", page(Result(life), "life.nc")).replace("\xa0", " ")
     assert text in text_of_page and f"{table['rate']['value']:.3f}" in text_of_page
     for other in re.findall(r"[Rr]ate[^.]{0,40}contributes most: (\d+ %[^)]*\))", text_of_page):
         assert other == text

@@ -8,6 +8,7 @@ import pytest
 from computed import summarised
 from in_memory import compute
 
+from uq.result.result import Result
 from uq.assess.expected_widths import Widths, expected_widths
 from uq.cli.plan import _widths
 from uq.execution import planning, runner
@@ -66,7 +67,7 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
     )
     whole = compute(study, workers=0)
     pilot = whole.isel(sample=slice(0, 400))
-    expected = expected_widths(pilot)["y"]
+    expected = expected_widths(Result(pilot))["y"]
     found = summarised(whole)["outputs"]["y"]
     pairs = [(expected.mean, found["mean_interval"])]
     pairs += [(width, found["quantiles"][repr(p)]) for p, width in expected.quantiles.items()]
@@ -123,7 +124,7 @@ def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
 def test_a_quantile_at_a_life_that_never_ends_has_no_width(write_study):
     path = write_study(samples=200, uncertain=("x1",), law=NORMAL)
     ds = compute(load_study(path, "sample_models:KINDS"), workers=0)
-    quantiles = expected_widths(ds)["life[side=left,depth=0.5]"].quantiles
+    quantiles = expected_widths(Result(ds))["life[side=left,depth=0.5]"].quantiles
     assert quantiles[0.95] is None
     assert quantiles[0.05] > 0
 

@@ -8,6 +8,7 @@ from computed import computed, summarised, with_seed
 from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
 from scipy import special
 
+from uq.result.result import Result
 from uq.assess.comparison import compare
 from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
@@ -176,10 +177,10 @@ def test_each_level_is_integrated_by_itself():
     shared = lognormal(0.3, level="shared")
     ds = computed(scaled_study(WHOLE | {"b": shared}, {"units": 4, "repeats": 1}, samples=50))
     rows = independent_rows(ds)
-    element = next(population(rows, ["life"]))
-    inputs = inputs_of(rows)
+    element = next(population(Result(rows), ["life"]))
+    inputs = inputs_of(Result(rows))
     own, world = (
-        integrated(rows, element.declared, inputs, {level}).law for level in ("own", "shared")
+        integrated(Result(rows), element.declared, inputs, {level}).law for level in ("own", "shared")
     )
     assert (own.inputs, world.inputs) == (("a",), ("b",))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
@@ -236,7 +237,7 @@ def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
     """By quadrature of the probability that the life of each row is shorter."""
     inputs, tables, _ = CASES[case]
     ds = computed(scaled_study(inputs, samples=8, **tables))
-    law = next(population(ds, ["life"])).law
+    law = next(population(Result(ds), ["life"])).law
     mean, variance = law.moments
     logs = np.log(ds["life"].values)
     y = np.linspace(-8, 8, 16_001)

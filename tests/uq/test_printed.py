@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from computed import asking, linear, with_output
 
+from uq.result.result import Result
 from uq.render.html.page import page
 from uq.text.numbers import minus, printed
 
@@ -57,7 +58,7 @@ def test_a_report_shows_no_hyphen_for_a_minus_sign():
     ds = linear(samples=200)
     low = with_output(ds, "low", ds["y"].values - 8.0)
     asked = asking(low, outputs=["low"], thresholds={"low": -4.5}, quantiles=[0.05, 0.5])
-    text = page(asked, "low.nc")
+    text = page(Result(asked), "low.nc")
     shown = re.sub(r"<(script|style|pre)\b.*?</\1>|<[^>]*>", " ", text, flags=re.S)
     assert not re.findall(r"(?<![\w.=-])-\d[\d.]*", shown)
     values = f"−{abs(np.quantile(low['low'], 0.5)):.2f}"

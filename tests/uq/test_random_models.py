@@ -6,6 +6,7 @@ from asked_indices import sensitivities
 from computed import computed, summarised, with_seed, with_status
 from noisy_studies import noisy
 
+from uq.result.result import Result
 from uq.assess.comparison import compare
 from uq.assess.convergence import running_estimates
 from uq.assess.expected_widths import expected_widths
@@ -162,9 +163,9 @@ def test_arrays_have_the_share_of_noise():
 
 def test_widths_and_convergence_take_such_rows():
     ds = computed(noisy(samples=64))
-    assert expected_widths(ds)["y"].indices["ST"] > 0
+    assert expected_widths(Result(ds))["y"].indices["ST"] > 0
     assert "S1 x1" in set(running_estimates(ds, "y")["estimate"])
-    assert not expected_widths(computed(noisy("shapley", 64)))["y"].indices
+    assert not expected_widths(Result(computed(noisy("shapley", 64))))["y"].indices
 
 
 def test_tables_show_the_share_of_noise(uq, folder):

@@ -8,6 +8,7 @@ from scipy.stats import lognorm
 from worn_studies import RATE as WEAR
 from worn_studies import pads
 
+from uq.result.result import Result
 from uq.errors import InputError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
@@ -22,7 +23,7 @@ def said(unit, kind, time, output="life"):
 
 
 def lives_of(ds, *by):
-    return {(one.unit, one.output): one for one in remaining(ds, by)}
+    return {(one.unit, one.output): one for one in remaining(Result(ds), by)}
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,7 @@ from computed import (
 )
 from read_pages import Page, read
 
+from uq.result.result import Result
 from uq.assess.answer.sources import mark
 from uq.assess.findings import Findings
 from uq.contract import Status
@@ -33,7 +34,7 @@ def asked():
 @pytest.fixture(scope="module")
 def text(asked):
     """Return a report with all that there is to say."""
-    return page(asked, "OUT.nc")
+    return page(Result(asked), "OUT.nc")
 
 
 ASKED = {
@@ -75,7 +76,7 @@ def test_a_report_says_all_there_is_to_say(asked, text):
     assert float(summary[1]) == pytest.approx(np.degrees(np.nanmean(ds["angle"])), rel=1e-4)
     drawn = found.tags.count("svg")
     sections = {entry.section for entry in FIGURES.values()} - {""}
-    shown = [one for name in sections for one in drawables(FIGURES, Findings(ds), name)]
+    shown = [one for name in sections for one in drawables(FIGURES, Findings(Result(ds)), name)]
     assert drawn == len(shown) >= 15
 
 

@@ -9,6 +9,7 @@ from computed import kinds, linear, with_output, with_status
 from explored import PAGE
 from matplotlib.image import imread
 
+from uq.result.result import Result
 from uq.contract import Status
 from uq.render.html.page import page
 
@@ -24,7 +25,7 @@ def report(tmp_path_factory):
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
     ds["status"].attrs["example_raised"] = HOSTILE
     path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(page(ds, f"{HOSTILE}.nc"), encoding="utf-8")
+    path.write_text(page(Result(ds), f"{HOSTILE}.nc"), encoding="utf-8")
     return path
 
 
@@ -161,7 +162,7 @@ def test_a_printed_report_has_figures_instead_of_controls(browser, report):
 @pytest.mark.slow
 def test_a_report_of_one_row_is_shown_too(browser, tmp_path):
     path = tmp_path / "one.html"
-    path.write_text(page(linear(samples=1), "one.nc"), encoding="utf-8")
+    path.write_text(page(Result(linear(samples=1)), "one.nc"), encoding="utf-8")
     browser.open(path, width=400)
     assert browser.complaints() == []
 
@@ -180,7 +181,7 @@ def test_the_answer_fits_the_first_screen_or_two_of_a_phone(
 
 def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(browser, tmp_path):
     path = tmp_path / "crossed.html"
-    path.write_text(page(linear("saltelli", samples=16, replicates=4), "crossed.nc"), "utf-8")
+    path.write_text(page(Result(linear("saltelli", samples=16, replicates=4)), "crossed.nc"), "utf-8")
     browser.open(path)
     tables = "[...document.querySelectorAll('.subject table')]"
     bars = "[...t.querySelectorAll('td:nth-child(2) .bar')]"

@@ -11,6 +11,7 @@ from computed import (
 )
 from read_pages import Page
 
+from uq.result.result import Result
 from uq.contract import Status
 from uq.files.whole_files import write_result
 from uq.render.html.page import page
@@ -64,8 +65,8 @@ def test_names_from_a_file_are_text():
     ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
     ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
-    found = Page(page(ds, f"{HOSTILE}.nc"))
-    ours = Page(page(linear(samples=64), "out.nc")).tags.count("script")
+    found = Page(page(Result(ds), f"{HOSTILE}.nc"))
+    ours = Page(page(Result(linear(samples=64)), "out.nc")).tags.count("script")
     assert found.tags.count("script") == ours and "img" not in found.tags
     assert not [name for name, _ in found.attributes if name.startswith("on")]
     assert found.words.count(HOSTILE) >= 6
@@ -74,9 +75,9 @@ def test_names_from_a_file_are_text():
 
 @pytest.mark.slow
 def test_a_large_study_makes_a_small_page():
-    assert len(page(linear(samples=100_000), "OUT.nc")) < 10e6
+    assert len(page(Result(linear(samples=100_000)), "OUT.nc")) < 10e6
 
 
 def test_the_same_result_gives_the_same_text():
     ds = asking(kinds(samples=64), outputs=["angle", "regime"])
-    assert page(ds, "a.nc") == page(ds, "a.nc")
+    assert page(Result(ds), "a.nc") == page(Result(ds), "a.nc")

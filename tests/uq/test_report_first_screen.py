@@ -3,6 +3,7 @@
 import numpy as np
 from computed import asking, kinds
 
+from uq.result.result import Result
 from uq.render.html.page import page
 
 
@@ -13,7 +14,7 @@ def test_a_tall_figure_leaves_room_for_what_to_do(browser, tmp_path):
     ds = ds.assign_coords(instant=("instant", [1.0, 2.0], {"units": "h"}))
     ds = ds.assign(worn=(("sample", "instant"), values, attrs | {"may_be_undefined": 0}))
     path = tmp_path / "tall.html"
-    path.write_text(page(asking(ds, outputs=["worn"]), "tall.nc"), encoding="utf-8")
+    path.write_text(page(Result(asking(ds, outputs=["worn"])), "tall.nc"), encoding="utf-8")
     browser.open(path, width=1400, height=900)
     height = "document.querySelector('.answer figure svg').getBoundingClientRect().height"
     assert browser.value(height) <= 384

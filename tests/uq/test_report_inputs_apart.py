@@ -5,6 +5,7 @@ import pytest
 from computed import UNIFORM, asking, linear, with_output
 from explored import cells, drag_handle, ranges
 
+from uq.result.result import Result
 from uq.assess.earliest import inputs_apart, ranks
 from uq.assess.independent_inputs import independent_inputs
 from uq.result.elements import independent_rows, replicates_of
@@ -31,11 +32,11 @@ def test_inputs_of_the_brushed_rows_are_those_of_python(shown, design):
     _, (low, high) = ranges(browser)
     rows = independent_rows(ds)
     chosen = (rows["y"].values >= low) & (rows["y"].values <= high)
-    columns = independent_inputs(rows)
+    columns = independent_inputs(Result(rows))
     found = browser.value(LINES.replace("NaN", "'NaN'"))
     found = {name: np.array(numbers, dtype=float) for name, *numbers in found}
     ranked = {name: ranks(values) for name, values in columns.items()}
-    apart = inputs_apart(rows, np.flatnonzero(chosen), ranked, replicates_of(rows))
+    apart = inputs_apart(Result(rows), np.flatnonzero(chosen), ranked, replicates_of(rows))
     for name, (median, others, mean, *_) in found.items():
         assert median == pytest.approx(np.median(columns[name][chosen]), rel=1e-12)
         assert others == pytest.approx(np.median(columns[name][~chosen]), rel=1e-12)

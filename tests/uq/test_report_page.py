@@ -9,6 +9,7 @@ from computed import linear, with_output, with_status
 from markupsafe import escape
 from matplotlib.figure import Figure
 
+from uq.result.result import Result
 from uq.contract import Status
 from uq.plots import FIGURES
 from uq.render.html.layout import templates
@@ -33,7 +34,7 @@ def text():
     text = ds.attrs["study"].replace("samples = 32", "samples = 16")
     ds = ds.assign_attrs(study=text + "# " + "x" * 60_000)
     with patch.dict(FIGURES, clear=True):  # puts them back in their order
-        drawn = page(ds, "my result.nc")
+        drawn = page(Result(ds), "my result.nc")
     return " ".join(re.sub(r"<(?!wbr)[^>]+>", " ", drawn).split())
 
 
@@ -61,7 +62,7 @@ def test_nothing_on_a_page_acts_where_it_is_copied_to(text):
 
 
 def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples(no_other_figures):
-    text = page(linear("sobol", samples=16), "out.nc")
+    text = page(Result(linear("sobol", samples=16)), "out.nc")
     assert "uq run linear.toml\n" in text
     assert "Truncated" not in text and "were recomputed" not in text
 
@@ -75,7 +76,7 @@ def test_the_name_that_begins_a_remark_keeps_its_case():
 def test_a_symbol_has_its_index_below_the_line(no_other_figures):
     ds = linear(samples=16)
     ds["x1"].attrs |= {"symbol": "k_tra", "long_name": "stiffness <1>"}
-    assert "k<sub>tra</sub>: stiffness &lt;1&gt;" in page(ds, "OUT.nc")
+    assert "k<sub>tra</sub>: stiffness &lt;1&gt;" in page(Result(ds), "OUT.nc")
     assert indexed("dX_c/dt(0)") == "dX<sub>c</sub>/dt(0)"
     assert indexed(symbol("M_zn1")) == "M<sub>zn1</sub>"
     assert indexed("gap_at_stop") == "gap_at_stop"

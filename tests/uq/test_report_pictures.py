@@ -12,6 +12,7 @@ from computed import (
 from matplotlib.figure import Figure
 from read_pages import Page, read
 
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.render.html.page import page
 from uq.render.html.paths import shortened
@@ -22,7 +23,7 @@ BY_REGIME = 'aria-label="Rows by regime, against the inputs that best separate t
 
 def test_a_study_about_the_regimes_is_headed_by_its_rows_by_regime():
     def headed(outputs):
-        text = page(kinds(samples=64, analysis={"outputs": outputs}), "OUT.nc")
+        text = page(Result(kinds(samples=64, analysis={"outputs": outputs})), "OUT.nc")
         assert text.count(BY_REGIME) == 1
         return BY_REGIME in text[text.index('id="answer"') : text.index('id="explore"')]
 
@@ -48,7 +49,7 @@ def test_a_staircase_takes_few_characters_and_keeps_its_place():
 
 def test_a_life_curve_of_many_rows_is_no_image():
     ds = with_output(linear(samples=4000), "life", np.linspace(1, 9, 4000) ** 3, "lifetime")
-    drawn = next(one for one in pictures(Findings(asking(ds, outputs=["life"])), "results"))
+    drawn = next(one for one in pictures(Findings(Result(asking(ds, outputs=["life"]))), "results"))
     assert drawn.of.name == "life" and not drawn.is_image and len(drawn.html) < 100_000
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from computed import linear
 
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside
 from uq.result.elements import independent_rows
@@ -53,7 +54,7 @@ def test_a_wrong_number_says_what_is_allowed(shown, number):
 
 def test_a_row_that_the_page_does_not_hold_has_its_command(shown):
     ds = linear(samples=30_000)
-    inside = rows_inside(Findings(ds), "many.nc")
+    inside = rows_inside(Findings(Result(ds)), "many.nc")
     numbers = np.frombuffer(base64.b64decode(inside["numbers"]), "<i4").tolist()
     browser = shown(ds)
     absent = min(set(range(30_000)) - set(numbers))

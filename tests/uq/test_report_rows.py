@@ -10,6 +10,7 @@ import pytest
 from computed import asking, kinds, linear, with_output, with_status
 from explored import open_by_keyboard
 
+from uq.result.result import Result
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.contract import Status
@@ -61,7 +62,7 @@ def test_a_page_of_many_rows_is_small_and_says_which_part_it_holds(shown):
     ds = linear(samples=100_000)
     for i in range(7):
         ds = with_output(ds, f"more{i}", ds["y"].values ** (i + 1))
-    inside = rows_inside(Findings(ds), "many.nc")
+    inside = rows_inside(Findings(Result(ds)), "many.nc")
     numbers = np.frombuffer(base64.b64decode(inside["numbers"]), "<i4")
     assert len(inside["columns"]) == 12 and inside["total"] == 100_000
     assert len(numbers) == MOST_ROWS and 45_000 < numbers.mean() < 55_000
@@ -136,7 +137,7 @@ def weighted_rows():
     ids=["failed", "categories", "weighted", "morris"],
 )
 def test_a_page_that_cannot_compute_with_its_rows_says_why(ds, why, no_other_figures):
-    text = unescape(page(ds(), "a.nc"))
+    text = unescape(page(Result(ds()), "a.nc"))
     section = text.partition('<section id="explore">')[2].partition("</section>")[0]
     assert why in section and "<script" not in section and 'id="rows"' not in text
 
@@ -147,19 +148,19 @@ def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path, no_other_fig
         {"unit": "B", "output": "y", "kind": "above", "time": 2.0, "value": 7.0},
     ]
     ds = weighted_rows().assign_attrs(inspections=json.dumps(found), model_error=0.2, new_rows=800)
-    text = unescape(page(ds, "after.nc"))
+    text = unescape(page(Result(ds), "after.nc"))
     update = "uq update results/linear.nc inspections.csv -o after.nc --rows 800 --model-error 0.2"
     assert update in text.partition("uq run linear.toml")[2]
     given = text.partition("<h3>The inspections</h3>\n<pre>")[2].partition("</pre>")[0]
     (tmp_path / "inspections.csv").write_text(given)
     assert read_inspections(tmp_path / "inspections.csv") == read_tables(found)
-    assert "inspections.csv" not in page(linear(samples=4), "a.nc")
+    assert "inspections.csv" not in page(Result(linear(samples=4)), "a.nc")
 
 
 def test_the_first_plot_is_over_what_the_answer_names(shown):
     ds = linear(samples=2000, analysis={"thresholds": {"y": 100.5}})
     rare = 100.0 * (ds["x2"].values > 0.9)
     ds["y"].values[:] = ds["x1"].values + rare  # ranks vary most over x1, values over x2
-    assert "ontributes most" in repr(conclude(Findings(ds)))
+    assert "ontributes most" in repr(conclude(Findings(Result(ds))))
     names = "[...document.querySelectorAll('.range')].map(one => one.dataset.name)"
     assert shown(ds).value(names) == ["x2", "y"]

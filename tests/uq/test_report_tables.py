@@ -16,6 +16,7 @@ from computed import (
 from wordings import sentence
 
 from uq import plots
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.wording import unit_for
 from uq.assess.findings import Findings
@@ -53,7 +54,7 @@ def lives(censored=0, **analysis):
 
 def results_of(ds, caption):
     """Return the one table whose caption begins so."""
-    tables = result_tables(outcomes(ds, summarise(ds)))
+    tables = result_tables(outcomes(Result(ds), summarise(Result(ds))))
     (table,) = (one for one in tables if one.caption.startswith(caption))
     return table
 
@@ -120,14 +121,14 @@ def test_b_lives_are_beside_the_rows_that_did_not_end():
 def test_the_status_table_is_of_all_rows():
     ds = with_status(linear("saltelli", 8, 2), [0, 1], Status.OUT_OF_BUDGET)
     ds["status"].attrs["example_out_of_budget"] = "row 0: too long"
-    line = lines(status_table(ds, summarise(ds)))["out-of-budget"]
+    line = lines(status_table(Result(ds), summarise(Result(ds))))["out-of-budget"]
     assert (line["rows"], line["share"]) == ("2", "2.1 %")  # of 96, of which 32 are independent
     assert line["first message"] == "row 0: too long"
 
 
 def test_shares_of_regimes_have_their_interval():
     ds = kinds(samples=50)
-    summary = summarise(ds)
+    summary = summarise(Result(ds))
     label, rows, share = category_table("regime", summary.regimes).rows[0]
     low, high = (100 * getattr(summary.regimes["slow"].estimate, end) for end in ("low", "high"))
     assert (label.text, rows.text) == ("slow", "25")
@@ -149,7 +150,7 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
             }
         )
     )
-    (table,) = input_tables(ds)
+    (table,) = input_tables(Result(ds))
     found = lines(table)
     assert (found["x1"]["known"], found["x1"]["source"]) == ("fitted", "a book: fitted")
     assert float(found["x1"]["95 %"]) == pytest.approx(0.95, abs=2e-3)
@@ -186,7 +187,7 @@ def test_an_input_has_one_prefix_in_sentences_tables_figures_and_controls():
         )
     )
     assert ds["rate"].max() > 1e-9  # which would be read in nm s⁻¹
-    assert lines(next(input_tables(ds)))["rate"]["law"] == "lognormal: median 250 pm s⁻¹, sigma 0.5"
+    assert lines(next(input_tables(Result(ds))))["rate"]["law"] == "lognormal: median 250 pm s⁻¹, sigma 0.5"
     (event,) = answer(ds).events
     for figure in (
         plots.scatter(ds, "life"),
@@ -194,7 +195,7 @@ def test_an_input_has_one_prefix_in_sentences_tables_figures_and_controls():
         plots.event_probability(ds, event.name),
     ):
         assert figure.axes[0].get_xlabel().endswith("[pm s⁻¹]")
-    assert rows_inside(Findings(ds), "a.nc")["columns"][0]["unit"] == "pm\u00a0s⁻¹"
+    assert rows_inside(Findings(Result(ds)), "a.nc")["columns"][0]["unit"] == "pm\u00a0s⁻¹"
     assert event.over_unit.name == "pm s⁻¹"
 
 
@@ -218,8 +219,8 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
             }
         )
     )
-    laws, ranks = input_tables(ds)
-    fixed = fixed_inputs(ds)
+    laws, ranks = input_tables(Result(ds))
+    fixed = fixed_inputs(Result(ds))
     assert lines(laws)["threshold"]["law"] == "uniform: lower 0.1 m s⁻¹, upper 0.2 m s⁻¹"
     assert ranks.caption == "Rank correlations: a guess"
     assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]
@@ -228,7 +229,7 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
 
 def test_indices_are_ranked_beside_an_input_without_effect():
     ds = asking(linear(samples=200, settings={"fail_above": 0.95}), sensitivity=["rbd-fast"])
-    (method,) = sensitivity_of(Findings(ds))
+    (method,) = sensitivity_of(Findings(Result(ds)))
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
     assert method.used.startswith(f"from {200 - lost} rows; {lost} groups with missing")
@@ -241,7 +242,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
 
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
-    (method,) = sensitivity_of(Findings(linear("saltelli", samples=32, replicates=4)))
+    (method,) = sensitivity_of(Findings(Result(linear("saltelli", samples=32, replicates=4))))
     assert method.used == "from 768 rows"
     first, *_ = method.subjects[0].tables[0].rows
     low, high = map(float, first[1].more.split(" to "))
@@ -250,7 +251,7 @@ def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
 
 def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
     ds = with_output(lives(), "life_error", np.full(64, 0.5 * DAY), "lifetime")
-    found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
+    found = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
     line = lines(found.table)["life"]
     assert (line["unit"], line["error of the rows"]) == ("days", "0.5")
     assert float(line["half-width of the interval"]) == pytest.approx(1.6, abs=0.1)
@@ -259,7 +260,7 @@ def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
 
 def test_rows_less_exact_than_their_number_are_warned_of():
     ds = with_output(linear("latin-hypercube", 16, 4), "y_error", np.ones(64))
-    found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
+    found = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
     (warning,) = found.warnings
     assert warning.startswith("y: the rows' own error (1 1)")
     assert sentence("no fewer samples") in found.refused and found.pictures == []

@@ -10,6 +10,7 @@ from explored import cells
 from report_scripts import scripts
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.findings import Findings
 from uq.assess.population import Population
 from uq.assess.reweighting import Weighting
@@ -74,7 +75,7 @@ def asked_of_python(browser, ds):
     words = shlex.split(command)
     assert words[:3] == ["uq", "what-if", "a result.nc"]
     changes = read_changes([word for word in words[3:] if word != "--set"])
-    return changes, answer(ds, changes)
+    return changes, answer(Result(ds), changes)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +143,7 @@ QUANTILES = """(() => { const all = new Reweighting(rows); MOVES
 )
 def test_quantiles_and_their_intervals_are_those_of_python(browser, tmp_path, laws, design):
     ds = independent_rows(scaled(laws, **design))
-    inside = json.dumps(rows_inside(Findings(ds), "a.nc"))
+    inside = json.dumps(rows_inside(Findings(Result(ds)), "a.nc"))
     path = tmp_path / "quantiles.html"
     script = f"{scripts()}; const rows = new Rows({inside})"
     path.write_text(f"<meta charset=utf-8><script>{script}</script>", encoding="utf-8")
@@ -150,7 +151,7 @@ def test_quantiles_and_their_intervals_are_those_of_python(browser, tmp_path, la
     for moves in ({"z": (0.8, 0.1)}, {"a": (0.7, 0.2), "z": (0.9, 0.0)}):
         moved = "".join(f"all.move({json.dumps(n)}, {a}, {b});" for n, (a, b) in moves.items())
         changes, *columns = browser.value(QUANTILES.replace("MOVES", moved))
-        outputs = what_if_json(answer(ds, dict(changes)))["outputs"]
+        outputs = what_if_json(answer(Result(ds), dict(changes)))["outputs"]
         for name, found in zip(("life", "y"), columns, strict=True):
             for p, one in zip(("0.05", "0.5", "0.95"), found, strict=True):
                 expected = outputs[name]["quantiles"][p]
@@ -225,7 +226,7 @@ CURVES = """(() => { const all = new Reweighting(rows); MOVES
 @pytest.mark.parametrize("design", [{"samples": 300}, NESTED], ids=["rows", "units"])
 def test_curves_and_their_intervals_are_those_of_python(browser, tmp_path, design):
     ds = independent_rows(scaled({"c": GAMMA}, **design))
-    inside = json.dumps(rows_inside(Findings(ds), "a.nc"))
+    inside = json.dumps(rows_inside(Findings(Result(ds)), "a.nc"))
     path = tmp_path / "curves.html"
     script = f"{scripts()}; const rows = new Rows({inside})"
     path.write_text(f"<meta charset=utf-8><script>{script}</script>", encoding="utf-8")
@@ -234,10 +235,10 @@ def test_curves_and_their_intervals_are_those_of_python(browser, tmp_path, desig
     for moves in ({}, {"z": (0.8, 0.3)}, {"c": (0.7, 0.2)}):
         moved = "".join(f"all.move({json.dumps(n)}, {a}, {b});" for n, (a, b) in moves.items())
         changes, *curves = browser.value(CURVES.replace("MOVES", moved))
-        elements = population(ds, ["life", "y"])
+        elements = population(Result(ds), ["life", "y"])
         if moves:
-            new = _changed(ds, dict(changes))
-            elements = Weighting(ds, inputs_of(ds), new, part).elements(["life", "y"])
+            new = _changed(Result(ds), dict(changes))
+            elements = Weighting(Result(ds), inputs_of(Result(ds)), new, part).elements(["life", "y"])
         for element, (curve, band) in zip(elements, curves, strict=True):
             rows = Population(element, part)
             ends = zip(band["low"], band["high"], strict=True)  # a step has those before it, too

@@ -12,6 +12,7 @@ from computed import computed, linear, study_of
 from in_memory import compute
 
 import uq
+from uq.result.result import Result
 from uq.assess.summary import summarise
 from uq.assess.summary_json import summary_json
 from uq.contract import Status
@@ -232,7 +233,7 @@ def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch
     small = result_file.open_result(path)
     monkeypatch.setattr(result_file, "_IN_MEMORY_BYTES", 0)
     with result_file.open_result(path) as large:
-        assert summary_json(summarise(large)) == summary_json(summarise(small))
+        assert summary_json(summarise(Result(large))) == summary_json(summarise(Result(small)))
         assert large.identical(small)
         assert not any(large[name].variable._in_memory for name in large.data_vars if name != "x1")
 
@@ -263,8 +264,8 @@ def test_a_result_is_titled_by_what_its_study_says_it_is(described):
         uq.sensitivity,
         lambda ds: uq.row(ds, 0),
         lambda ds: uq.trace(ds, "outputs/y/mean"),
-        lambda ds: page(ds, "none.nc"),
-        lambda ds: dossier(ds, "none.nc"),
+        lambda ds: page(Result(ds), "none.nc"),
+        lambda ds: dossier(Result(ds), "none.nc"),
     ],
 )
 def test_a_result_of_which_no_row_was_kept_is_refused_in_one_line(ask):

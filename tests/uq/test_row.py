@@ -14,6 +14,7 @@ from nested_studies import nested
 from noisy_studies import noisy
 
 import uq as api
+from uq.result.result import Result
 from uq.contract import Status
 from uq.errors import InputError
 from uq.explore.row_again import row_again
@@ -41,11 +42,11 @@ def test_rows_of_every_design_are_computed_again_to_the_bit(case):
     make, model = CASES[case]
     ds = make()
     for number in np.linspace(0, ds.sizes["sample"] - 1, 7).astype(int):
-        found = row_again(ds, int(number), model=model)
+        found = row_again(Result(ds), int(number), model=model)
         assert found.equal and not found.reason
         assert found.again.status[0] == ds["status"][number]
         changed = ds.assign(x1=ds["x1"] * (1 + 2e-16))
-        assert row_again(changed, int(number), model=model).differing == ("x1",)
+        assert row_again(Result(changed), int(number), model=model).differing == ("x1",)
 
 
 def test_a_row_is_that_of_simulate_and_says_where_it_comes_from(uq, write_study):
@@ -86,13 +87,13 @@ def with_lives():
 
 def test_lives_are_ordered_ended_censored_never():
     ds = with_lives()
-    lowest = row_again(ds, lowest="life")
+    lowest = row_again(Result(ds), lowest="life")
     assert lowest.number == 0
     assert lowest.choice.words == "the lowest life; 1 row was censored earlier"
-    assert row_again(ds.isel(sample=[2, 3, 5]), lowest="life").number == 3
-    assert row_again(ds.isel(sample=[2, 4, 6]), lowest="life").number == 2
+    assert row_again(Result(ds.isel(sample=[2, 3, 5])), lowest="life").number == 3
+    assert row_again(Result(ds.isel(sample=[2, 4, 6])), lowest="life").number == 2
     with pytest.raises(InputError, match="no row has a value of 'life'"):
-        row_again(ds.isel(sample=[4, 6]), lowest="life")
+        row_again(Result(ds.isel(sample=[4, 6])), lowest="life")
 
 
 @pytest.mark.parametrize("p", [0.05, 0.3, 0.5, 0.9])
@@ -100,7 +101,7 @@ def test_the_row_near_a_quantile_is_the_closest_to_that_of_the_summary(p):
     ds = kinds(samples=200, analysis={"quantiles": [p]})
     quantile = api.summary(ds)[f"q{p}"]
     for name in ("work[side=left]", "angle"):
-        found = row_again(ds, near_quantile=(p, name), model=KINDS)
+        found = row_again(Result(ds), near_quantile=(p, name), model=KINDS)
         values = ds["angle"] if name == "angle" else ds["work"].sel(side="left")
         distance = np.abs(values - quantile[name]).values
         assert distance[found.number] == pytest.approx(np.nanmin(distance)) and found.equal
@@ -111,12 +112,12 @@ def test_the_row_near_a_quantile_of_lives_may_never_end():
     name = "life[side=left,depth=0.5]"
     flags = ds["life_censored"][:, 0, 0].values.astype(bool)
     life = ds["life"][:, 0, 0].values
-    number = row_again(ds, near_quantile=(0.95, name), model=KINDS).number
+    number = row_again(Result(ds), near_quantile=(0.95, name), model=KINDS).number
     assert np.isinf(life[number]) and not flags[number]
     ended = int((~flags & np.isfinite(life)).sum())
-    number = row_again(ds, near_quantile=((ended + 2) / 200, name), model=KINDS).number
+    number = row_again(Result(ds), near_quantile=((ended + 2) / 200, name), model=KINDS).number
     assert flags[number]
-    assert row_again(ds, lowest="life", model=KINDS).number == np.where(flags, 9.0, life).argmin()
+    assert row_again(Result(ds), lowest="life", model=KINDS).number == np.where(flags, 9.0, life).argmin()
 
 
 @pytest.mark.parametrize(
@@ -137,13 +138,13 @@ def test_the_row_near_a_quantile_of_lives_may_never_end():
 )
 def test_a_choice_that_makes_no_sense_is_one_line(chosen, words):
     with pytest.raises(InputError) as refusal:
-        row_again(kinds(), model=KINDS, **chosen)
+        row_again(Result(kinds()), model=KINDS, **chosen)
     assert words in str(refusal.value) and "\n" not in str(refusal.value)
 
 
 def test_there_is_no_quantile_where_rows_follow_no_law():
     with pytest.raises(InputError, match="no quantiles: the rows of a 'morris' design do not"):
-        row_again(linear("morris", 8), near_quantile=(0.5, "y"))
+        row_again(Result(linear("morris", 8)), near_quantile=(0.5, "y"))
 
 
 def test_a_failed_row_fails_again_for_the_same_reason(uq, write_study):
@@ -175,7 +176,7 @@ def test_a_row_that_crashed_crashes_again_but_not_this_process(uq, write_study):
 
 
 def test_a_row_that_outlived_its_limit_is_not_computed_again():
-    found = row_again(with_status(linear(), 3, Status.TIMED_OUT), 3)
+    found = row_again(Result(with_status(linear(), 3, Status.TIMED_OUT)), 3)
     assert not found.equal and found.again is None
     assert found.reason == "it cannot be computed again: it outlived its time limit"
 
@@ -236,7 +237,7 @@ def test_imported_rows_are_computed_again_too(tmp_path):
 
     given = tables({"x1": UNIFORM, "x2": UNIFORM}, "imported", 20, design={"file": "rows.nc"})
     ds = computed(study_from_text(as_text(given), folder=tmp_path))
-    found = row_again(ds, 7)
+    found = row_again(Result(ds), 7)
     assert found.equal and found.again.values["x2"] == x[7, 1]
 
 
@@ -273,4 +274,4 @@ def test_a_study_of_one_row_has_a_row():
         "design": one,
         "uncertain": {"x1": UNIFORM},
     }
-    assert row_again(computed(study_of(given)), 0).equal
+    assert row_again(Result(computed(study_of(given))), 0).equal

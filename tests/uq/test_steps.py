@@ -5,6 +5,7 @@ import pytest
 from asked_indices import sensitivities
 from computed import computed, study_of
 
+from uq.result.result import Result
 from uq.assess.independent_inputs import independent_inputs
 from uq.assess.sampled_inputs import compare, laws_and_values
 from uq.errors import InputError
@@ -85,6 +86,6 @@ def test_rows_that_are_not_those_of_the_design_are_refused(method):
 def test_a_factor_of_listed_values_has_these_and_no_others(factor):
     ds = result("monte-carlo", 300, factor=factor)
     expected = factor.get("values", [1.0, 2.0, 3.0])
-    assert np.unique(independent_inputs(ds)["b"]).tolist() == expected
-    law, values = laws_and_values(ds)["b"]
+    assert np.unique(independent_inputs(Result(ds))["b"]).tolist() == expected
+    law, values = laws_and_values(Result(ds))["b"]
     assert compare(law, values).distance < 0.1

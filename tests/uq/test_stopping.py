@@ -7,6 +7,7 @@ import pytest
 from computed import as_text, computed, study_of, summarised, with_seed
 from until_studies import study, tables
 
+from uq.result.result import Result
 from uq.assess import stopping
 from uq.errors import InputError
 from uq.execution import amending, local_cluster, row_folder, runner
@@ -28,10 +29,10 @@ def test_a_run_stops_at_the_first_look_that_knows_enough(tmp_path, method, repli
     of = study(half_width, samples=samples, method=method, replicates=replicates, **estimate)
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     sizes, stopped = stopping.interim_sizes(of.design), ds.attrs["samples"]
-    assert stopping.interim_estimate(of.design, ds).reached
+    assert stopping.interim_estimate(of.design, Result(ds)).reached
     assert stopped < samples
     earlier = [computed(of.with_samples(size)) for size in sizes if size < stopped]
-    assert not any(stopping.interim_estimate(of.design, one).reached for one in earlier)
+    assert not any(stopping.interim_estimate(of.design, Result(one)).reached for one in earlier)
 
 
 def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
@@ -220,7 +221,7 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
         one = with_seed(of, seed)
         ds = computed(one)
         for size in stopping.interim_sizes(one.design):
-            seen = stopping.interim_estimate(one.design, ds.isel(sample=slice(size)))
+            seen = stopping.interim_estimate(one.design, Result(ds.isel(sample=slice(size))))
             if seen.reached:
                 break
         low, high = seen.estimate.numbers[1:]

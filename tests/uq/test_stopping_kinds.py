@@ -6,6 +6,7 @@ from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import PAIR, WEAR, study, tables, wear
 
 from benchmarks.coverage import whole
+from uq.result.result import Result
 from uq.assess import stopping
 from uq.assess.sensitivities import sensitivities
 from uq.assess.sensitivity_json import sensitivity_json
@@ -15,7 +16,7 @@ from uq.execution import runner
 
 def seen_with_confidence(monkeypatch, confidence, of, ds):
     monkeypatch.setattr(stopping, "confidence", lambda design: confidence)
-    return stopping.interim_estimate(of.design, ds)
+    return stopping.interim_estimate(of.design, Result(ds))
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,7 @@ def test_a_b_life_may_rest_on_censored_rows():
     def look(b_life):
         until = {"output": name, "b_life": b_life, "half_width": 0.2}
         given = tables(until, samples=256) | {"uncertain": PAIR}
-        return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, ds)
+        return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, Result(ds))
 
     assert look("B50").half_width < 0.2
     assert look("B90").half_width == np.inf
@@ -69,7 +70,7 @@ def test_an_index_is_that_of_the_sensitivity(monkeypatch, more, widest):
     of = study(1.0, samples=64, method="saltelli", replicates=8, index="S1", **more)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    found = sensitivity_json(sensitivities(ds))["outputs"]["y"]["S1"]
+    found = sensitivity_json(sensitivities(Result(ds)))["outputs"]["y"]["S1"]
     halves = {name: (one["high"] - one["low"]) / 2 for name, one in found.items()}
     if "difference" in more:
         assert seen.what == widest
@@ -94,7 +95,7 @@ def test_shapley_effects_need_no_replicates(tmp_path):
     of = study(0.05, samples=4096, method="shapley", index="shapley", difference=["x4", "x1"])
     ds = runner.run(of, tmp_path / "out.nc", workers=0)
     assert ds.attrs["samples"] < 4096
-    seen = stopping.interim_estimate(of.design, ds)
+    seen = stopping.interim_estimate(of.design, Result(ds))
     assert seen.what == "shapley x4 - x1 of y"
     assert seen.estimate.low < 15 / 30 < seen.estimate.high
 
@@ -181,7 +182,7 @@ def test_a_run_may_stop_at_the_index_of_all_elements_together(monkeypatch, desig
     of = study_of(given | {"uncertain": whole.LAWS}, whole.NAME)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    every = sensitivity_json(sensitivities(ds, output="front[:]"))["outputs"]["front[:]"][index]
+    every = sensitivity_json(sensitivities(Result(ds), output="front[:]"))["outputs"]["front[:]"][index]
     known = {name: one for name, one in every.items() if one["low"] is not None}
     halves = {name: (one["high"] - one["low"]) / 2 for name, one in known.items()}
     widest = max(halves, key=halves.get)

@@ -7,6 +7,7 @@ from drawn import words
 
 from models import vibrator
 from uq import plots
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.summary import summarise
 from uq.render.html.outcomes import outcomes, result_tables
@@ -30,7 +31,7 @@ def test_the_axes_say_what_has_happened(locking):
 
 
 def test_the_latest_time_is_promised(locking):
-    parts = summarise(locking).outputs["locking"].parts
+    parts = summarise(Result(locking)).outputs["locking"].parts
     labels = [one.label for one in parts["b_lives"]]
     assert "10 % by" in labels and "B10" not in labels
     assert "B10" in summarised(locking)["outputs"]["locking"]["b_lives"]  # a key is kept
@@ -47,7 +48,7 @@ def test_the_vibrator_declares_its_success(locking):
 def test_a_report_speaks_of_success(locking):
     table = next(
         one
-        for one in result_tables(outcomes(locking, summarise(locking)))
+        for one in result_tables(outcomes(Result(locking), summarise(Result(locking))))
         if one.caption.startswith("Times by which")
     )
     assert table.header[2:5] == ("1 % by", "10 % by", "50 % by")
@@ -55,5 +56,5 @@ def test_a_report_speaks_of_success(locking):
     never["locking"][:100] = np.inf
     found = answer(asking(never, outputs=["locking"])).lead.promise
     assert found.reason == "" or "too few succeed" in found.reason
-    tables = list(result_tables(outcomes(never, summarise(never))))
+    tables = list(result_tables(outcomes(Result(never), summarise(Result(never)))))
     assert any("rows never succeeding" in one.header for one in tables)

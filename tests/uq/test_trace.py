@@ -14,6 +14,7 @@ from learnt_studies import measured, wear
 from nested_studies import nested
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.answer_json import answer_json
 from uq.errors import InputError
@@ -59,7 +60,7 @@ def check(ds, verb, options=None, every=1):
     assert paths
     for path in paths:
         key = key_of(*path, verb=verb, options=options)
-        found = traced(ds, key)
+        found = traced(Result(ds), key)
         entry = value_at(whole, path)
         wanted = entry if isinstance(entry, dict) else {"value": entry}
         assert found.equal and found.key == key
@@ -120,15 +121,15 @@ def test_options_are_part_of_a_key():
 )
 def test_weighted_rows_are_traced_to_estimators_of_weighted_rows(make, path, estimator):
     ds, key = make(), "what-if[uncertain.x1.upper=0.8]/"
-    what_if, *others = traced(ds, key + path).estimators
+    what_if, *others = traced(Result(ds), key + path).estimators
     assert what_if.code.endswith("what_if") and others[0].code.endswith(estimator)
-    plain = [one.code for one in traced(ds, path).estimators] if "effective" not in path else []
+    plain = [one.code for one in traced(Result(ds), path).estimators] if "effective" not in path else []
     assert not {one.code for one in others} & {*plain}
 
 
 def test_numbers_of_a_design_without_statistics_are_traced():
     check(linear("morris", 8), "summary")
-    found = traced(linear("morris", 8), "outputs/y/mean")
+    found = traced(Result(linear("morris", 8)), "outputs/y/mean")
     assert found.numbers == {"value": None} and found.rows_used == found.rows == 40
     assert found.notes == (
         "no statistics: the rows of a 'morris' design do not follow the laws of"
@@ -139,11 +140,11 @@ def test_numbers_of_a_design_without_statistics_are_traced():
 def test_the_error_of_the_rows_is_that_of_the_rows_used():
     ds = crossed()
     ds = with_output(ds, "y_error", np.where(ds["block"] == 1, 1e6, ds["x1"]))
-    found = traced(ds, "convergence/outputs/y/own_error")
+    found = traced(Result(ds), "convergence/outputs/y/own_error")
     used = ds["x1"].values[np.isin(ds["block"], [0, 5])]
     assert found.equal and found.numbers["value"] == pytest.approx(used.mean())
     for key in ("answer/enough/own_error", "answer/enough/sampling_error"):
-        answered = traced(with_output(ds, "y_error", 10 * ds["x1"].values), key)
+        answered = traced(Result(with_output(ds, "y_error", 10 * ds["x1"].values)), key)
         assert answered.equal and answered.rows_used == len(used)
 
 
@@ -167,7 +168,7 @@ _CONTRIBUTION = ("ranking", "contributions", "0", "inputs")
 
 def test_values_of_options_may_have_commas():
     law = '{distribution = "uniform", lower = 0.1, upper = 0.9}'
-    assert traced(linear(), f"what-if[uncertain.x1={law}]/outputs/y/mean").equal
+    assert traced(Result(linear()), f"what-if[uncertain.x1={law}]/outputs/y/mean").equal
     of = {name: verb.options for name, verb in VERBS.items()}
     for verb, options in (
         ("what-if", {"dependence.rank_correlation": "[[1, 0.5], [0.5, 1]]", "uncertain.x.sd": "1"}),
@@ -179,7 +180,7 @@ def test_values_of_options_may_have_commas():
 
 def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
     ds = linear("fast", 65, 2)
-    found = traced(ds, "convergence/outputs/y/sampling_error")
+    found = traced(Result(ds), "convergence/outputs/y/sampling_error")
     assert found.equal and found.numbers["value"] == api.enough(ds).loc["y", "sampling"]
 
 
@@ -187,7 +188,7 @@ def test_an_error_of_sampling_is_traced_where_there_are_no_running_estimates():
 def test_numbers_of_an_inspected_unit_are_traced_and_equal(every):
     after = update(wear(150, units=2, rate="shared"), measured(5e5, 8e5))
     check(as_unit(after, "B"), "summary", every=every)
-    assert traced(as_unit(after, "A"), MEDIAN).numbers != traced(after, MEDIAN).numbers
+    assert traced(Result(as_unit(after, "A")), MEDIAN).numbers != traced(Result(after), MEDIAN).numbers
 
 
 def keys_in(text):
@@ -207,18 +208,18 @@ def test_the_numbers_of_each_sentence_lead_to_themselves():
     }
     assert any("/share" in key for key in keys) and any("/contributions/" in key for key in keys)
     for key in keys:
-        assert traced(ds, key).equal, key
+        assert traced(Result(ds), key).equal, key
     rest = re.sub(r"<span data-trace=.*?</span>|<style>.*?</style>", "", text, flags=re.DOTALL)
     assert "\N{NO-BREAK SPACE}%" in text and "\N{NO-BREAK SPACE}%" not in rest
 
 
 def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     ds = crossed()
-    text = page(ds, "out.nc")
+    text = page(Result(ds), "out.nc")
     keys = keys_in(text)
     assert len(keys) == len(set(keys)) > 15
     for key in keys:
-        assert traced(ds, key).equal, key
+        assert traced(Result(ds), key).equal, key
     assert "outputs/y/thresholds/5.0/above" in keys
     assert "sensitivity[method=sobol]/outputs/y/S1/x1" in keys
     assert {"status/ok", "outputs/y/mean", "outputs/y/failed"} <= set(keys)
@@ -227,7 +228,7 @@ def test_every_number_of_a_report_leads_to_itself(no_other_figures):
 
 def test_the_rows_are_those_that_the_number_rests_on():
     ds = crossed()
-    found = traced(ds, "outputs/y/quantiles/0.5")
+    found = traced(Result(ds), "outputs/y/quantiles/0.5")
     independent = np.isin(ds["block"].values, [0, 5])
     assert (found.rows_used, found.rows) == (independent.sum(), len(independent)) == (128, 384)
     assert found.which == "blocks A, B: 0 to 378 by 6, 5 to 383 by 6"
@@ -236,9 +237,9 @@ def test_the_rows_are_those_that_the_number_rests_on():
     lost = int(ds["status"].values[independent].astype(bool).sum())
     assert found.states == {"with a value": 128 - lost, "failed": lost}
     whole = (ds["status"].values.reshape(-1, 6) == 0).all(axis=1).sum()
-    states = traced(ds, "sensitivity/outputs/y/S1/x1").states
+    states = traced(Result(ds), "sensitivity/outputs/y/S1/x1").states
     assert states["in groups with a value in each row"] == 6 * whole
-    last = traced(ds, "convergence/outputs/y/estimates/mean/0/value")
+    last = traced(Result(ds), "convergence/outputs/y/estimates/mean/0/value")
     assert last.rows_used == 128 and last.equal
 
 
@@ -269,9 +270,9 @@ def test_numbers_of_weighted_rows_are_traced_too():
     ds = update(wear(samples=2000, analysis={"thresholds": {"life": [5.2e5]}}), measured(5e5))
     check(ds, "summary", every=4)
     check(ds, "answer", every=11)
-    assert traced(ds, "effective_rows").estimators[0].code.endswith("effective_rows")
+    assert traced(Result(ds), "effective_rows").estimators[0].code.endswith("effective_rows")
     with pytest.raises(InputError, match="not with rows that inspections have weighted"):
-        traced(ds, "sensitivity/rows_used")
+        traced(Result(ds), "sensitivity/rows_used")
 
 
 @pytest.mark.parametrize("size", [5e-324, 1e300])
@@ -279,7 +280,7 @@ def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
     ds = with_output(linear(), "v", np.random.default_rng(0).uniform(-1, 1, 64) * size)
     check(ds, "summary", every=7)
     check(ds, "answer", every=13)
-    assert "outputs/v/quantiles/0.5" in page(ds, "out.nc")
+    assert "outputs/v/quantiles/0.5" in page(Result(ds), "out.nc")
     assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
 
 
@@ -289,7 +290,7 @@ def test_neither_the_model_nor_its_code_is_needed(uq, write_study, no_other_figu
     uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
     ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
     for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
-        found = trace_json(traced(ds, key))
+        found = trace_json(traced(Result(ds), key))
         assert found["equal"] and found["code"] == "0" and "numpy" in found["versions_here"]
     write_result(ds, Path("gone.nc"))
     assert uq("report", "gone.nc", "--dossier").code == uq("report", "gone.nc").code == 0
@@ -317,27 +318,27 @@ def test_a_number_of_a_large_result_is_traced_in_seconds(key):
     start = time.process_time()
     if key.endswith("mistyped"):
         with pytest.raises(InputError, match="no such key"):
-            traced(ds, key)
+            traced(Result(ds), key)
     else:
-        assert traced(ds, key).equal
+        assert traced(Result(ds), key).equal
     assert time.process_time() - start < 10.0
 
 
 def test_names_with_a_slash_have_keys_of_their_own():
     ds = with_output(linear(), "a/b", linear()["y"].values)
     ds = with_output(ds, "a", linear()["x1"].values)
-    found = traced(ds, "outputs/a~1b/mean")
+    found = traced(Result(ds), "outputs/a~1b/mean")
     assert found.equal and found.numbers["value"] == linear()["y"].values.mean()
     with pytest.raises(InputError, match="no such key 'outputs/a/b/mean'; did you mean"):
-        traced(ds, "outputs/a/b/mean")
+        traced(Result(ds), "outputs/a/b/mean")
 
 
 def test_a_key_as_long_as_a_book_is_refused_in_a_line():
     for key in ("outputs/" + "a" * 9999, "sensitivity[a=" + "b" * 9999 + "]/x", "outputs/\ny/\n"):
         with pytest.raises(InputError) as refusal:
-            traced(linear(), key)
+            traced(Result(linear()), key)
         assert len(str(refusal.value)) < 600 and "\n" not in str(refusal.value)
-    assert traced(linear(), "  outputs/y/mean\n").equal  # as copied
+    assert traced(Result(linear()), "  outputs/y/mean\n").equal  # as copied
 
 
 @pytest.mark.parametrize(
@@ -359,16 +360,16 @@ def test_a_key_as_long_as_a_book_is_refused_in_a_line():
 )
 def test_a_mistyped_key_is_one_line_with_the_nearest(key, words):
     with pytest.raises(InputError) as refusal:
-        traced(crossed(), key)
+        traced(Result(crossed()), key)
     assert words in str(refusal.value) and "\n" not in str(refusal.value)
 
 
 def test_a_result_without_a_sound_row_is_traced_too():
     ds = linear(settings={"fail_above": 0.0, "fail_how": "raise"})
-    found = trace_json(traced(ds, "outputs/y/mean"))
+    found = trace_json(traced(Result(ds), "outputs/y/mean"))
     assert found["value"] is None and found["equal"]
     assert found["rows"]["states"] == {"with a value": 0, "failed": 64}
-    assert traced(ds, "status/raised").numbers == {"value": 64}
+    assert traced(Result(ds), "status/raised").numbers == {"value": 64}
     json.dumps(found, allow_nan=False)
 
 
@@ -377,7 +378,7 @@ def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, writ
     check(ds, "answer", every=101)
     check(crossed(), "answer", every=17)
     key = "answer/quantities/life[side=left,depth=0.5]/promise"
-    found, said = traced(ds, key).numbers, api.answer(ds).quantities
+    found, said = traced(Result(ds), key).numbers, api.answer(ds).quantities
     promise = next(one for one in said if one.name == "life[side=left,depth=0.5]").promise
     assert (found["lower"], found["sentence"]) == (promise.lower, promise.sentence)
     uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")

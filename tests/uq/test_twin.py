@@ -8,6 +8,7 @@ from computed import UNIFORM, as_text, computed, study_of, summarised, with_seed
 from scipy.stats import norm
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.two_fidelities import two_fidelities, with_twin
 from uq.errors import InputError
 from uq.stats.control_variate import controlled_share
@@ -100,7 +101,7 @@ def series(samples=300, **analysis):
 
 def test_settings_that_make_rows_cheap_are_a_twin_too():
     ds = computed(series(twin={"terms": 3}))  # 1 + x1 + x1^2/2 for exp(x1)
-    found = with_twin(ds, "sample_models:SERIES")
+    found = with_twin(Result(ds), "sample_models:SERIES")
     assert (found.twin, found.cheap_rows) == ("{terms = 3}", 3000)
     for label, truth in (("mean", np.e - 1 + 0.15), ("P(>2.5)", TRUTH_OF_SERIES)):
         estimate, alone = found.outputs["y"][label].estimate, found.outputs["y"][label].plain
@@ -108,7 +109,7 @@ def test_settings_that_make_rows_cheap_are_a_twin_too():
         assert abs(estimate.value - truth) < 2 * half
         assert half < 0.6 * plain
     # The twin that is the model itself is worth its rows, and no more.
-    same = with_twin(computed(series(twin={"terms": 20})), "sample_models:SERIES")
+    same = with_twin(Result(computed(series(twin={"terms": 20}))), "sample_models:SERIES")
     assert same.outputs["y"]["mean"].reduction == pytest.approx(11, rel=1e-6)
 
 
@@ -159,14 +160,14 @@ def test_no_hit_leaves_the_plain_interval():
 
 def test_few_hits_are_said_and_below_five_the_twin_is_not_used():
     ds = paired(60, twin="near", thresholds={"y": [2.7, 2.85]})
-    found = with_twin(ds, PAIRED).outputs["y"]
+    found = with_twin(Result(ds), PAIRED).outputs["y"]
     hits = {t: int((ds["y"] > float(t)).sum()) for t in ("2.7", "2.85")}
     assert hits["2.85"] < 5 <= hits["2.7"] < 20
     few, none = found["P(>2.7)"], found["P(>2.85)"]
     assert f"{hits['2.7']} of" in few.note and "conservative" in few.note
     assert "not used below 5" in none.note
     assert none.estimate == none.plain
-    assert not with_twin(paired(twin="near"), PAIRED).outputs["y"]["P(>1.5)"].note
+    assert not with_twin(Result(paired(twin="near")), PAIRED).outputs["y"]["P(>1.5)"].note
 
 
 @pytest.mark.parametrize("rho", [0.9, 0.99])
@@ -184,17 +185,17 @@ def test_probabilities_of_four_or_five_hits_are_covered(rho):
 def test_a_constant_output_and_an_all_failed_one_have_no_interval():
     study = study_of(tables(50, twin="near") | {"fixed": {"x2": 0.95}} | {
         "uncertain": {"x1": UNIFORM}}, PAIRED)  # fmt: skip
-    assert with_twin(computed(study), PAIRED).outputs == {}
-    few = with_twin(paired(2, twin="near"), PAIRED).outputs["y"]["mean"].estimate
+    assert with_twin(Result(computed(study)), PAIRED).outputs == {}
+    few = with_twin(Result(paired(2, twin="near")), PAIRED).outputs["y"]["mean"].estimate
     assert np.isnan([few.low, few.high]).all()
 
 
 def test_the_cheap_rows_are_the_studys_own_next_ones():
     ds = sound(100, twin="near", thresholds={})
-    found = with_twin(ds, PAIRED)
+    found = with_twin(Result(ds), PAIRED)
     assert found.cheap_rows == 10_000
     longer = sound(10_100).isel(sample=slice(100, None))
-    mean = with_twin(ds.assign_attrs(study=ds.attrs["study"].replace("near", "same")), PAIRED)
+    mean = with_twin(Result(ds.assign_attrs(study=ds.attrs["study"].replace("near", "same"))), PAIRED)
     assert mean.outputs["y"]["mean"].estimate.value == pytest.approx(
         (100 * ds["y"].mean() + 10_000 * longer["y"].mean()) / 10_100
     )

@@ -19,6 +19,7 @@ from benchmarks.coverage.basins import (
     estimates,
     flat,
 )
+from uq.result.result import Result
 from uq.assess.regime_boundary import boundary, in_words
 from uq.stats.uncertainty_exponent import FARTHEST, uncertainty_exponent
 
@@ -95,7 +96,7 @@ def test_the_exponent_of_cantors_set_is_near_that_of_the_limit():
 
 def test_every_reader_tells_how_intermingled_the_regimes_are(uq, tmp_path):
     ds = kinds(samples=2048, analysis={"outputs": ["regime"]})  # slow where x1 < 0.5
-    one = boundary(ds)
+    one = boundary(Result(ds))
     assert one.estimate.low < 1.0 < one.estimate.high
     path = tmp_path / "kinds.nc"
     ds.to_netcdf(path)
@@ -113,16 +114,16 @@ def test_every_reader_tells_how_intermingled_the_regimes_are(uq, tmp_path):
 
 
 def test_twice_as_well_known_inputs_leave_half_the_outcomes_of_a_smooth_boundary():
-    one = boundary(kinds(samples=2048))
+    one = boundary(Result(kinds(samples=2048)))
     value = 1 - 0.5 ** min(one.estimate.value, 1.0)
     assert f"{100 * value:.1f} % (" in in_words(one)
 
 
 def test_what_the_rows_cannot_tell_has_a_reason():
-    assert "'halton' design are not independent" in boundary(kinds("halton", 64)).estimate.reason
-    assert boundary(linear()) is None
+    assert "'halton' design are not independent" in boundary(Result(kinds("halton", 64))).estimate.reason
+    assert boundary(Result(linear())) is None
     only = kinds(samples=64)
-    assert boundary(only.isel(sample=only["x1"].values < 0.4)) is None
+    assert boundary(Result(only.isel(sample=only["x1"].values < 0.4))) is None
     found = api.regimes(kinds("halton", 64))["uncertainty_exponent"]
     assert np.isnan(found) and "not independent" in found.attrs["reason"]
 
@@ -134,7 +135,7 @@ def test_inputs_with_listed_values_part_the_rows():
         "design": {"method": "monte-carlo", "samples": 64},
         "uncertain": {"x1": listed},
     }
-    assert boundary(computed(study_of(tables, "sample_models:KINDS"))).estimate.reason == (
+    assert boundary(Result(computed(study_of(tables, "sample_models:KINDS")))).estimate.reason == (
         "no input varies continuously"
     )
 

@@ -6,6 +6,7 @@ from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, lognormal, measured, wear
 from scipy import stats
 
+from uq.result.result import Result
 from uq.assess.fleet import fleet_of
 from uq.assess.level_shares import by_level
 from uq.assess.summary import summarise
@@ -69,11 +70,11 @@ def test_a_shared_scale_that_is_learnt_tells_nothing_of_them():
 def test_without_rows_of_their_own_they_have_no_life():
     ds = update(rows(2, samples=2000), measured(9.0, 20.0, cv=CV))
     why = "set [design] units = 3 or more"
-    assert any(why in note for note in summarise(ds).notes)
+    assert any(why in note for note in summarise(Result(ds)).notes)
     found = learnt_json(learnt(ds))
     assert found["uninspected"] == {} and found["units"].keys() == {"A", "B"}
     assert any(why in note for note in found["notes"])
-    assert not any(why in note for note in summarise(as_unit(ds, "A")).notes)
+    assert not any(why in note for note in summarise(Result(as_unit(ds, "A"))).notes)
 
 
 @pytest.mark.slow
@@ -88,23 +89,23 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     z = np.linspace(-6, 6, 2001)
     p = stats.norm.cdf((np.log(6e5) - middle - spread * z) / own)
     none = np.average((1 - p) ** 3, weights=np.exp(-(z**2) / 2))
-    kept = fleet_of(ds, 3, [6e5]).by[6e5][1].estimate
+    kept = fleet_of(Result(ds), 3, [6e5]).by[6e5][1].estimate
     assert kept.low < none < kept.high and kept.high - kept.low < 0.06
     found = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
     ends = stats.norm.cdf((np.log(6e5) - middle + spread * np.array([-1.96, 1.96])) / own)
     assert list(found["over_shared"].values()) == pytest.approx(ends, abs=0.02)
-    share = by_level(ds).outputs["log(life)"].shares["shared"]
+    share = by_level(Result(ds)).outputs["log(life)"].shares["shared"]
     truth = spread**2 / (spread**2 + own**2)
     assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + own**2)
     with pytest.raises(InputError, match="no fleets: these rows stand for unit 'A'"):
-        fleet_of(as_unit(ds, "A"), 3)
+        fleet_of(Result(as_unit(ds, "A")), 3)
 
 
 @pytest.mark.parametrize(
     ("units", "why"),
     [(2, "set .design. units = 3 or more"), (4, "each unit of a sample separately")],
 )
-@pytest.mark.parametrize("question", [lambda ds: fleet_of(ds, 2), by_level])
+@pytest.mark.parametrize("question", [lambda ds: fleet_of(Result(ds), 2), by_level])
 def test_units_that_are_weighted_one_by_one_have_no_fleet(units, why, question):
     ds = update(rows(units, samples=2000), measured(9.0, 20.0, cv=CV))
     with pytest.raises(InputError, match=why):
@@ -133,7 +134,7 @@ def test_ranges_over_what_is_shared_hold_the_truth():
             after = update(ds, measured(*(depth / rates * noise), cv=CV))
         except RunError:
             continue
-        low, high = next(remaining(after, [6e5])).over_shared[6e5].values()
+        low, high = next(remaining(Result(after), [6e5])).over_shared[6e5].values()
         held.append(low <= stats.norm.cdf(np.log(6e5 * RATE[0] / depth) / RATE[1]) <= high)
     assert len(held) > 950 and 0.93 <= np.mean(held) <= 0.97
 
@@ -144,7 +145,7 @@ def test_units_of_a_sample_that_count_alike_do_so_after_smoothing():
     after = update(wear(**design, rate="shared"), measured(3e5, 4e5))
     weights = after["weight"].values.reshape(-1, 3)
     assert np.ptp(weights[:, 0]) > 0 and (weights == weights[:, :1]).all()
-    assert fleet_of(after, 2).first[0.5].estimate.value > 0
+    assert fleet_of(Result(after), 2).first[0.5].estimate.value > 0
 
 
 def test_units_that_do_not_differ_need_no_rows_of_their_own():

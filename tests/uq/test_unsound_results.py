@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from learnt_studies import measured, wear
 
+from uq.result.result import Result
 from uq.errors import InputError
 from uq.execution import runner
 from uq.explore.updating import update
@@ -134,7 +135,7 @@ def test_what_no_inspections_leave_behind_is_unsound(posterior, kind):
 def test_wrong_inspections_in_a_result_are_one_line(posterior):
     entries = json.dumps([{"unit": "A", "hours": 3.0}, {"unit": 5}])
     with pytest.raises(InputError, match=r"inspection 1: .*; and \d+ more") as refused:
-        inspections_of(posterior.assign_attrs(inspections=entries))
+        inspections_of(Result(posterior.assign_attrs(inspections=entries)))
     assert len(refused.value.lines) == 1
 
 

@@ -18,6 +18,7 @@ from computed import (
 )
 
 import uq
+from uq.result.result import Result
 from uq.assess import stopping
 from uq.assess.convergence import enough, running_estimates
 from uq.assess.summary_json import twin_json
@@ -283,7 +284,7 @@ def test_twin(damage):
         ds = ds.isel(sample=slice(None, 193))
     elif damage == "constant":
         ds["y"][:] = 0.1
-    found = strict(twin_json(with_twin(ds, PAIRED)))["outputs"]
+    found = strict(twin_json(with_twin(Result(ds), PAIRED)))["outputs"]
     if damage == "all failed":
         assert found == {}
         return
@@ -332,7 +333,7 @@ def test_rare_events(method, damage, settings):
 @pytest.mark.parametrize("estimate", [{}, {"quantile": 0.5}, {"above": 6.0}])
 def test_a_look_at_damaged_rows(damage, estimate):
     ds = damaged(linear(until={"output": "y", "half_width": 0.5} | estimate), damage, ("y",))
-    seen = stopping.interim_estimate(study_file_of(ds).design, ds)
+    seen = stopping.interim_estimate(study_file_of(ds).design, Result(ds))
     if damage == "all failed":
         assert not seen.reached and np.isnan(seen.estimate.numbers[:2]).all()
         return

@@ -9,6 +9,7 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 import uq as api
+from uq.result.result import Result
 from uq.assess.fleet import fleet_of
 from uq.assess.level_shares import by_level
 from uq.errors import InputError
@@ -52,7 +53,7 @@ def holds(estimate, truth):
 
 @pytest.mark.parametrize("size", [3, 40_000])
 def test_fleets_of_units_never_inspected_are_those_of_the_closed_form(posterior, rate, size):
-    found = fleet_of(posterior, size, [TIME], allow=size // 3)
+    found = fleet_of(Result(posterior), size, [TIME], allow=size // 3)
     assert found.integrated == ("depth",) and 100 < found.weights.effective < 1000
     failed, kept = found.by[TIME]
     holds(failed.estimate, size * over_worlds(lambda z: ended(rate, z)))
@@ -64,7 +65,7 @@ def test_fleets_of_units_never_inspected_are_those_of_the_closed_form(posterior,
 
 
 def test_units_of_weighted_worlds_may_be_counted(posterior, rate):
-    failed, kept = fleet_of(posterior, 3, [TIME], plain=True).by[TIME]
+    failed, kept = fleet_of(Result(posterior), 3, [TIME], plain=True).by[TIME]
     holds(kept.estimate, over_worlds(lambda z: (1 - ended(rate, z)) ** 3))
     for end, z in ((failed.low, -1.6449), (failed.high, 1.6449)):
         holds(end, 3 * ended(rate, z))
@@ -72,7 +73,7 @@ def test_units_of_weighted_worlds_may_be_counted(posterior, rate):
 
 @pytest.mark.parametrize("plain", [False, True])
 def test_shares_of_levels_are_those_left_by_the_inspections(posterior, rate, plain):
-    share = by_level(posterior, plain=plain).outputs["log(life)"].shares["shared"]
+    share = by_level(Result(posterior), plain=plain).outputs["log(life)"].shares["shared"]
     holds(share, rate[1] ** 2 / (rate[1] ** 2 + DEPTH[1] ** 2))
     assert share.high < 0.5  # before: 0.74
 
@@ -108,11 +109,11 @@ def test_an_event_that_the_inspections_make_rare_has_no_shares(posterior):
     """Rows have hits, but hardly any weight."""
     early = asking(posterior, outputs=["life"], thresholds={"life": [2e5]})
     hits = (posterior["life"].values < 2e5).sum()
-    shares = by_level(early).outputs["P(life<200000.0)"].shares
+    shares = by_level(Result(early)).outputs["P(life<200000.0)"].shares
     assert hits > 10 and "hits of equal weight, and 5 are needed" in shares["shared"].reason
 
 
-@pytest.mark.parametrize("question", [lambda ds: fleet_of(ds, 1), by_level])
+@pytest.mark.parametrize("question", [lambda ds: fleet_of(Result(ds), 1), by_level])
 def test_an_inspected_unit_is_no_fleet(posterior, question):
     with pytest.raises(InputError, match="these rows stand for unit 'A'; use the whole posterior"):
         question(as_unit(posterior, "A"))

@@ -8,6 +8,7 @@ from scipy.stats import lognorm
 
 import uq as api
 from uq import plots
+from uq.result.result import Result
 from uq.errors import InputError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
@@ -113,10 +114,10 @@ def test_before_and_after_are_compared_with_cautious_intervals(posterior):
 
 
 def test_figures_and_report_show_weighted_rows(posterior, tmp_path):
-    names = {path.stem for path in plots.save_all(posterior, tmp_path)}
+    names = {path.stem for path in plots.save_all(Result(posterior), tmp_path)}
     assert {"lifetime-life", "quantiles-life", "inputs"} <= names
     assert not any(name.startswith(("scatter", "sobol", "convergence")) for name in names)
-    text = page(posterior, "posterior.nc")
+    text = page(Result(posterior), "posterior.nc")
     assert "given 2 inspections of 2 units" in text and "effective rows" in text
     assert "not with rows that inspections have weighted" in text
 

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from benchmarks.coverage import scaled as counted
 from benchmarks.coverage.tally import LOW
+from uq.result.result import Result
 from uq.assess.population import Population
 from uq.assess.what_if import answer, read_changes, what_if, what_if_json
 from uq.cli.app import app
@@ -46,7 +47,7 @@ def result():
 
 
 def test_the_law_of_what_only_scales_is_replaced_exactly(result):
-    found = answer(result, {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
+    found = answer(Result(result), {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
     life = what_if_json(found)["outputs"]["life"]
     z = result["z"].values
     below = special.ndtr((np.log(0.8) - np.log(2.0) - z / 2) / 0.9)
@@ -57,7 +58,7 @@ def test_the_law_of_what_only_scales_is_replaced_exactly(result):
 
 
 def test_the_same_laws_change_nothing(result):
-    found = what_if_json(answer(result, {"uncertain.z.sd": 1.0}))
+    found = what_if_json(answer(Result(result), {"uncertain.z.sd": 1.0}))
     plain = summarised(result)
     assert found["effective_rows"] == 1000 and found["pareto_k"] is None
     for name in ("life", "y"):
@@ -138,7 +139,7 @@ def test_a_multiple_and_listed_values_are_weighted(result):
     share = rows["z"].values.mean()
     assert found["mean"] == pytest.approx(share / (share + 3 * (1 - share)))
     factor = rows["b"].values / rows["a"].values
-    found = answer(rows, {"uncertain.b.upper": 1.0})
+    found = answer(Result(rows), {"uncertain.b.upper": 1.0})
     assert found.effective_rows == pytest.approx((factor < 1).sum(), rel=0.02)
 
 
@@ -190,7 +191,7 @@ def test_a_scale_may_leave_the_values_of_the_rows():
     rows = computed(
         study({"a": {"distribution": "uniform", "lower": 1.0, "upper": 2.0}, "z": NORMAL})
     )
-    found = answer(rows, {"uncertain.a.upper": 4.0})
+    found = answer(Result(rows), {"uncertain.a.upper": 4.0})
     life = what_if_json(found)["outputs"]["life"]
     least = 0.8 * np.exp(-rows["z"].values / 2)
     below = ((least - 1) / 3).clip(0, 1).mean()
@@ -209,7 +210,7 @@ def test_a_law_that_is_replaced_keeps_its_level():
 
 def test_a_single_row_says_why_a_number_is_missing():
     rows = computed(study(samples=1))
-    for found in (summarised(rows), what_if_json(answer(rows, {"uncertain.a.sigma": 0.4}))):
+    for found in (summarised(rows), what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.4}))):
         life = found["outputs"]["life"]
         below = life["thresholds"]["0.8"]
         assert 0 < below["below"]["value"] < 1 and below["below"]["low"] is None
@@ -223,7 +224,7 @@ def test_a_single_row_says_why_a_number_is_missing():
 
 def test_rows_that_all_failed_say_nothing():
     rows = computed(study(samples=20, settings={"fail_above": -99.0}))
-    found = what_if_json(answer(rows, {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
+    found = what_if_json(answer(Result(rows), {"uncertain.a.sigma": 0.6}))["outputs"]["life"]
     assert found["failed"] == 20 and found["thresholds"]["0.8"]["below"]["value"] is None
 
 

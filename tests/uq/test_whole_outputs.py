@@ -9,6 +9,7 @@ from drawn import words
 import uq
 from benchmarks.coverage import whole
 from uq import plots
+from uq.result.result import Result
 from uq.errors import InputError
 from uq.render.trace.trace import traced
 
@@ -164,9 +165,9 @@ def test_it_is_in_arrays_convergence_and_traces():
     running = uq.running_estimates(ds, "front")
     last = running[(running["output"] == "front[:]") & (running["estimate"] == "ST x1")].iloc[-1]
     assert last["value"] == index["value"]
-    found = traced(ds, "sensitivity/outputs/front[:]/ST/x1")
+    found = traced(Result(ds), "sensitivity/outputs/front[:]/ST/x1")
     assert found.equal and found.states == {"in groups with a value in each row": 7 * 4 * 32}
-    assert traced(ds, "convergence/outputs/front[:]/estimates/ST x1/0/value").equal
+    assert traced(Result(ds), "convergence/outputs/front[:]/estimates/ST x1/0/value").equal
 
 
 def test_curves_of_indices_are_those_of_the_elements():
