@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 
 import uq.render.html
-from uq.result.result import Result
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside
 from uq.render.html.layout import templates
+from uq.result.result import Result
 
-CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(line => [
+CELLS = """[...document.querySelectorAll("PLACE table.counted tr[data-key]")].map(line => [
   line.dataset.key,
   ...[...line.cells].slice(1).map(cell => [cell.querySelector("data")?.value ?? "NaN",
   cell.dataset.low ?? "NaN", cell.dataset.high ?? "NaN"])])"""
@@ -38,7 +38,7 @@ def cells(browser, place="#explorer"):
 def ranges(browser):
     """Return the ends of each range."""
     ends = "one => [one.dataset.low, one.dataset.high]"
-    found = browser.value(f"[...document.querySelectorAll('.range')].map({ends})")
+    found = browser.value(f"[...document.querySelectorAll('.range:not([hidden])')].map({ends})")
     return [tuple(map(float, pair)) for pair in found]
 
 

@@ -10,13 +10,13 @@ import pytest
 from computed import asking, kinds, linear, with_output, with_status
 from explored import open_by_keyboard
 
-from uq.result.result import Result
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.contract import Status
 from uq.learning.inspections import read_inspections, read_tables
 from uq.render.html.embedded_rows import MOST_ROWS, rows_inside
 from uq.render.html.page import page
+from uq.result.result import Result
 
 
 def test_a_success_is_no_life_that_ends(shown):
@@ -26,7 +26,7 @@ def test_a_success_is_no_life_that_ends(shown):
     said = shown(asking(ds, outputs=["locking"])).value(
         "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.innerText).join()"
     )
-    assert said.count("Share that has not yet succeeded") == 2 and "10\u00a0% quantile of" in said
+    assert said.count("Share that has not yet succeeded") == 2
     assert "outlives" not in said and "B10" not in said
 
 
@@ -46,7 +46,7 @@ def test_inputs_are_called_as_in_the_answer(shown, symbol, html, plain):
     ds = linear(samples=100)
     ds["x4"].attrs |= {"long_name": "a long explanation", "symbol": symbol}
     browser = shown(ds)
-    for place in (".range span", ".tolerance[data-name=x4] span"):
+    for place in (".range:not([hidden]) span", ".tolerance[data-name=x4] span"):
         found = browser.value(
             f"(one => [one.innerHTML, one.title])(document.querySelector('{place}'))"
         )
@@ -85,7 +85,7 @@ EVERYTHING = """(async () => {
     for (const option of select.options) await set(select, option.value, "change");
   for (const handle of document.querySelectorAll(".range input")) await set(handle, 250, "input");
   for (const chip of document.querySelectorAll(".chip")) chip.click();
-  for (const value of [0.2, 1.5, 0.9])
+  for (const value of [0, 1, 4])
     for (const slider of document.querySelectorAll(sliders)) await set(slider, value, "input");
   await new Promise(f => setTimeout(f, 300));
   return found })()"""
@@ -162,5 +162,5 @@ def test_the_first_plot_is_over_what_the_answer_names(shown):
     rare = 100.0 * (ds["x2"].values > 0.9)
     ds["y"].values[:] = ds["x1"].values + rare  # ranks vary most over x1, values over x2
     assert "ontributes most" in repr(conclude(Findings(Result(ds))))
-    names = "[...document.querySelectorAll('.range')].map(one => one.dataset.name)"
+    names = "[...document.querySelectorAll('.range:not([hidden])')].map(one => one.dataset.name)"
     assert shown(ds).value(names) == ["x2", "y"]

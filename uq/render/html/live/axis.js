@@ -40,3 +40,16 @@ class Axis {
     return place <= 0 ? -Infinity : place >= 1 ? Infinity : this.scale.value(place);
   }
 }
+
+// The labels of ticks along a line that leave room for each other.
+function withRoom(column, scale, pixel, width, end) {
+  const labels = [];
+  let free = -Infinity;
+  for (const value of scale.ticks) {
+    const text = column.digits(value), half = width(text) / 2, at = Math.min(pixel(value), end - half);
+    if (at - half < free) continue;
+    labels.push({text, at});
+    free = at + half + 8;
+  }
+  return labels;
+}

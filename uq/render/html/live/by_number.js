@@ -1,13 +1,9 @@
 // A box that takes the number of a row.
 
-function rowByNumber(rows, open, openElsewhere) {
-  const [first, last] = rows.allowed, hint = make("span", {id: "row-hint", role: "status"});
-  const box = make("input", {
-    type: "number", min: first, max: last, step: 1, inputmode: "numeric", "aria-describedby": "row-hint",
-  });
+function listenToNumbers(rows, form, open, openElsewhere) {
+  const [first, last] = rows.allowed, box = form.querySelector("input"), hint = form.querySelector("[role=status]");
   const places = new Map(Array.from(rows.numbers, (name, row) => [name, row]));
-
-  function show(event) {
+  form.addEventListener("submit", event => {
     event.preventDefault();
     const name = box.valueAsNumber, isAllowed = Number.isInteger(name) && name >= first && name <= last;
     box.setAttribute("aria-invalid", !isAllowed);
@@ -15,8 +11,5 @@ function rowByNumber(rows, open, openElsewhere) {
     if (!isAllowed) box.select();
     else if (places.has(name)) open(places.get(name));
     else openElsewhere(name);
-  }
-
-  return make("form", {class: "by-number", novalidate: true, "on:submit": show},
-    make("label", {}, "Row ", box), " ", make("button", {}, "Show"), " ", hint);
+  });
 }

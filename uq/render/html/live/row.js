@@ -1,14 +1,13 @@
 // One row: its inputs, regime and outputs, and the command that computes it again.
 
 function cardOf(rows, row, close) {
-  const facts = rows.categories.map(one => [one, one.entry(row).label]);
-  const list = pairs => make("dl", {}, ...pairs.flatMap(([one, words]) => [
-    make("dt", {title: one.meaning}, ...named(one)), make("dd", {}, words)]));
-  const of = role => rows.columns.filter(one => one.role === role).map(one => [one, one.wordsOfRow(row)]);
-  return cardWith(rows, rows.numbers[row], close,
-    make("div", {class: "facts"},
-      make("div", {}, make("h4", {}, "Inputs"), list(of("input"))),
-      make("div", {}, make("h4", {}, "Outputs"), list([...facts, ...of("output")]))));
+  const facts = rows.categories.map(category => [category, category.entry(row).label]);
+  const factsOf = role => rows.columns.filter(column => column.role === role)
+    .map(column => [column, column.wordsOfRow(row)]);
+  const listOf = (title, pairs) => make("div", {}, make("h4", {}, title), make("dl", {}, ...pairs.flatMap(
+    ([column, words]) => [make("dt", {title: column.meaning}, ...named(column)), make("dd", {}, words)])));
+  return cardWith(rows, rows.numbers[row], close, make("div", {class: "facts"},
+    listOf("Inputs", factsOf("input")), listOf("Outputs", [...facts, ...factsOf("output")])));
 }
 
 // Of a row that the page does not hold: the command alone.
@@ -19,24 +18,10 @@ function cardElsewhere(rows, name, close) {
 }
 
 function cardWith(rows, name, close, ...contents) {
-  const command = `uq row ${rows.file} ${name}${rows.model}`;
-  const done = make("span", {role: "status"});
-  const copy = make("button", {type: "button", "on:click": () => copied(command, done)}, "Copy");
+  const command = `uq row ${rows.file} ${name}${rows.model}`, [copy, done] = copyButton(() => command);
   return make("div", {class: "card", "data-row": name},
     make("h3", {}, `Row ${name}`),
     make("p", {class: "command"}, make("code", {}, command), " ", copy, " ",
       make("button", {type: "button", "on:click": close}, "Close"), " ", done),
     ...contents);
-}
-
-const SHORTLY = 2000; // ms
-
-async function copied(text, done) {
-  try {
-    await navigator.clipboard.writeText(text);
-    done.textContent = "Copied";
-    setTimeout(() => { done.textContent = ""; }, SHORTLY);
-  } catch {
-    done.textContent = "Select the command to copy it.";
-  }
 }

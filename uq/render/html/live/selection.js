@@ -4,17 +4,13 @@ class Selection {
   constructor(rows) {
     this.rows = rows;
     this.ranges = new Map(); // column -> [low, high]; an end that is open is infinite
-    this.refused = new Map(); // category -> codes that are not shown
+    this.refused = new Map(rows.categories.map(category => [category, new Set()])); // codes that are not shown
     this.listeners = [];
     this.changed = eventually(() => {
       this.update();
       for (const listener of this.listeners) listener();
     });
     this.update();
-  }
-
-  get isAll() {
-    return this.ranges.size === 0 && [...this.refused.values()].every(codes => codes.size === 0);
   }
 
   range(column) {
@@ -28,36 +24,28 @@ class Selection {
   }
 
   toggle(category, code) {
-    const codes = this.refused.get(category) ?? new Set();
+    const codes = this.refused.get(category);
     if (!codes.delete(code)) codes.add(code);
-    this.refused.set(category, codes);
     this.changed();
-  }
-
-  shows(category, code) {
-    return !this.refused.get(category)?.has(code);
   }
 
   clear() {
     this.ranges.clear();
-    this.refused.clear();
+    for (const codes of this.refused.values()) codes.clear();
     this.changed();
   }
 
   // A life that never ends, or is censored, lies above every finite value.
+  isInside({values, states}, [low, high], row) {
+    return values[row] >= low && (states[row] === CENSORED ? high === Infinity : values[row] <= high);
+  }
+
   update() {
-    const mask = new Uint8Array(this.rows.count).fill(1);
-    for (const [category, codes] of this.refused) {
-      if (codes.size) category.codes.forEach((code, row) => { if (codes.has(code)) mask[row] = 0; });
-    }
-    for (const [column, [low, high]] of this.ranges) {
-      const {values, states} = column;
-      for (let row = 0; row < mask.length; row++) {
-        const inside = values[row] >= low && (states[row] === CENSORED ? high === Infinity : values[row] <= high);
-        if (!inside) mask[row] = 0;
-      }
-    }
-    this.mask = mask;
-    this.count = mask.reduce((sum, one) => sum + one, 0);
+    const ranges = [...this.ranges], refused = [...this.refused].filter(([, codes]) => codes.size);
+    const isChosen = row => ranges.every(([column, range]) => this.isInside(column, range, row))
+      && !refused.some(([category, codes]) => codes.has(category.codes[row]));
+    this.isAll = !ranges.length && !refused.length;
+    this.mask = Uint8Array.from(this.rows.numbers, (_, row) => Number(isChosen(row)));
+    this.count = this.mask.reduce((sum, chosen) => sum + chosen, 0);
   }
 }

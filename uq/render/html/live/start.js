@@ -1,14 +1,14 @@
 // Begin when the page has loaded.
 
+function partsIn(id) {
+  const place = document.getElementById(id);
+  place.append(document.getElementById(`${id}-parts`).content);
+  return place;
+}
+
 document.addEventListener("DOMContentLoaded", () => {
   const rows = new Rows(JSON.parse(document.getElementById("rows").textContent));
   document.documentElement.style.setProperty("--limit", rows.colours.limit);
-  const explorer = explorerOf(rows);
-  document.getElementById("explorer").append(explorer.element);
-  explorer.arrange();
-  const tolerances = document.getElementById("other-tolerances");
-  if (!tolerances) return;
-  const found = tolerancesOf(rows);
-  tolerances.append(found.element);
-  found.update();
+  new Explorer(rows, partsIn("explorer")).arrange();
+  if (rows.tolerances) new Tolerances(rows, partsIn("other-tolerances")).update();
 });
