@@ -195,7 +195,8 @@ def test_too_few_rows_are_refused_as_in_python(shown):
     move(browser, "z", "width", 5)
     with pytest.raises(RunError) as refused:
         asked_of_python(browser, ds)
-    assert status(browser) == str(refused.value) and "Pareto k" in status(browser)
+    why = str(refused.value)
+    assert status(browser) == f"{why[0].upper()}{why[1:]}." and "Pareto k" in why
     assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
 
 

@@ -32,7 +32,7 @@ from uq.result.result import Result
 from uq.stats.clusters import Clusters
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
-from uq.text.numbers import printed, threshold
+from uq.text.numbers import grouped, printed, threshold
 from uq.text.symbols import readable
 from uq.text.units import ReadableUnit
 
@@ -88,7 +88,8 @@ def rows_inside(
     return {
         "model": rows.model_option,
         "file": shlex.quote(plain(file)),
-        "total": len(whole),
+        "extent": _extent(len(rows), len(whole)),
+        "absence": _absence(len(rows), len(whole)),
         "allowed": _allowed(findings.result),
         "numbers": encoded(rows.dataset["sample"].values, "<i4"),
         "columns": columns,
@@ -100,6 +101,22 @@ def rows_inside(
         "note": _note(elements),
         "quarters_note": QUARTERS,
     }
+
+
+def _extent(count: int, total: int) -> str:
+    """Return which rows a page holds."""
+    part = f" in this page, a random part of {grouped(total)}" if count < total else ""
+    return "The only row." if count == 1 else printed(f"All {grouped(count)} rows{part}.")
+
+
+def _absence(count: int, total: int) -> str:
+    """Return why a page does not hold a row."""
+    counted = "those that count in its statistics"
+    part = f"a random part of {grouped(total)}" if count < total else counted
+    words = (
+        f"Not among the {grouped(count)} rows in this page, {part}; the command computes it again."
+    )
+    return printed(words)
 
 
 def _allowed(result: Result) -> list[int]:
@@ -299,27 +316,28 @@ def _after(unit: str) -> str:
 
 
 def _categories(rows: Result) -> Iterator[dict[str, Any]]:
-    """Yield the regimes, and how rows ended."""
+    """Yield the regimes, and how rows ended: the labels that occur, and the place of each row's."""
     colours = {name: colour for name, (_, colour) in occurring_regimes(rows).items()}
-    for name, label in (("regime", "Regime"), ("status", "Status")):
-        if name in rows.dataset:
-            codes = rows.dataset[name].values
-            counts = {code: int((codes == code).sum()) for code, _ in flags(rows.dataset[name])}
-            yield {
-                "name": name,
-                "label": label,
-                "codes": encoded(codes, "i1"),
-                "entries": [
-                    {
-                        "code": code,
-                        "label": plain(words),
-                        "count": counts[code],
-                        "colour": colours.get(literal(words), ROWS) if name == "regime" else None,
-                    }
-                    for code, words in flags(rows.dataset[name])
-                    if counts[code]
-                ],
-            }
+    for name, label in ((REGIME, "Regime"), ("status", "Status")):
+        if name not in rows.dataset:
+            continue
+        codes = rows.dataset[name].values
+        occurring = [(code, words) for code, words in flags(rows.dataset[name]) if code in codes]
+        places = [code for code, _ in occurring]
+        yield {
+            "name": name,
+            "label": label,
+            "places": encoded(sum(i * (codes == code) for i, code in enumerate(places)), "u1"),
+            "entries": [
+                {
+                    "code": code,
+                    "label": plain(words),
+                    "count": printed(grouped(int((codes == code).sum()))),
+                    "colour": colours.get(literal(words), ROWS) if name == REGIME else None,
+                }
+                for code, words in occurring
+            ],
+        }
 
 
 def _note(elements: Sequence[Element]) -> str:

@@ -11,7 +11,7 @@ from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import called, unit_of_input
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.summary import Described, Summary, summarise
-from uq.assess.what_if import answer
+from uq.assess.what_if import WhatIf, answer
 from uq.errors import InputError, RunError
 from uq.render.figures.words import meaning_of, symbol_beside
 from uq.render.html.encoded import IMPOSSIBLE, log_bytes
@@ -25,7 +25,7 @@ from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain, toml
-from uq.text.numbers import percent, percent_interval, printed
+from uq.text.numbers import capitalized, grouped, percent, percent_interval, printed
 from uq.text.symbols import readable
 from uq.text.units import beside
 
@@ -86,17 +86,19 @@ def tolerances(
     ]
     if not sliders:
         return None
-    part = rows.replicates
-    has_samples = isinstance(part, Clusters) and part.are_samples
+    count, parts_name = _independent(rows)
     return {
         "sliders": sliders,
         "without": [[plain(readable(called(name))), why] for name, why in without.items()],
         "correlated": list(inputs.correlated),
-        "studied": _estimates(before, asked)
-        | {"promised": {name: _promised_now(bound) for name, bound in promises.items()}},
+        "studied": {
+            "quality": "The laws of the study.",
+            "events": _estimates(before, asked),
+            "promised": {name: _promised_now(bound) for name, bound in promises.items()},
+        },
         "fewest": FEWEST,
-        "parts": len(np.unique(part)) if has_samples else len(rows),
-        "parts_name": "samples" if has_samples else "rows",
+        "parts": count,
+        "partsName": parts_name,
         "impossible": IMPOSSIBLE,
     }
 
@@ -143,7 +145,7 @@ def _slider(
         found = [
             {"at": at, **stop}
             for at, arguments in moved
-            if arguments and (stop := _stop(rows, name, arguments, asked, before))
+            if arguments and (stop := _stop(rows, name, law, arguments, asked, before))
         ]
         neutral = {"at": studied, "words": _words(rows, name, law, vars(law))}
         return sorted([*found, neutral], key=lambda stop: stop["at"]) if found else []
@@ -171,7 +173,7 @@ def _place_of_study(stops: Sequence[Mapping[str, Any]]) -> int:
 
 
 def _stop(
-    rows: Result, name: str, arguments: Arguments, asked: Asked, before: Summary
+    rows: Result, name: str, law: Law, arguments: Arguments, asked: Asked, before: Summary
 ) -> dict[str, Any] | None:
     """Return what is known of the rows with other arguments of one law.
 
@@ -179,19 +181,38 @@ def _stop(
     """
     changes = {f"uncertain.{name}.{key}": value for key, value in arguments.items()}
     options = (f"--set {shlex.quote(f'{key}={toml(value)}')}" for key, value in changes.items())
-    law = rows.study.uncertain[name]
     stop = {"words": _words(rows, name, law, arguments), "options": " ".join(options)}
     try:
         reweighted = answer(rows, changes, asked.analysis, _PARTS if asked.analysis.outputs else ())
     except RunError as refusal:
-        return stop | {"refusal": plain(printed(str(refusal)))}
+        return stop | {"quality": plain(printed(f"{capitalized(str(refusal))}."))}
     except InputError:
         return None
     weights = reweighted.weights
     found = {} if weights.refusal else {"weights": log_bytes(weights.weights)}
-    quality = {"worth": reweighted.effective_rows, "k": _finite(reweighted.pareto_k)}
-    then = {"promised": dict(_promised_then(reweighted.summary, before, asked))}
-    return stop | found | quality | _estimates(reweighted.summary, asked) | then
+    then = {
+        name: _promised_then(reweighted.summary, before, name, promise)
+        for name, promise in asked.promises.items()
+    }
+    estimates = {"events": _estimates(reweighted.summary, asked), "promised": then}
+    return stop | found | {"quality": _quality(reweighted, rows)} | estimates
+
+
+def _quality(reweighted: WhatIf, rows: Result) -> str:
+    """Return how many equal rows the weights are worth."""
+    k = reweighted.pareto_k
+    tail = f" (Pareto k = {k:.2g})" if isfinite(k) else ""
+    count, name = _independent(rows)
+    worth = f"{reweighted.effective_rows:.3g} of {grouped(count)} {name}"
+    return printed(f"These weights are worth {worth}{tail}.")
+
+
+def _independent(rows: Result) -> tuple[int, str]:
+    """Return how many independent samples of several rows there are, else how many rows."""
+    part = rows.replicates
+    if isinstance(part, Clusters) and part.are_samples:
+        return len(np.unique(part)), "samples"
+    return len(rows), "rows"
 
 
 def _words(rows: Result, name: str, law: Law, arguments: Arguments) -> str:
@@ -214,14 +235,12 @@ def _words(rows: Result, name: str, law: Law, arguments: Arguments) -> str:
     return plain(printed(", ".join(words(key, value) for key, value in shown.items())))
 
 
-def _estimates(summary: Summary, asked: Asked) -> dict[str, Any]:
+def _estimates(summary: Summary, asked: Asked) -> dict[str, dict[str, Any]]:
     """Return the probabilities of the events that the study asks about."""
     return {
-        "events": {
-            event_key(element, value): _cell(summary, element, value)
-            for element in asked.elements
-            for value in asked.analysis.thresholds.get(element.output, ())
-        }
+        event_key(element, value): _cell(summary, element, value)
+        for element in asked.elements
+        for value in asked.analysis.thresholds.get(element.output, ())
     }
 
 
@@ -234,7 +253,7 @@ def _cell(summary: Summary, element: Element, threshold: float) -> dict[str, Any
     """Return a probability with its interval, as numbers and in words."""
     described = summary.outputs.get(element.name)
     side = "below" if element.is_lifetime else "above"
-    statistic = described and described.find("thresholds", repr(threshold), side)
+    statistic = described.find("thresholds", repr(threshold), side) if described else None
     if statistic is None:
         return {"value": None, "more": _why_missing(summary, element.name)}
     estimate = statistic.best.estimate
@@ -259,51 +278,36 @@ def _why_missing(summary: Summary, name: str) -> str:
     return plain(printed(next(notes, "")))
 
 
-def _promised_now(promise: ToleranceBound) -> list[dict[str, Any]]:
+def _promised_now(promise: ToleranceBound) -> list[str]:
     """Return the bounds that are promised, and that a quantile of weighted rows could replace."""
+    bounds = map(promise.of_quantile, promise.probabilities)
+    return [plain(printed(bound.sentence)) for bound in bounds if bound is not None]
+
+
+def _promised_then(
+    summary: Summary, before: Summary, name: str, promise: ToleranceBound
+) -> list[str]:
+    """Return what bounds of an element would then be, beside the same estimates as studied."""
     return [
-        {
-            "values": [bound.upper if isfinite(bound.upper) else bound.lower],
-            "text": plain(printed(bound.sentence)),
-        }
+        _then(bound, *(_end(each.outputs.get(name), bound, p) for each in (summary, before)))
         for p in promise.probabilities
         if (bound := promise.of_quantile(p)) is not None
     ]
 
 
-def _promised_then(
-    summary: Summary, before: Summary, asked: Asked
-) -> Iterator[tuple[str, list[dict[str, Any]]]]:
-    """Yield an element, and what its bounds would then be beside the same estimates as studied."""
-    for element in asked.elements:
-        if (promise := asked.promises.get(element.name)) is not None:
-            yield (
-                element.name,
-                [
-                    _then(bound, *(_end(one.outputs.get(element.name), bound, p) for one in pair))
-                    for pair in [(summary, before)]
-                    for p in promise.probabilities
-                    if (bound := promise.of_quantile(p)) is not None
-                ],
-            )
-
-
-def _then(bound: ToleranceBound, then: float, studied: float) -> dict[str, Any]:
+def _then(bound: ToleranceBound, then: float, studied: float) -> str:
     if not isfinite(then) or (bound.is_life and then <= 0):
-        return {
-            "values": [],
-            "text": "What could then be promised is not known: too many rows failed, or too few"
-            " carry it.",
-        }
+        return (
+            "What could then be promised is not known: too many rows failed, or too few carry it."
+        )
     towards = inf if isfinite(bound.upper) else -inf
     ends = (bound.unit.text(end, towards) for end in (then, studied))
-    text = f"{bound.end_of_quantile} {'; as studied, '.join(ends)}."
-    return {"values": [then, _finite(studied)], "text": plain(printed(text))}
+    return plain(printed(f"{bound.end_of_quantile} {'; as studied, '.join(ends)}."))
 
 
 def _end(described: Described | None, bound: ToleranceBound, probability: float) -> float:
     """Return the end of the interval of a quantile, with failed rows beyond it."""
-    statistic = described and described.find("quantiles", repr(probability))
+    statistic = described.find("quantiles", repr(probability)) if described else None
     if statistic is None:
         return float("nan")
     estimates: list[Estimate] = [statistic.best.estimate]

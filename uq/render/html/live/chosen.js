@@ -18,26 +18,22 @@ class Chosen {
   }
 
   tell() {
-    const {rows, selection} = this, status = this.element.querySelector(".status"), all = `${grouped(rows.count)} rows`;
-    const part = rows.count < rows.total ? ` in this page, a random part of ${grouped(rows.total)}` : "";
-    if (selection.isAll) status.textContent = rows.count === 1 ? "The only row." : `All ${all}${part}.`;
-    else status.replaceChildren(make("data", {value: selection.count}, grouped(selection.count)), ` of ${all}, chosen`
-      + " after the fact: a difference from all rows need not be an effect of what was chosen.");
+    const {rows, selection: {isAll, count}} = this, words = ` of ${grouped(rows.count)} rows, chosen after the fact: a`
+      + " difference from all rows need not be an effect of what was chosen.";
+    const chosen = [make("data", {value: count}, grouped(count)), words];
+    this.element.querySelector(".status").replaceChildren(...(isAll ? [rows.extent] : chosen));
   }
 
   lines(masks) {
     return this.rows.events.map(event => make("tr", {"data-key": event.key},
-      make("th", {scope: "row"}, ...dotOf(event.colour), event.words, event.counted),
-      ...masks.map(mask => {
-        const {share, hits, all, more} = shareOf(event, mask);
-        return cell(share, percent(share), more || `${grouped(hits)} of ${grouped(all)}`);
-      })));
+      make("th", {scope: "row", style: `--dot: ${event.colour}`}, event.words, event.counted),
+      ...masks.map(mask => countedCell(event, mask, (hits, all) => `${grouped(hits)} of ${grouped(all)}`))));
   }
 
   extremes(masks) {
     const cells = masks.map(mask => {
-      const [low, high] = extremesOf(this.column, mask) ?? [NaN, NaN];
-      const words = isNaN(low) ? "\u2013" : this.column.between(low, high);
+      const [low, high] = extremesOf(this.column, mask);
+      const words = low === undefined ? "\u2013" : this.column.between(low, high);
       return make("td", {class: "number", "data-low": low, "data-high": high}, words);
     });
     const words = `lowest and highest ${this.column.label}`;

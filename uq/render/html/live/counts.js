@@ -14,15 +14,16 @@ function shareOf({sides}, weights) {
   return {share: hits / all, hits, all, more: ""};
 }
 
+// A cell with such a share, and what it is a share of.
+function countedCell(event, weights, wordsOf = () => "") {
+  const {share, hits, all, more} = weights ? shareOf(event, weights) : {share: NaN};
+  return cell(share, percent(share), more || wordsOf(hits, all));
+}
+
 // The lowest and the highest value among rows that have one.
 function extremesOf({values, states}, mask) {
-  let [low, high] = [Infinity, -Infinity];
-  values.forEach((value, row) => {
-    if (!mask[row] || states[row] !== ENDED) return;
-    low = Math.min(low, value);
-    high = Math.max(high, value);
-  });
-  return low > high ? null : [low, high];
+  const ended = values.filter((_, row) => mask[row] && states[row] === ENDED).sort();
+  return [ended[0], ended.at(-1)];
 }
 
 // The share of rows above the end of each of some narrow bins, as far as it is known.

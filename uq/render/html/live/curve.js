@@ -7,18 +7,20 @@ function showCurves(figure, column, weighted, more) {
   const scale = new Scale(column), wide = window.innerWidth < 500 ? 360 : 520; // letters of one size
   const x = value => LEFT + Math.min(Math.max(scale.place(value), 0), 1) * (wide - LEFT - EDGE);
   const y = share => HIGH - BOTTOM - share * (HIGH - BOTTOM - EDGE);
-  const line = (x1, x2, y1, y2, name) => draw("line", {x1, x2, y1, y2, class: name});
+  const line = (x1, x2, y1, y2, name) => make("line", {x1, x2, y1, y2, class: name});
   const grid = [0, 0.25, 0.5, 0.75, 1].flatMap(share => [
     line(LEFT, wide - EDGE, y(share), y(share), "grid"),
-    draw("text", {x: LEFT - 6, y: y(share) + 4, "text-anchor": "end"}, `${100 * share}\u00a0%`),
+    make("text", {x: LEFT - 6, y: y(share) + 4, "text-anchor": "end"}, `${100 * share}\u00a0%`),
   ]);
-  const labels = withRoom(column, scale, x, text => LETTER * text.length, wide).map(({text, at}) =>
-    draw("text", {x: at, y: HIGH - 8, "text-anchor": "middle"}, text));
+  const labels = scale.ticks.map(value => {
+    const text = column.digits(value), most = wide - LETTER * text.length / 2;
+    return make("text", {x: Math.min(x(value), most), y: HIGH - 8, "text-anchor": "middle"}, text);
+  });
   const thresholds = column.lines.map(value => line(x(value), x(value), y(0), y(1), "threshold"));
   const curves = weighted.map(([weights, name]) =>
-    draw("path", {d: pathOf(sharesAbove(column, scale, weights), x, y), class: `line ${name}`}));
+    make("path", {d: pathOf(sharesAbove(column, scale, weights), x, y), class: `line ${name}`}));
   const title = `${column.curve}: ${column.title}`, attributes = {viewBox: `0 0 ${wide} ${HIGH}`, role: "img", "aria-label": title};
-  figure.replaceChildren(draw("svg", attributes, ...grid, ...labels, ...thresholds, ...curves.reverse()),
+  figure.replaceChildren(make("svg", attributes, ...grid, ...labels, ...thresholds, ...curves.reverse()),
     make("figcaption", {}, `${title}${more}.`));
 }
 

@@ -4,7 +4,7 @@ class Explorer {
   constructor(rows, element) {
     Object.assign(this, {rows, element, selection: new Selection(rows)});
     this.chosen = new Chosen(this.selection, element.querySelector(".chosen"));
-    this.scatter = new Scatter(this.selection, element.querySelector(".scatter"), (row, byKey) => this.open(row, byKey));
+    this.scatter = new Scatter(this.selection, element.querySelector(".scatter"), (name, byKey) => this.open(name, byKey));
     const ranges = [...element.querySelectorAll(".range")];
     this.ranges = rows.columns.map((column, i) => new Range(this.selection, column, ranges[i]));
     [this.card, this.clear] = [".opened", ".clear"].map(name => element.querySelector(name));
@@ -15,23 +15,20 @@ class Explorer {
   }
 
   listenToControls() {
-    const {rows, element, scatter} = this;
+    const {rows, element} = this;
     element.querySelectorAll(".chip").forEach(chip => this.listenToChip(chip));
     for (const select of element.querySelectorAll("select")) {
       select.addEventListener("change", () => { this[select.dataset.axis] = rows.columns[select.value]; this.arrange(); });
     }
-    listenToNumbers(rows, element.querySelector("form"), row => scatter.open(row), name => {
-      scatter.mark(-1);
-      this.present(cardElsewhere(rows, name, () => this.close()));
-    });
+    listenToNumbers(rows, element.querySelector("form"), name => this.open(name));
     this.clear.addEventListener("click", () => this.selection.clear());
   }
 
   listenToChip(chip) {
-    const category = this.rows.categories.find(({name}) => name === chip.dataset.category), code = Number(chip.dataset.code);
-    chip.addEventListener("click", () => this.selection.toggle(category, code));
-    const codes = this.selection.refused.get(category);
-    this.selection.listeners.push(() => chip.setAttribute("aria-pressed", !codes.has(code)));
+    const category = this.rows.categories.find(({name}) => name === chip.dataset.category);
+    const place = Number(chip.dataset.place), refused = this.selection.refused.get(category);
+    chip.addEventListener("click", () => this.selection.toggle(category, place));
+    this.selection.listeners.push(() => chip.setAttribute("aria-pressed", !refused.has(place)));
   }
 
   listenToPage() {
@@ -43,14 +40,11 @@ class Explorer {
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.scatter.draw());
   }
 
-  open(row, byKey) {
-    this.present(cardOf(this.rows, row, () => this.close()));
+  // Scroll to the card of a row, but never the plot out of sight.
+  open(name, byKey) {
+    this.scatter.mark(this.rows.numbers.indexOf(name));
+    this.card.replaceChildren(cardOf(this.rows, name, () => this.close()));
     if (byKey) this.card.querySelector("button").focus({preventScroll: true});
-  }
-
-  // Scroll to the card, but never the plot out of sight.
-  present(card) {
-    this.card.replaceChildren(card);
     const hidden = this.card.getBoundingClientRect().bottom - window.innerHeight;
     const room = this.scatter.element.getBoundingClientRect().top;
     window.scrollBy(0, Math.max(0, Math.min(hidden, room)));

@@ -1,6 +1,5 @@
 // How the inputs of the chosen rows differ from all: how many of them lie in each quarter of all rows.
 
-const MOST_INPUTS = 8;
 const HEADS = ["Input", "lowest quarter", "second", "third", "highest quarter"];
 
 // The share of rows in each quarter of a column.
@@ -14,7 +13,6 @@ function inQuarters(column, mask, count) {
 class Quarters {
   constructor(selection, element) {
     Object.assign(this, {selection, element, rows: selection.rows});
-    this.tables = [...element.querySelectorAll("table")];
     this.columns = this.rows.columns.filter(column => column.role === "input");
   }
 
@@ -23,11 +21,7 @@ class Quarters {
     element.hidden = isAll || !count || count === this.rows.count;
     if (element.hidden) return;
     const lines = this.columns.map(column => this.compared(column)).sort((a, b) => b.size - a.size).map(this.line);
-    const more = lines.splice(MOST_INPUTS);
-    fill(this.tables[0], HEADS, lines);
-    fill(this.tables[1], HEADS, more);
-    element.querySelector("details").hidden = !more.length;
-    element.querySelector("summary").textContent = more.length === 1 ? "1 more input" : `${more.length} more inputs`;
+    fill(element.querySelector("table"), HEADS, lines);
   }
 
   compared(column) {

@@ -36,18 +36,6 @@ class Column {
   }
 }
 
-class Category {
-  constructor(plain) {
-    Object.assign(this, plain);
-    this.codes = numbersOf(plain.codes, Int8Array);
-    this.places = new Map(this.entries.map((entry, place) => [entry.code, place]));
-  }
-
-  entry(row) {
-    return this.entries[this.places.get(this.codes[row])];
-  }
-}
-
 class Rows {
   constructor(plain) {
     Object.assign(this, plain);
@@ -55,7 +43,7 @@ class Rows {
     this.count = this.numbers.length;
     this.columns = plain.columns.map(column => new Column(column));
     this.outputs = this.columns.filter(column => column.role === "output");
-    this.categories = plain.categories.map(category => new Category(category));
+    this.categories = plain.categories.map(each => ({...each, places: numbersOf(each.places, Uint8Array)}));
     this.regime = this.categories.find(category => category.name === "regime");
     this.events = plain.events.map(event => ({...event, sides: numbersOf(event.sides, Uint8Array)}));
     this.all = new Float64Array(this.count).fill(1);

@@ -19,7 +19,6 @@ class Scatter {
   }
 
   resize() {
-    if (!this.columnX) return;
     const width = this.element.clientWidth, height = Math.round(Math.min(440, Math.max(260, 0.62 * width)));
     const ratio = window.devicePixelRatio || 1;
     Object.assign(this.canvas, {width: width * ratio, height: height * ratio});
@@ -55,9 +54,11 @@ class Scatter {
   drawHorizontal(pen) {
     const {x, left, bottom, width} = this;
     Object.assign(pen, {textBaseline: "top", textAlign: "center"});
-    const labels = withRoom(x.column, x.scale, value => x.pixel(value), text => pen.measureText(text).width, width);
-    for (const {text, at} of labels) pen.fillText(text, at, bottom + TICK + 3);
-    for (const value of x.scale.ticks) pen.strokeRect(x.pixel(value), bottom, 0, TICK);
+    for (const value of x.scale.ticks) {
+      const text = x.column.digits(value), most = width - pen.measureText(text).width / 2;
+      pen.strokeRect(x.pixel(value), bottom, 0, TICK);
+      pen.fillText(text, Math.min(x.pixel(value), most), bottom + TICK + 3);
+    }
     Object.assign(pen, {textBaseline: "bottom", textAlign: "left"});
     for (const [name, at] of x.strips) {
       pen.strokeRect(name === "no value" ? at + STRIP : at, EDGE, 0, bottom - EDGE);
@@ -97,7 +98,7 @@ class Scatter {
     };
     if (!isAll) points(faint, 0.25, row => !mask[row]);
     if (!regime) return points(isAll ? colours.rows : accent, 0.8, row => mask[row]);
-    for (const {code, colour} of regime.entries) points(colour, 0.8, row => mask[row] && regime.codes[row] === code);
+    regime.entries.forEach(({colour}, i) => points(colour, 0.8, row => mask[row] && regime.places[row] === i));
   }
 
   nearest(x, y) {
@@ -117,21 +118,19 @@ class Scatter {
     this.tip.hidden = row < 0;
     this.draw();
     if (row < 0) return;
-    const regime = this.rows.regime ? `, ${this.rows.regime.entry(row).label}` : "";
-    const lines = [this.columnX, this.columnY].flatMap(column => [
-      make("div", {}, `${column.label}:`), make("strong", {}, column.wordsOfRow(row)),
-    ]);
-    this.tip.replaceChildren(make("div", {}, `Row ${this.rows.numbers[row]}${regime}`), ...lines);
-    const isRight = this.px[row] > this.width / 2, {style} = this.tip;
-    style.left = isRight ? "" : `${this.px[row] + 12}px`;
-    style.right = isRight ? `${this.width - this.px[row] + 12}px` : "";
-    style.top = `${Math.max(0, Math.min(this.py[row] - 20, this.height - this.tip.offsetHeight))}px`;
+    const {regime, numbers} = this.rows, columns = [this.columnX, this.columnY];
+    const name = `Row ${numbers[row]}${regime ? `, ${regime.entries[regime.places[row]].label}` : ""}`;
+    this.tip.textContent = [name, ...columns.map(column => `${column.label}: ${column.wordsOfRow(row)}`)].join("\n");
+    const isRight = this.px[row] > this.width / 2;
+    place(this.tip, {
+      left: isRight ? null : this.px[row] + 12,
+      right: isRight ? this.width - this.px[row] + 12 : null,
+      top: Math.max(0, Math.min(this.py[row] - 20, this.height - this.tip.offsetHeight)),
+    });
   }
 
   open(row, byKey = false) {
-    if (row < 0) return;
-    this.mark(row);
-    this.pick(row, byKey);
+    if (row >= 0) this.pick(this.rows.numbers[row], byKey);
   }
 
   mark(row) {
@@ -150,19 +149,20 @@ class Scatter {
 
   listenToPointer() {
     let start = null;
+    const placeOf = event => [event.offsetX, event.offsetY];
     const done = () => { start = null; this.brush.hidden = true; };
     const on = (name, work) => this.canvas.addEventListener(name, work);
     on("pointerdown", event => {
       if (event.button || event.pointerType === "touch") return;
-      start = [event.offsetX, event.offsetY];
+      start = placeOf(event);
       this.canvas.setPointerCapture(event.pointerId);
     });
     on("pointermove", event => {
-      const here = [event.offsetX, event.offsetY];
+      const here = placeOf(event);
       this.point(start && this.stretch(start, here) ? -1 : this.nearest(...here));
     });
     on("pointerup", event => {
-      const here = [event.offsetX, event.offsetY];
+      const here = placeOf(event);
       if (!start || !this.stretch(start, here)) this.open(this.nearest(...here));
       done();
     });
@@ -184,8 +184,7 @@ class Scatter {
   stretch(a, b) {
     const [[left, right], [top, bottom]] = [0, 1].map(i => [Math.min(a[i], b[i]), Math.max(a[i], b[i])]);
     if (right - left < 5 && bottom - top < 5) return false;
-    const box = {left, top, width: right - left, height: bottom - top};
-    for (const [name, pixels] of Object.entries(box)) this.brush.style[name] = `${pixels}px`;
+    place(this.brush, {left, top, width: right - left, height: bottom - top});
     this.brush.hidden = false;
     this.selection.setRange(this.columnX, this.x.value(left), this.x.value(right));
     this.selection.setRange(this.columnY, this.y.value(bottom), this.y.value(top));

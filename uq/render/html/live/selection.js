@@ -4,7 +4,7 @@ class Selection {
   constructor(rows) {
     this.rows = rows;
     this.ranges = new Map(); // column -> [low, high]; an end that is open is infinite
-    this.refused = new Map(rows.categories.map(category => [category, new Set()])); // codes that are not shown
+    this.refused = new Map(rows.categories.map(category => [category, new Set()])); // places of entries
     this.listeners = [];
     this.changed = eventually(() => {
       this.update();
@@ -23,27 +23,25 @@ class Selection {
     this.changed();
   }
 
-  toggle(category, code) {
-    const codes = this.refused.get(category);
-    if (!codes.delete(code)) codes.add(code);
+  toggle(category, place) {
+    const places = this.refused.get(category);
+    if (!places.delete(place)) places.add(place);
     this.changed();
   }
 
   clear() {
     this.ranges.clear();
-    for (const codes of this.refused.values()) codes.clear();
+    for (const places of this.refused.values()) places.clear();
     this.changed();
   }
 
   // A life that never ends, or is censored, lies above every finite value.
-  isInside({values, states}, [low, high], row) {
-    return values[row] >= low && (states[row] === CENSORED ? high === Infinity : values[row] <= high);
-  }
-
   update() {
-    const ranges = [...this.ranges], refused = [...this.refused].filter(([, codes]) => codes.size);
-    const isChosen = row => ranges.every(([column, range]) => this.isInside(column, range, row))
-      && !refused.some(([category, codes]) => codes.has(category.codes[row]));
+    const isInside = ({values, states}, [low, high], row) =>
+      values[row] >= low && (states[row] === CENSORED ? high === Infinity : values[row] <= high);
+    const ranges = [...this.ranges], refused = [...this.refused].filter(([, places]) => places.size);
+    const isChosen = row => ranges.every(([column, range]) => isInside(column, range, row))
+      && !refused.some(([category, places]) => places.has(category.places[row]));
     this.isAll = !ranges.length && !refused.length;
     this.mask = Uint8Array.from(this.rows.numbers, (_, row) => Number(isChosen(row)));
     this.count = this.mask.reduce((sum, chosen) => sum + chosen, 0);

@@ -36,9 +36,8 @@ function productOf(rows, stops) {
 
 // The number of rows of equal weight that are worth as much (L. Kish, Survey Sampling, 1965).
 function worthOf(weights) {
-  let sum = 0, squares = 0;
-  for (const weight of weights) { sum += weight; squares += weight * weight; }
-  return squares ? sum * sum / squares : 0;
+  const sum = weights.reduce((before, weight) => before + weight, 0);
+  return sum ** 2 / weights.reduce((before, weight) => before + weight ** 2, 0) || 0;
 }
 
 class Tolerances {
@@ -47,8 +46,8 @@ class Tolerances {
     const show = eventually(() => this.update()), parts = [...element.querySelectorAll(".tolerance")];
     this.sliders = rows.tolerances.sliders.map((plain, i) => new Slider(plain, parts[i], show));
     this.events = rows.events.filter(event => event.output);
-    this.select = element.querySelector("select");
-    this.select.addEventListener("change", () => { this.column = rows.columns[this.select.value]; this.update(); });
+    const choose = event => { this.column = rows.columns[event.target.value]; this.update(); };
+    element.querySelector("select").addEventListener("change", choose);
     this.button = element.querySelector(".as-studied");
     this.button.addEventListener("click", () => { this.sliders.forEach(slider => slider.reset()); this.update(); });
     this.command = make("code");
@@ -65,15 +64,15 @@ class Tolerances {
     part(".command").hidden = !stops.length;
     part(".status").textContent = why || this.quality(stops, weights);
     this.fillTable(stops, why ? null : weights);
-    const bounds = stops.length > 1 || why ? {} : (stops[0] ?? this.studied).promised;
-    part(".promised").replaceChildren(...(bounds[this.column.name] ?? []).flatMap(({text}) => [text, " "]));
+    const bounds = stops.length > 1 ? [] : (stops[0] ?? this.studied).promised?.[this.column.name] ?? [];
+    part(".promised").textContent = bounds.join(" ");
     const curves = weights && !why ? [[weights, "chosen"], [this.rows.all, "all"]] : [[this.rows.all, "all"]];
     showCurves(part("figure"), this.column, curves, curves.length > 1 ? ": these laws (bold) and as studied (thin)" : "");
   }
 
   // Why these changes have no numbers, or "".
   whyNot(changed, stops, weights) {
-    if (stops.length < 2) return stops[0]?.refusal ?? "";
+    if (stops.length < 2) return "";
     if (changed.filter(slider => this.correlated.includes(slider.name)).length > 1) {
       return "These inputs depend on each other: the command weights the rows for both at once.";
     }
@@ -86,24 +85,20 @@ class Tolerances {
   }
 
   quality(stops, weights) {
-    if (!stops.length) return "The laws of the study.";
-    const worth = stops.length > 1 ? this.worth(weights) : stops[0].worth, k = stops[0].k;
-    const more = stops.length > 1 || k === null ? "" : ` (Pareto k = ${number(k, 2)})`;
-    return `These weights are worth ${number(worth, 3)} of ${grouped(this.parts)} ${this.parts_name}${more}.`;
+    if (stops.length < 2) return (stops[0] ?? this.studied).quality;
+    return `These weights are worth ${number(this.worth(weights), 3)} of ${grouped(this.parts)} ${this.partsName}.`;
   }
 
   // One change has the estimates of Python, several are counted by weight.
   fillTable(stops, weights) {
-    const isCounted = stops.length > 1, heads = isCounted ? ["these laws, counted", "as studied, counted"] : ["these laws", "as studied"];
-    const counted = (event, weights) => weights ? shareOf(event, weights) : {share: NaN};
-    const countedCell = ({share, more}) => cell(share, percent(share), more);
+    const isCounted = stops.length > 1, table = this.element.querySelector(".counted");
     const lines = this.events.map(event => {
-      const cells = isCounted ? [weights, this.rows.all].map(each => countedCell(counted(event, each)))
+      const cells = isCounted ? [weights, this.rows.all].map(each => countedCell(event, each))
         : [...stops, this.studied].map(({events}) => estimatedCell(events?.[event.key]));
       return make("tr", {"data-key": event.key}, make("th", {scope: "row"}, event.words), ...cells);
     });
-    const table = this.element.querySelector(".counted");
-    fill(table, ["", ...(stops.length ? heads : heads.slice(1))], lines);
+    const heads = ["", ...(stops.length ? ["these laws"] : []), "as studied"];
+    fill(table, heads.map(head => head && isCounted ? `${head}, counted` : head), lines);
     table.hidden = !lines.length;
   }
 }

@@ -33,20 +33,16 @@ function named({label, symbol = [""]}) {
   return symbol[0] ? [`${label} (`, ...indexed, ")"] : [label];
 }
 
+const DRAWN = ["svg", "path", "line", "text"];
+
 // An element with attributes and contents; a name with ":" is an event.
 function make(tag, attributes = {}, ...contents) {
-  const element = document.createElement(tag);
+  const space = DRAWN.includes(tag) ? "http://www.w3.org/2000/svg" : "http://www.w3.org/1999/xhtml";
+  const element = document.createElementNS(space, tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith("on:")) element.addEventListener(name.slice(3), value);
     else if (value !== false && value !== undefined) element.setAttribute(name, value === true ? "" : value);
   }
-  element.append(...contents);
-  return element;
-}
-
-function draw(tag, attributes, ...contents) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   element.append(...contents);
   return element;
 }
@@ -63,9 +59,9 @@ function cell(value, text, more = "", attributes = {}) {
   return make("td", {class: "number", ...attributes}, make("data", {value: String(value)}, text), ...small);
 }
 
-// A dot in the colour of a regime.
-function dotOf(colour) {
-  return colour ? [make("span", {class: "dot", style: `background:${colour}`})] : [];
+// Place an element, in pixels.
+function place(element, box) {
+  for (const [name, pixels] of Object.entries(box)) element.style[name] = pixels === null ? "" : `${pixels}px`;
 }
 
 // A button that copies a text, and the place where it says so.
@@ -85,10 +81,7 @@ function copyButton(text) {
 
 // Call a function once before the next picture, however often it is asked for.
 function eventually(work) {
-  let isWaiting = false;
-  const go = () => { isWaiting = false; work(); };
-  return () => {
-    if (!isWaiting) requestAnimationFrame(go);
-    isWaiting = true;
-  };
+  let waiting = null;
+  const go = () => { waiting = null; work(); };
+  return () => { waiting ??= requestAnimationFrame(go); };
 }
