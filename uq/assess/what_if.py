@@ -20,6 +20,7 @@ from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
+from uq.stats.importance_weights import Smoothed
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 from uq.text.literals import key, read_toml, shown, toml
@@ -39,11 +40,14 @@ class WhatIf:
         The least number of equal rows that those of an output are worth.
     pareto_k : float
         Of the worst weights used.
+    weights : Smoothed
+        Of the rows, with nothing integrated.
     """
 
     summary: Summary
     effective_rows: float
     pareto_k: float
+    weights: Smoothed
 
 
 def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
@@ -110,6 +114,7 @@ def answer(
         summary,
         min((weights.effective for weights in used), default=0.0),
         max((weights.k for weights in used), default=0.0),
+        weighting.all_inputs,
     )
 
 

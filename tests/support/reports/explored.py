@@ -12,7 +12,7 @@ from uq.render.html.embedded_rows import rows_inside
 from uq.render.html.layout import templates
 from uq.result.result import Result
 
-CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(line => [
+CELLS = """[...document.querySelectorAll("PLACE table.counted tr[data-key]")].map(line => [
   line.dataset.key,
   ...[...line.cells].slice(1).map(cell => [cell.querySelector("data")?.value ?? "NaN",
   cell.dataset.low ?? "NaN", cell.dataset.high ?? "NaN"])])"""
@@ -32,16 +32,15 @@ def cells(browser, place="#explorer"):
     """Return the numbers of the table: key -> one (value, low, high) for each column."""
     browser.painted()
     numbers = browser.value(CELLS.replace("PLACE", place))
-    return {
-        key: [np.array(numbers_of_cell, dtype=float) for numbers_of_cell in cell_numbers]
-        for key, *cell_numbers in numbers
-    }
+    return {key: [np.array(row, dtype=float) for row in row] for key, *row in numbers}
 
 
 def ranges(browser):
     """Return the ends of each range."""
     ends = "one => [one.dataset.low, one.dataset.high]"
-    ends_of_ranges = browser.value(f"[...document.querySelectorAll('.range')].map({ends})")
+    ends_of_ranges = browser.value(
+        f"[...document.querySelectorAll('.range:not([hidden])')].map({ends})"
+    )
     return [tuple(map(float, pair)) for pair in ends_of_ranges]
 
 

@@ -7,7 +7,10 @@ Reading order; each part imports only those above it:
     references       references that a model asks to cite
     first_scatter    the scatter plot that a page shows first
     symbols          symbols of formulas as HTML
-    tolerances       data by which a page weights its rows
+    encoded          arrays as text inside a page
+    axes             axes of a page: ends, scale and ticks
+    moved_laws       arguments of a law with another scatter or another middle
+    tolerances       weights of rows for each stop of a slider, and what Python estimates there
     inspections      the inspections from which a result was learnt
     paths            paths of a drawing, written with few characters
     cells            tables of a report, in plain data that the template lays out

@@ -1,54 +1,40 @@
 """The rows inside a page, with which its scripts (``live/``) compute."""
 
-import base64
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from math import ceil
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uq.assess.answer.parts import Quantity
 from uq.assess.answer.wording import called
 from uq.assess.findings import Findings
 from uq.assess.independent_inputs import independent_inputs
 from uq.assess.scaling import population
+from uq.assess.summary import REGIME
+from uq.contract import Floats
 from uq.render.figures.elements_plot import display_unit, occurring_regimes
-from uq.render.figures.panel import is_wide
 from uq.render.figures.style import LIMIT, ROWS
 from uq.render.figures.words import element_in_words, literal, meaning_of, symbol_beside, unbroken
+from uq.render.html.axes import axis_of, common_digits
+from uq.render.html.encoded import encoded
 from uq.render.html.first_scatter import first_element, first_input
+from uq.render.html.moved_laws import STOPS
 from uq.render.html.symbols import parts_of
-from uq.render.html.tolerances import promised, tolerances
+from uq.render.html.tolerances import event_key, tolerances
 from uq.result.element import Element
 from uq.result.elements import (
     flags,
 )
 from uq.result.result import Result
 from uq.stats.clusters import Clusters
-from uq.stats.intervals import upper_probability
-from uq.stats.quantile_functions import student
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
-from uq.text.numbers import printed, threshold
+from uq.text.numbers import grouped, printed, threshold
 from uq.text.symbols import readable
 from uq.text.units import ReadableUnit
-
-
-def encoded(values: Any, kind: str) -> str:
-    """Return an array as base64 of its bytes.
-
-    Parameters
-    ----------
-    values : array-like
-    kind : str
-        NumPy's name of their type, such as ``"<f8"``.
-
-    Returns
-    -------
-    str
-    """
-    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode()
-
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""
@@ -57,8 +43,16 @@ MOST_NUMBERS = 480_000
 """Nor more numbers: they take 5 MB."""
 
 
-_STUDENTS = 100
-"""From so many independent parts on, an expansion has enough digits."""
+_BYTES_OF_NUMBER = 8
+
+QUARTERS = (
+    "Of the chosen rows, the share in each quarter of all rows: 25 % each where an input makes no"
+    " difference. Of 100 rows, a quarter holds between 17 and 34 % by chance alone, of 1000 between"
+    " 22 and 28 %. The inputs that differ most come first."
+)
+
+_ENDED, _CENSORED, _NEVER, _UNDEFINED, _FAILED = range(5)
+_MISS, _HIT, _NO_PART, _UNKNOWN = range(4)
 
 
 def rows_inside(
@@ -83,39 +77,46 @@ def rows_inside(
         return None
     analysis, whole, outputs = findings.result.analysis, findings.rows, _outputs(findings)
     inputs = independent_inputs(whole)
-    rows = part_of(whole, len(inputs) + sum(1 for _ in whole.elements(outputs)))
+    numbers = len(inputs) + sum(1 for _ in whole.elements(outputs))
+    rows = part_of(whole, numbers + ceil(len(inputs) * STOPS / _BYTES_OF_NUMBER))
     elements = list(population(rows, outputs))
     columns = [_input(rows, name, findings.result.input_unit(name)) for name in inputs]
-    promises = {one.name: one.promise for one in answered if one.promise is not None}
-    columns += [
-        _output(rows, one, analysis) | {"promised": list(promised(promises.get(one.name)))}
-        for one in elements
-    ]
+    columns += [_output(rows, element, analysis) for element in elements]
+    promises = {lead.name: lead.promise for lead in answered[:1] if lead.promise is not None}
     drawn = first_element(elements, answered, analysis)
     first = list(inputs).index(first_input(independent_inputs(rows), elements[drawn], answered))
-    design = _design(rows)
-    laws = tolerances(rows, elements)
-    if integrated := dict.fromkeys(one for each in elements for one in _integrated(each)):
-        names = " and ".join(map(called, integrated))
-        design["intervals"] = (
-            "Counted: each row is one life, as computed, as in tolerance bounds; other numbers of"
-            f" the answer, the tables and other tolerances integrate {names} exactly."
-            f" {design['intervals']}"
-        )
     return {
         "model": rows.model_option,
         "file": shlex.quote(plain(file)),
-        "total": len(whole),
+        "extent": _extent(len(rows), len(whole)),
+        "absence": _absence(len(rows), len(whole)),
         "allowed": _allowed(findings.result),
         "numbers": encoded(rows.dataset["row"].values, "<i4"),
-        "failed": encoded(rows.failed, "u1"),
         "columns": columns,
         "categories": list(_categories(rows)),
+        "events": [*_thresholds(rows, elements, analysis), *_regimes(rows)],
         "colours": {"rows": ROWS, "limit": LIMIT},
         "first": [first, len(inputs) + drawn],
-        "tolerances": laws,
-        **design,
+        "tolerances": tolerances(rows, elements, promises),
+        "note": _note(elements),
+        "quarters_note": QUARTERS,
     }
+
+
+def _extent(count: int, total: int) -> str:
+    """Return which rows a page holds."""
+    part = f" in this page, a random part of {grouped(total)}" if count < total else ""
+    return "The only row." if count == 1 else printed(f"All {grouped(count)} rows{part}.")
+
+
+def _absence(count: int, total: int) -> str:
+    """Return why a page does not hold a row."""
+    counted = "those that count in its statistics"
+    part = f"a random part of {grouped(total)}" if count < total else counted
+    words = (
+        f"Not among the {grouped(count)} rows in this page, {part}; the command computes it again."
+    )
+    return printed(words)
 
 
 def _allowed(result: Result) -> list[int]:
@@ -140,7 +141,7 @@ def why_no_rows(findings: Findings) -> str:
 def _outputs(findings: Findings) -> list[str]:
     """Return the outputs that a page shows and some row has."""
     shown = findings.result.shown_outputs(findings.result.analysis)
-    return [one for one in shown if one not in findings.absent]
+    return [output for output in shown if output not in findings.absent]
 
 
 def part_of(rows: Result, columns: int) -> Result:
@@ -172,30 +173,96 @@ def part_of(rows: Result, columns: int) -> Result:
 
 def _input(rows: Result, name: str, unit: ReadableUnit) -> dict[str, Any]:
     variable = rows.dataset[name]
-    return _column(name, called(name), *unit, variable.values) | {
+    values = variable.values
+    symbol = parts_of(symbol_beside(called(name), variable))
+    column = _column(name, called(name), unit, values, np.zeros(len(values)), symbol)
+    return column | {
         "role": "input",
-        "symbol": parts_of(symbol_beside(called(name), variable)),
         "meaning": plain(readable(meaning_of(variable))),
-        "thresholds": [],
+        "curve": "Share above each value",
+        "lines": [],
+        "quarters": np.quantile(values, (0.25, 0.5, 0.75)).tolist(),
     }
 
 
 def _output(rows: Result, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
-    unit, per = display_unit(element.units, element.values)
-    column = _column(element.name, element_in_words(rows, element), unit, per, element.values)
+    unit = display_unit(element.units, element.values)
+    label = element_in_words(rows, element)
+    column = _column(element.name, label, unit, element.values, _states(element), [""])
+    asked = analysis.thresholds.get(element.output, ())
+    lines = [
+        side * float(value) for value in asked for side in ((-1, 1) if element.is_angle else (1,))
+    ]
+    axis = column["axis"]
     return column | {
         "role": "output",
-        "life": element.is_lifetime,
-        "success": bool(element.declared.success),
-        "angle": element.is_angle,
-        "counted": bool(_integrated(element)),
-        "neverKnownAtOnce": element.declared.never_known_at_once,
-        "censored": encoded(element.censored, "u1") if element.censored.any() else None,
-        "thresholds": [
-            {"value": value, "words": _asked(column, element, value)}
-            for value in analysis.thresholds.get(element.output, ())
-        ],
+        "meaning": "",
+        "curve": _curve(element),
+        "lines": [line for line in lines if axis["low"] <= line <= axis["high"]],
     }
+
+
+def _curve(element: Element) -> str:
+    """Return what the curve of an output shows."""
+    if element.declared.success:
+        return "Share that has not yet succeeded"
+    return "Share that outlives each time" if element.is_lifetime else "Share above each value"
+
+
+def _states(element: Element) -> NDArray[np.int_]:
+    """Return how each row ended, as the scripts number it."""
+    states = np.where(np.isposinf(element.values), _NEVER, _ENDED)
+    states[element.censored] = _CENSORED
+    states[np.isnan(element.values)] = _UNDEFINED
+    states[element.failed] = _FAILED
+    return states
+
+
+def _thresholds(
+    rows: Result, elements: Sequence[Element], analysis: AnalysisTable
+) -> Iterator[dict[str, Any]]:
+    """Yield the events whose probabilities the study asks for, with the side of each row."""
+    for element in elements:
+        for value in analysis.thresholds.get(element.output, ()):
+            below = event_sides(element, value)
+            yield {
+                "key": event_key(element, value),
+                "words": _asked(rows, element, value),
+                "counted": ", counted" if _integrated(element) else "",
+                "colour": None,
+                "output": element.name,
+                "sides": encoded(below, "u1"),
+            }
+
+
+def event_sides(element: Element, threshold: float) -> NDArray[np.uint8]:
+    """Return on which side of a threshold each row lies, as the scripts number it."""
+    rows = element.plain
+    hits = rows.below(threshold) if element.is_lifetime else rows.above(threshold)
+    sides = np.where(hits > 0, _HIT, _MISS).astype(np.uint8)
+    sides[element.unknown_sides(threshold)] = _UNKNOWN
+    sides[element.failed] = _NO_PART
+    return sides
+
+
+def _regimes(rows: Result) -> Iterator[dict[str, Any]]:
+    """Yield the regimes as events; rows that failed without one take no part."""
+    for category in _categories(rows):
+        if category["name"] != REGIME:
+            continue
+        codes = rows.dataset[REGIME].values
+        for entry in category["entries"]:
+            if entry["code"] >= 0:
+                sides = np.where(codes == entry["code"], _HIT, _MISS)
+                sides[(codes < 0) & rows.failed] = _NO_PART
+                yield {
+                    "key": f"{REGIME}/{entry['label']}",
+                    "words": f"in {entry['label']}",
+                    "counted": "",
+                    "colour": entry["colour"],
+                    "output": None,
+                    "sides": encoded(sides, "u1"),
+                }
 
 
 def _integrated(element: Element) -> tuple[str, ...]:
@@ -203,76 +270,84 @@ def _integrated(element: Element) -> tuple[str, ...]:
     return () if element.law is None else element.law.inputs
 
 
-def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
+def _asked(rows: Result, element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
+    label = plain(printed(readable(element_in_words(rows, element))))
     at = threshold(value, element.units)
     if element.is_lifetime:
         does = "succeeds" if element.declared.success else "ends"
-        return f"P({does} within {printed(at)}), {column['label']}"
-    label = f"|{column['label']}|" if element.is_angle else column["label"]
-    return f"P({label} > {printed(at)})"
+        return f"P({does} within {printed(at)}), {label}"
+    return f"P({f'|{label}|' if element.is_angle else label} > {printed(at)})"
 
 
-def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
+def _column(
+    name: str,
+    words: str,
+    unit: ReadableUnit,
+    values: Floats,
+    states: NDArray[Any],
+    symbol: Sequence[str],
+) -> dict[str, Any]:
+    """Return a column of numbers: how it is called, written and drawn."""
+    label = plain(printed(readable(words)))
+    shown = "" if unit.name == "1" else plain(unbroken(unit.name))
+    title = f"{label} ({symbol[0]})" if symbol[0] and len(symbol) == 1 else label
+    axis = axis_of(values[states <= _CENSORED], unit.size)
     return {
         "name": name,
-        "label": plain(printed(readable(words))),
-        "unit": "" if unit == "1" else plain(unbroken(unit)),
-        "per": per,
-        "wide": is_wide(values[np.isfinite(values)]),
+        "label": label,
+        "symbol": symbol,
+        "title": f"{title} [{shown}]" if shown else title,
+        "after": _after(shown),
+        "per": unit.size,
+        "common": common_digits(axis),
+        "axis": axis,
         "values": encoded(values, "<f8"),
+        "states": encoded(states, "u1") if states.any() else None,
     }
+
+
+def _after(unit: str) -> str:
+    """Return a unit as it follows a number."""
+    if unit in ("", "\N{DEGREE SIGN}"):
+        return unit
+    space = "\N{NO-BREAK SPACE}"
+    return f"{space}\N{MULTIPLICATION SIGN}{space}{unit}" if unit.startswith("10") else f" {unit}"
 
 
 def _categories(rows: Result) -> Iterator[dict[str, Any]]:
-    """Yield the regimes, and how rows ended."""
+    """Yield the regimes, and how rows ended: the labels that occur, and the place of each row's."""
     colours = {name: colour for name, (_, colour) in occurring_regimes(rows).items()}
-    for name, label in (("regime", "Regime"), ("status", "Status")):
-        if name in rows.dataset:
-            codes = rows.dataset[name].values
-            counts = {code: int((codes == code).sum()) for code, _ in flags(rows.dataset[name])}
-            yield {
-                "name": name,
-                "label": label,
-                "codes": encoded(codes, "i1"),
-                "entries": [
-                    {
-                        "code": code,
-                        "label": plain(words),
-                        "count": counts[code],
-                        "colour": colours.get(literal(words), ROWS) if name == "regime" else None,
-                    }
-                    for code, words in flags(rows.dataset[name])
-                    if counts[code]
-                ],
-            }
+    for name, label in ((REGIME, "Regime"), ("status", "Status")):
+        if name not in rows.dataset:
+            continue
+        codes = rows.dataset[name].values
+        occurring = [(code, words) for code, words in flags(rows.dataset[name]) if code in codes]
+        places = [code for code, _ in occurring]
+        yield {
+            "name": name,
+            "label": label,
+            "places": encoded(sum(i * (codes == code) for i, code in enumerate(places)), "u1"),
+            "entries": [
+                {
+                    "code": code,
+                    "label": plain(words),
+                    "count": printed(grouped(int((codes == code).sum()))),
+                    "colour": colours.get(literal(words), ROWS) if name == REGIME else None,
+                }
+                for code, words in occurring
+            ],
+        }
 
 
-def _design(rows: Result) -> dict[str, Any]:
-    """Return what intervals rest on, and a sentence that says so."""
-    part = rows.replicates
-    found: dict[str, Any] = {
-        "independent": rows.has_independent_rows,
-        "replicate": None,
-        "sample": None,
-        "samples": None,
-        "parts": "rows",
-    }
-    several = "samples" if rows.has_independent_samples else "replicates"
-    count = 0 if part is None else len(np.unique(part))
-    if isinstance(part, Clusters):
-        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
-    elif part is not None and count > 1:
-        found |= {"replicate": encoded(part, "<i4")}
-    if part is None:
-        words = (
-            "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
-            " misses are fewer than 20, and those of quantiles come from order statistics; where"
-            " lives are censored, both rest on Greenwood's formula. The band is Kolmogorov's."
-        )
-    elif count < 2:
-        words = f"No intervals: they rest on the scatter between {several}, of which there is one."
-    else:
-        words = f"95 % intervals rest on the scatter between {count} {several}."
-    students = (student(upper_probability(), parts - 1) for parts in range(2, _STUDENTS))
-    return found | {"students": [None, None, *students], "intervals": words}
+def _note(elements: Sequence[Element]) -> str:
+    """Return what a count is, beside the other numbers of a page."""
+    integrated = dict.fromkeys(name for element in elements for name in _integrated(element))
+    words = "Counted, without intervals: those of all rows stand under the outputs."
+    if not integrated:
+        return words
+    names = " and ".join(map(called, integrated))
+    return (
+        f"{words} Each row is one life, as computed, as in tolerance bounds; other numbers of the"
+        f" answer, the tables and other tolerances of one input integrate {names} exactly."
+    )

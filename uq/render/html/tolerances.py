@@ -1,35 +1,63 @@
-"""Data by which a page weights its rows: laws of inputs, and how they scale lives."""
+"""Other tolerances: weights of rows for each stop of a slider, and what Python estimates there."""
 
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
-from math import isfinite
-from typing import Any
+from math import inf, isfinite, isnan
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from uq.assess.answer.tolerance_bound import ToleranceBound
-from uq.assess.answer.wording import called
-from uq.assess.densities import correlations
+from uq.assess.answer.wording import called, unit_of_input
 from uq.assess.row_inputs import Inputs, inputs_of
-from uq.assess.scaling import given_others, scalers
+from uq.assess.summary import Described, Summary, summarise
+from uq.assess.what_if import WhatIf, answer
+from uq.errors import InputError, RunError
+from uq.render.figures.words import meaning_of, symbol_beside
+from uq.render.html.encoded import IMPOSSIBLE, log_bytes
+from uq.render.html.moved_laws import Arguments, can_move, shifts, widths
+from uq.render.html.symbols import parts_of
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.sampling.listed_values import IntegerRange
-from uq.text.literals import plain
-from uq.text.numbers import printed
+from uq.stats.clusters import Clusters
+from uq.stats.estimate import Estimate
+from uq.study.file import AnalysisTable
+from uq.text.literals import plain, toml
+from uq.text.numbers import capitalized, grouped, percent, percent_interval, printed
 from uq.text.symbols import readable
-
-KNOWN = (
-    *("normal", "truncated-normal", "lognormal", "uniform", "loguniform", "triangular", "pert"),
-    *("beta", "weibull", "gamma", "gumbel", "exponential", "histogram", "integer-range"),
-)
-"""Laws that the scripts know (``live/laws.js``)."""
+from uq.text.units import beside
 
 LISTED = "its values are listed and have neither width nor place"
 
+FEWEST = 100
+"""Of several changes at once, a page shows no number where rows are worth fewer."""
 
-def tolerances(rows: Result, elements: Sequence[Element]) -> dict[str, Any] | None:
-    """Return the laws of inputs, which of them have sliders, and what scales lives.
+_PARTS = ("quantiles", "thresholds")
+
+
+class Asked(NamedTuple):
+    """What a slider shows.
+
+    Attributes
+    ----------
+    analysis : AnalysisTable
+        The thresholds of the study, and the quantiles that a bound rests on.
+    elements : sequence of Element
+    promises : dict of str to ToleranceBound
+        Of elements.
+    """
+
+    analysis: AnalysisTable
+    elements: Sequence[Element]
+    promises: Mapping[str, ToleranceBound]
+
+
+def tolerances(
+    rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
+) -> dict[str, Any] | None:
+    """Return the sliders of inputs, with weights and estimates at each stop.
 
     Parameters
     ----------
@@ -37,6 +65,8 @@ def tolerances(rows: Result, elements: Sequence[Element]) -> dict[str, Any] | No
         The rows inside the page.
     elements : sequence of Element
         Of these rows.
+    promises : dict of str to ToleranceBound
+        Bounds that are promised of elements.
 
     Returns
     -------
@@ -47,53 +77,37 @@ def tolerances(rows: Result, elements: Sequence[Element]) -> dict[str, Any] | No
         return None
     inputs = inputs_of(rows)
     without = {name: why for name in inputs.laws if (why := _why_without(name, inputs))}
-    scaled = {
-        one.name: scalers(inputs, one.declared)
-        for one in elements
-        if one.declared.scales and not one.censored.any()
-    }
-    refused = {name: why for name, one in scaled.items() if (why := _why_refused(one, inputs))}
-    integrated = {name: one for name, one in scaled.items() if one and name not in refused}
-    known = {name: law for name, law in inputs.laws.items() if _kind(law) in KNOWN}
-    if len(without) == len(inputs.laws) or len(refused) == len(elements):
+    asked = _asked(rows, elements, promises)
+    before = summarise(rows, asked.analysis, parts=_PARTS)
+    sliders = [
+        slider
+        for name in inputs.laws
+        if name not in without and (slider := _slider(rows, name, inputs, asked, before))
+    ]
+    if not sliders:
         return None
+    count, parts_name = _independent(rows)
     return {
-        "laws": [_plain_law(name, inputs) for name in known],
-        "sliders": [name for name in known if name not in without],
+        "sliders": sliders,
         "without": [[plain(readable(called(name))), why] for name, why in without.items()],
-        "correlated": list(_copulas(inputs)),
-        "lives": {name: _scales(one, inputs) for name, one in integrated.items()},
-        "refused": refused,
+        "correlated": list(inputs.correlated),
+        "studied": {
+            "quality": "The laws of the study.",
+            "events": _estimates(before, asked),
+            "promised": {name: _promised_now(bound) for name, bound in promises.items()},
+        },
+        "fewest": FEWEST,
+        "parts": count,
+        "partsName": parts_name,
+        "impossible": IMPOSSIBLE,
     }
-
-
-def promised(promise: ToleranceBound | None) -> Iterator[dict[str, Any]]:
-    """Yield bounds that are promised, and that a quantile of weighted rows could replace."""
-    if promise is None:
-        return
-    for p in (round(1 - promise.coverage, 12), promise.coverage):
-        if (one := promise.of_quantile(p)) is not None:
-            upper = isfinite(one.upper)
-            yield {
-                "probability": p,
-                "upper": upper,
-                "bound": one.upper if upper else one.lower,
-                "opening": plain(printed(one.opening())),
-                "then": plain(printed(one.end_of_quantile)),
-            }
-
-
-def _kind(law: Law) -> str:
-    return str(vars(law)["distribution"])
 
 
 def _why_without(name: str, inputs: Inputs) -> str:
     """Return why an input has no slider, or ""."""
     law = inputs.laws[name]
-    if law.discrete and not isinstance(law, IntegerRange):
+    if not can_move(law):
         return LISTED
-    if _kind(law) not in KNOWN:
-        return f"this page cannot compute with its law, {_kind(law)}"
     if isinstance(law, IntegerRange) and law.upper - law.lower < 2:
         return "it has two values only"
     if 0 in getattr(law, "counts", ()):
@@ -102,51 +116,207 @@ def _why_without(name: str, inputs: Inputs) -> str:
         for other in inputs.correlated:
             if inputs.laws[other].discrete:
                 return f"it depends on listed values of {other}"
-            if _kind(inputs.laws[other]) not in KNOWN:
-                return f"it depends on {other}, with whose law this page cannot compute"
     return ""
 
 
-def _why_refused(exponents: Mapping[str, float], inputs: Inputs) -> str:
-    """Return why the lives that these inputs scale have no answer, or ""."""
-    for name in {*exponents, *inputs.correlated} if exponents else ():
-        if _kind(inputs.laws[name]) not in KNOWN:
-            return f"this page cannot compute with the law of {name}, {_kind(inputs.laws[name])}"
-    return ""
+def _asked(
+    rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
+) -> Asked:
+    """Return what is estimated at each stop."""
+    analysis = rows.analysis
+    shown = {
+        element.output: None
+        for element in elements
+        if element.output in analysis.thresholds or element.name in promises
+    }
+    bounds = promises.values()
+    quantiles = {p: None for bound in bounds for p in bound.probabilities if bound.of_quantile(p)}
+    changed = {"quantiles": tuple(quantiles), "outputs": tuple(shown)}
+    return Asked(analysis.model_copy(update=changed), elements, promises)
 
 
-def _plain_law(name: str, inputs: Inputs) -> dict[str, Any]:
+def _slider(
+    rows: Result, name: str, inputs: Inputs, asked: Asked, before: Summary
+) -> dict[str, Any] | None:
+    """Return the stops of an input; None where none is possible."""
     law = inputs.laws[name]
-    ignored = {"distribution", "source", "times", "level", "truncate"}
-    return {
+
+    def stops(moved: Iterator[tuple[float, Arguments]], studied: float) -> list[dict[str, Any]]:
+        moves = [
+            {"at": at, **stop}
+            for at, arguments in moved
+            if arguments and (stop := _stop(rows, name, law, arguments, asked, before))
+        ]
+        neutral = {"at": studied, "words": _words(rows, name, law, vars(law))}
+        return sorted([*moves, neutral], key=lambda stop: stop["at"]) if moves else []
+
+    tracks = {"width": stops(widths(law), 1.0), "shift": stops(shifts(law), 0.0)}
+    variable = rows.dataset[name]
+    slider = {
         "name": name,
-        "distribution": _kind(law),
-        "args": law.model_dump(exclude=ignored, exclude_none=True, mode="json"),
-        "pure": law.pure,
-        "truncate": law.truncate,
-        "times": law.times,
-        "bounds": [end if isfinite(end) else None for end in inputs.bounds[name]],
+        "label": plain(printed(readable(called(name)))),
+        "symbol": parts_of(symbol_beside(called(name), variable)),
+        "meaning": plain(readable(meaning_of(variable))),
+        "more": f", as a multiple of {called(law.times)}" if law.times else "",
+        "tracks": [
+            {"name": track, "stops": places, "studied": _place_of_study(places)}
+            for track, places in tracks.items()
+            if places
+        ],
+    }
+    return slider if slider["tracks"] else None
+
+
+def _place_of_study(stops: Sequence[Mapping[str, Any]]) -> int:
+    """Return the place of the law of the study among some stops."""
+    return next(place for place, stop in enumerate(stops) if "options" not in stop)
+
+
+def _stop(
+    rows: Result, name: str, law: Law, arguments: Arguments, asked: Asked, before: Summary
+) -> dict[str, Any] | None:
+    """Return what is known of the rows with other arguments of one law.
+
+    None where these make no law of the parameter.
+    """
+    changes = {f"uncertain.{name}.{key}": value for key, value in arguments.items()}
+    options = (f"--set {shlex.quote(f'{key}={toml(value)}')}" for key, value in changes.items())
+    stop = {"words": _words(rows, name, law, arguments), "options": " ".join(options)}
+    try:
+        reweighted = answer(rows, changes, asked.analysis, _PARTS if asked.analysis.outputs else ())
+    except RunError as refusal:
+        return stop | {"quality": plain(printed(f"{capitalized(str(refusal))}."))}
+    except InputError:
+        return None
+    weights = reweighted.weights
+    embedded = {} if weights.refusal else {"weights": log_bytes(weights.weights)}
+    then = {
+        name: _promised_then(reweighted.summary, before, name, promise)
+        for name, promise in asked.promises.items()
+    }
+    estimates = {"events": _estimates(reweighted.summary, asked), "promised": then}
+    return stop | embedded | {"quality": _quality(reweighted, rows)} | estimates
+
+
+def _quality(reweighted: WhatIf, rows: Result) -> str:
+    """Return how many equal rows the weights are worth."""
+    k = reweighted.pareto_k
+    tail = f" (Pareto k = {k:.2g})" if isfinite(k) else ""
+    count, name = _independent(rows)
+    worth = f"{reweighted.effective_rows:.3g} of {grouped(count)} {name}"
+    return printed(f"These weights are worth {worth}{tail}.")
+
+
+def _independent(rows: Result) -> tuple[int, str]:
+    """Return how many independent samples of several rows there are, else how many rows."""
+    part = rows.replicates
+    if isinstance(part, Clusters) and part.are_samples:
+        return len(np.unique(part)), "samples"
+    return len(rows), "rows"
+
+
+def _words(rows: Result, name: str, law: Law, arguments: Arguments) -> str:
+    """Return the arguments of a law that sliders move: ``mean 250 µm, sd 25 µm``."""
+    unit = unit_of_input(rows, name)
+
+    def words(key: str, value: Any) -> str:
+        is_pure = law.times is not None or key in law.pure
+        size, name = (1.0, "") if is_pure else (unit.per, unit.name)
+        if isinstance(value, list | tuple):
+            return beside(f"{value[0] / size:.5g} to {value[-1] / size:.5g}", name)
+        return f"{key} {beside(f'{value / size:.5g}', name)}"
+
+    hidden = {"distribution", "source", "times", "level", "truncate", "counts"}
+    shown = {
+        key: value
+        for key in type(law).model_fields
+        if key not in hidden and (value := arguments.get(key, getattr(law, key))) is not None
+    }
+    return plain(printed(", ".join(words(key, value) for key, value in shown.items())))
+
+
+def _estimates(summary: Summary, asked: Asked) -> dict[str, dict[str, Any]]:
+    """Return the probabilities of the events that the study asks about."""
+    return {
+        event_key(element, value): _cell(summary, element, value)
+        for element in asked.elements
+        for value in asked.analysis.thresholds.get(element.output, ())
     }
 
 
-def _copulas(inputs: Inputs) -> Iterator[dict[str, Any]]:
-    """Yield how inputs depend on each other, all of them and without each one."""
-    for without in (None, *inputs.correlated) if inputs.correlated else ():
-        names, matrix = correlations(inputs, () if without is None else (without,))
-        excess = np.linalg.inv(matrix) - np.eye(len(names))
-        yield {"without": without, "names": names, "excess": excess.tolist()}
+def event_key(element: Element, threshold: float) -> str:
+    """Return the name of an event that the study asks about."""
+    return f"{element.name}/{threshold:.15g}"
 
 
-def _scales(exponents: Mapping[str, float], inputs: Inputs) -> dict[str, Any]:
-    """Return the inputs that scale a life: free ones, and those bound to others."""
-    free, bound = [], []
-    for name, exponent in exponents.items():
-        one: dict[str, Any] = {"name": name, "exponent": exponent}
-        if other := inputs.laws[name].times:
-            bound.append(one | {"times": other, "deviation": 1.0})
-        elif name in inputs.correlated:
-            slopes, deviation = given_others(name, inputs)
-            bound.append(one | {"slopes": list(slopes.items()), "deviation": deviation})
-        else:
-            free.append(one)
-    return {"free": free, "bound": bound}
+def _cell(summary: Summary, element: Element, threshold: float) -> dict[str, Any]:
+    """Return a probability with its interval, as numbers and in words."""
+    described = summary.outputs.get(element.name)
+    side = "below" if element.is_lifetime else "above"
+    statistic = described.find("thresholds", repr(threshold), side) if described else None
+    if statistic is None:
+        return {"value": None, "more": _why_missing(summary, element.name)}
+    estimate = statistic.best.estimate
+    value, low, high = estimate.numbers
+    if isnan(value):
+        return {"value": None, "more": plain(printed(estimate.reason))}
+    ends = "" if isnan(low) or isnan(high) else percent_interval(low, high)
+    return {
+        "value": value,
+        "low": _finite(low),
+        "high": _finite(high),
+        "text": printed(percent(value)),
+        "ends": printed(ends),
+        "more": plain(printed(estimate.assumes or estimate.reason)),
+    }
+
+
+def _why_missing(summary: Summary, name: str) -> str:
+    """Return the note on weights that cannot be trusted."""
+    start = f"{name}: "
+    notes = (note.removeprefix(start) for note in summary.notes if note.startswith(start))
+    return plain(printed(next(notes, "")))
+
+
+def _promised_now(promise: ToleranceBound) -> list[str]:
+    """Return the bounds that are promised, and that a quantile of weighted rows could replace."""
+    bounds = map(promise.of_quantile, promise.probabilities)
+    return [plain(printed(bound.sentence)) for bound in bounds if bound is not None]
+
+
+def _promised_then(
+    summary: Summary, before: Summary, name: str, promise: ToleranceBound
+) -> list[str]:
+    """Return what bounds of an element would then be, beside the same estimates as studied."""
+    return [
+        _then(bound, *(_end(each.outputs.get(name), bound, p) for each in (summary, before)))
+        for p in promise.probabilities
+        if (bound := promise.of_quantile(p)) is not None
+    ]
+
+
+def _then(bound: ToleranceBound, then: float, studied: float) -> str:
+    if not isfinite(then) or (bound.is_life and then <= 0):
+        return (
+            "What could then be promised is not known: too many rows failed, or too few carry it."
+        )
+    towards = inf if isfinite(bound.upper) else -inf
+    ends = (bound.unit.text(end, towards) for end in (then, studied))
+    return plain(printed(f"{bound.end_of_quantile} {'; as studied, '.join(ends)}."))
+
+
+def _end(described: Described | None, bound: ToleranceBound, probability: float) -> float:
+    """Return the end of the interval of a quantile, with failed rows beyond it."""
+    statistic = described.find("quantiles", repr(probability)) if described else None
+    if statistic is None:
+        return float("nan")
+    estimates: list[Estimate] = [statistic.best.estimate]
+    if statistic.best.failed is not None:
+        estimates.append(statistic.best.failed)
+    if isfinite(bound.upper):
+        return float(np.max([estimate.high for estimate in estimates]))
+    return float(np.min([estimate.low for estimate in estimates]))
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None

@@ -5,9 +5,8 @@ import pytest
 from computed import UNIFORM, asking, linear, with_output
 from explored import cells, drag_handle, ranges
 
-from uq.assess.earliest import inputs_apart, ranks
 from uq.assess.independent_inputs import independent_inputs
-from uq.result.elements import independent_rows, replicates_of
+from uq.result.elements import independent_rows
 from uq.result.result import Result
 from uq.text.literals import toml
 
@@ -17,57 +16,40 @@ DESIGNS = {
     "one replicate": {"method": "sobol", "samples": 64},
     "units": {"samples": 130, "units": 3},
 }
-LINES = """[...document.querySelectorAll('.inputs-apart tr[data-key]')].map(line => [
+LINES = """[...document.querySelectorAll('.quarters tr[data-key]')].map(line => [
   line.dataset.key.replace('input/', ''),
-  ...[...line.cells].slice(1).map(cell => Number(cell.querySelector('data').value)),
-  ...['low', 'high'].map(end => Number(line.cells[3].dataset[end] ?? NaN))])"""
+  [...line.cells].slice(1).map(cell => Number(cell.querySelector('data').value))])"""
 
 
 @pytest.mark.parametrize("design", DESIGNS)
-def test_inputs_of_the_brushed_rows_are_those_of_python(shown, design):
+def test_chosen_rows_are_counted_in_quarters_of_all(shown, design):
     ds = linear(**DESIGNS[design])
     browser = shown(ds)
-    assert browser.value("document.querySelector('.inputs-apart').checkVisibility()") is False
+    assert browser.value("document.querySelector('.quarters').checkVisibility()") is False
     drag_handle(browser, "y", 1, 150)  # the lowest
     _, (low, high) = ranges(browser)
     rows = independent_rows(ds)
     chosen = (rows["y"].values >= low) & (rows["y"].values <= high)
     columns = independent_inputs(Result(rows))
-    listed = browser.value(LINES.replace("NaN", "'NaN'"))
-    numbers_by_input = {name: np.array(numbers, dtype=float) for name, *numbers in listed}
-    ranked = {name: ranks(values) for name, values in columns.items()}
-    apart = inputs_apart(Result(rows), np.flatnonzero(chosen), ranked, replicates_of(rows))
-    for name, (median, others, mean, *_) in numbers_by_input.items():
-        assert median == pytest.approx(np.median(columns[name][chosen]), rel=1e-12)
-        assert others == pytest.approx(np.median(columns[name][~chosen]), rel=1e-12)
-        assert mean == pytest.approx(ranked[name][chosen].mean(), rel=1e-12)
-    if apart is None:
-        assert (
-            design == "one replicate"
-            and np.isnan([row[3:] for row in numbers_by_input.values()]).all()
-        )
-        return
-    assert [difference.name for difference in apart] == list(numbers_by_input)[
-        : len(apart)
-    ] and apart[0].name == "x4"
-    for difference in apart:
-        assert numbers_by_input[difference.name][3:] == pytest.approx(
-            (difference.rank.low, difference.rank.high), rel=1e-9
-        )
-    heads = "[...document.querySelectorAll('.inputs-apart th[scope=col]')].map(h => h.innerText)"
-    assert f"{chosen.sum()} chosen" in browser.value(heads)
-    assert f"{(~chosen).sum()} others" in browser.value(heads)
+    lines = browser.value(LINES)
+    assert [name for name, _ in lines][0] == "x4" and len(lines) == len(columns)
+    for name, shares in lines:
+        quarter = np.searchsorted(np.quantile(columns[name], (0.25, 0.5, 0.75)), columns[name])
+        expected = [(quarter[chosen] == place).mean() for place in range(4)]
+        assert shares == pytest.approx(expected, rel=1e-12)
+        assert sum(shares) == pytest.approx(1)
 
 
 def test_an_input_whose_middle_is_chosen_says_so(shown):
     ds = linear(samples=400)
     ds = with_output(ds, "far", (ds["x2"].values - 0.5) ** 2 - ds["y"].values * 1e-9)
     browser = shown(asking(ds, outputs=["far"]))
-    name = browser.value("[...document.querySelectorAll('.range')].at(-1).dataset.name")
+    name = browser.value(
+        "[...document.querySelectorAll('.range:not([hidden])')].at(-1).dataset.name"
+    )
     drag_handle(browser, name, 1, 100)
-    first = "document.querySelector('.inputs-apart tr[data-key]')"
-    assert browser.value(f"{first}.dataset.key") == "input/x2"
-    assert "near the middle" in browser.value(f"{first}.innerText")
+    name, (first, second, third, last) = browser.value(LINES)[0]
+    assert name == "x2" and second + third > 0.9 > 0.1 > first + last
 
 
 def test_of_many_inputs_those_that_differ_most_are_in_sight(shown):
@@ -81,17 +63,15 @@ def test_of_many_inputs_those_that_differ_most_are_in_sight(shown):
     browser = shown(ds.assign_attrs(study=study))
     drag_handle(browser, "y", 1, 150)
     cells(browser)
-    seen = (
-        "[...document.querySelectorAll('.inputs-apart tr[data-key]')]"
-        ".filter(l => l.checkVisibility()).map(l => l.dataset.key)"
-    )
-    assert len(browser.value(seen)) == 8 and browser.value(seen)[0] == "input/x4"
-    assert browser.value("document.querySelector('#explore summary').innerText") == "5 more inputs"
-    browser.value("document.querySelector('#explore summary').click()")
+    box = "document.querySelector('.by-quarters .wide')"
+    lines = f"[...{box}.querySelectorAll('tr[data-key]')]"
+    bottom = f"{box}.getBoundingClientRect().bottom"
+    seen = f"{lines}.filter(line => line.getBoundingClientRect().bottom <= {bottom})"
+    keys = browser.value(f"{seen}.map(line => line.dataset.key)")
+    assert keys[0] == "input/x4" and 5 <= len(keys) < browser.value(f"{lines}.length") == 13
+    browser.value(f"{box}.scrollTo(0, 1e4)")
     browser.painted()
-    assert len(browser.value(seen)) == 13
-    drag_handle(browser, "y", 1, 300)
-    assert len(browser.value(seen)) == 13  # remains open
+    assert browser.value(f"{seen}.length") == 13
 
 
 def test_names_and_ranks_of_inputs_are_in_sight_on_a_phone(shown):
@@ -100,5 +80,5 @@ def test_names_and_ranks_of_inputs_are_in_sight_on_a_phone(shown):
     ds["x4"].values[:] = 1e-15 * (1 + 20 * ds["x4"].values)
     browser = shown(ds, width=375, height=800)
     drag_handle(browser, "y", 1, 150)
-    box = "document.querySelector('.inputs-apart')"
+    box = "document.querySelector('.quarters')"
     assert browser.value(f"{box}.scrollWidth <= {box}.parentElement.clientWidth")

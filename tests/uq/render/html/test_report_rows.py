@@ -23,11 +23,11 @@ def test_a_success_is_no_life_that_ends(shown):
     ds = linear(samples=100)
     ds = with_output(ds, "locking", ds["y"].values, "lifetime")
     ds["locking"].attrs["success"] = "the motors have locked"
-    text = shown(asking(ds, outputs=["locking"])).value(
+    sentence = shown(asking(ds, outputs=["locking"])).value(
         "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.innerText).join()"
     )
-    assert text.count("Share that has not yet succeeded") == 2 and "10\u00a0% quantile of" in text
-    assert "outlives" not in text and "B10" not in text
+    assert sentence.count("Share that has not yet succeeded") == 2
+    assert "outlives" not in sentence and "B10" not in sentence
 
 
 def test_a_threshold_is_drawn_where_it_is_or_not_at_all(shown):
@@ -46,11 +46,11 @@ def test_inputs_are_called_as_in_the_answer(shown, symbol, html, plain):
     ds = linear(samples=100)
     ds["x4"].attrs |= {"long_name": "a long explanation", "symbol": symbol}
     browser = shown(ds)
-    for place in (".range span", ".tolerance[data-name=x4] span"):
-        words = browser.value(
+    for place in (".range:not([hidden]) span", ".tolerance[data-name=x4] span"):
+        label = browser.value(
             f"(one => [one.innerHTML, one.title])(document.querySelector('{place}'))"
         )
-        assert words == [html, "a long explanation"]
+        assert label == [html, "a long explanation"]
     options = browser.value("[...document.querySelectorAll('option')].map(o => o.textContent)")
     assert plain in options
     open_by_keyboard(browser)
@@ -64,7 +64,7 @@ def test_a_page_of_many_rows_is_small_and_says_which_part_it_holds(shown):
         ds = with_output(ds, f"more{i}", ds["y"].values ** (i + 1))
     inside = rows_inside(Findings(Result(ds)), "many.nc")
     numbers = np.frombuffer(base64.b64decode(inside["numbers"]), "<i4")
-    assert len(inside["columns"]) == 12 and inside["total"] == 100_000
+    assert len(inside["columns"]) == 12 and inside["extent"].endswith("of 100\u00a0000.")
     assert len(numbers) == MOST_ROWS and 45_000 < numbers.mean() < 55_000
     assert len(json.dumps(inside)) < 4e6
 
@@ -85,7 +85,7 @@ EVERYTHING = """(async () => {
     for (const option of select.options) await set(select, option.value, "change");
   for (const handle of document.querySelectorAll(".range input")) await set(handle, 250, "input");
   for (const chip of document.querySelectorAll(".chip")) chip.click();
-  for (const value of [0.2, 1.5, 0.9])
+  for (const value of [0, 1, 4])
     for (const slider of document.querySelectorAll(sliders)) await set(slider, value, "input");
   await new Promise(f => setTimeout(f, 300));
   return found })()"""
@@ -143,19 +143,19 @@ def test_a_page_that_cannot_compute_with_its_rows_says_why(ds, why, no_other_fig
 
 
 def test_a_page_on_a_posterior_says_how_to_learn_it_again(tmp_path, no_other_figures):
-    records = [
+    inspections = [
         {"unit": "A", "output": "y", "kind": "measured", "time": 2.0, "value": 0.1, "sd": 1e-3},
         {"unit": "B", "output": "y", "kind": "above", "time": 2.0, "value": 7.0},
     ]
     ds = weighted_rows().assign_attrs(
-        inspections=json.dumps(records), model_error=0.2, new_rows=800
+        inspections=json.dumps(inspections), model_error=0.2, new_rows=800
     )
     text = unescape(page(Result(ds), "after.nc"))
     update = "uq update results/linear.nc inspections.csv -o after.nc --rows 800 --model-error 0.2"
     assert update in text.partition("uq run linear.toml")[2]
     given = text.partition("<h3>The inspections</h3>\n<pre>")[2].partition("</pre>")[0]
     (tmp_path / "inspections.csv").write_text(given)
-    assert read_inspections(tmp_path / "inspections.csv") == read_tables(records)
+    assert read_inspections(tmp_path / "inspections.csv") == read_tables(inspections)
     assert "inspections.csv" not in page(Result(linear(samples=4)), "a.nc")
 
 
@@ -164,5 +164,5 @@ def test_the_first_plot_is_over_what_the_answer_names(shown):
     rare = 100.0 * (ds["x2"].values > 0.9)
     ds["y"].values[:] = ds["x1"].values + rare  # ranks vary most over x1, values over x2
     assert "ontributes most" in repr(conclude(Findings(Result(ds))))
-    names = "[...document.querySelectorAll('.range')].map(one => one.dataset.name)"
+    names = "[...document.querySelectorAll('.range:not([hidden])')].map(one => one.dataset.name)"
     assert shown(ds).value(names) == ["x2", "y"]

@@ -1,15 +1,11 @@
 """What a page says of chosen rows, in a real browser, against what Python finds for them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from computed import kinds, linear
 from explored import cells, drag_handle, place_of_a_point, ranges
 
-from uq.assess.counted_rows import CountedRows
-from uq.result.elements import elements_of, replicates_of
-from uq.stats.intervals import share_interval
+from uq.result.elements import elements_of
 
 ASKED = {"thresholds": {"y": 6.0}}
 
@@ -27,36 +23,20 @@ DESIGNS = {
 def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
     ds = linear(**DESIGNS[design], analysis=ASKED)
     browser = shown(ds)
-    part = replicates_of(ds)
     hits, x4 = ds["y"].values > 6.0, ds["x4"].values
     drag_handle(browser, "x4", 0, 200)
     drag_handle(browser, "x4", 1, 430)
     (low, high), *_ = ranges(browser)
     chosen = (x4 >= low) & (x4 <= high)
     assert 0 < chosen.sum() < len(x4)
-    among, everywhere = cells(browser)["y/6"]
-    within = None if part is None else part[chosen]
-    expected = hits[chosen].mean(), *share_interval(hits[chosen], within)
-    assert among == pytest.approx(expected, rel=1e-9, nan_ok=True)
-    assert everywhere == pytest.approx((hits.mean(), *share_interval(hits, part)), nan_ok=True)
-    assert np.isnan(among[1]) == (design == "one replicate")
-    element = next(elements_of(ds, ["y"]))
-    for rows, numbers_of_cell in zip(
-        (chosen, hits | True), cells(browser)["quantile/0.1"], strict=True
-    ):
-        some = replace(element, values=element.values[rows], censored=element.censored[rows])
-        expected = CountedRows(some, None if part is None else part[rows]).quantile(0.1)
-        assert numbers_of_cell == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
-    sentence = browser.value("document.querySelector('.said').textContent")
-    assert sentence.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
-
-
-def test_few_hits_have_the_exact_interval(shown):
-    ds = linear(samples=400, analysis={"thresholds": {"y": 9.0}})
-    hits = ds["y"].values > 9.0
-    assert 0 < hits.sum() < 20
-    (everywhere,) = cells(shown(ds))["y/9"]
-    assert everywhere == pytest.approx((hits.mean(), *share_interval(hits)), rel=1e-9)
+    (among, *_), (everywhere, *_) = cells(browser)["y/6"]
+    assert (among, everywhere) == (hits[chosen].mean(), hits.mean())
+    for rows, (_, *ends) in zip((chosen, hits | True), cells(browser)["extremes"], strict=True):
+        assert ends == [ds["y"].values[rows].min(), ds["y"].values[rows].max()]
+    counts = "document.querySelector('tr[data-key=\\'y/6\\'] small').innerText"
+    assert browser.value(counts) == f"{hits[chosen].sum()} of {chosen.sum()}"
+    status = browser.value("document.querySelector('.status').textContent")
+    assert status.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
 
 
 def test_a_brush_by_the_mouse_chooses_a_rectangle(shown):
@@ -68,41 +48,36 @@ def test_a_brush_by_the_mouse_chooses_a_rectangle(shown):
     ds = linear(samples=400, analysis=ASKED)
     x4, values = ds["x4"].values, ds["y"].values
     chosen = (x4 >= x_low) & (x4 <= x_high) & (values >= y_low) & (values <= y_high)
-    assert chosen.sum() == browser.value("Number(document.querySelector('.said data').value)") > 0
+    assert chosen.sum() == browser.value("Number(document.querySelector('.status data').value)") > 0
 
 
 def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     ds = kinds(samples=400, analysis={"thresholds": {"life": 1.0}})
     browser = shown(ds)
     life, censored = ds["life"].values[:, 0, 0], ds["life_censored"].values[:, 0, 0] == 1
-    is_defined = ~np.isnan(life)
+    present = ~np.isnan(life)
     drag_handle(browser, "life[side=left,depth=0.5]", 0, 1)
     (low, high) = ranges(browser)[1]
-    count = "Number(document.querySelector('.said data').value)"
-    assert (life[is_defined] >= low).sum() == browser.value(count) and high == np.inf
+    count = "Number(document.querySelector('.status data').value)"
+    assert (life[present] >= low).sum() == browser.value(count) and high == np.inf
     drag_handle(browser, "life[side=left,depth=0.5]", 1, 499)
     (low, high) = ranges(browser)[1]
-    ended = is_defined & ~censored & (life >= low) & (life <= high)
+    ended = present & ~censored & (life >= low) & (life <= high)
     assert ended.sum() == browser.value(count)
 
 
-@pytest.mark.parametrize("design", [("monte-carlo", 400, 1), ("sobol", 64, 8)], ids=str)
-def test_censored_lives_have_the_numbers_of_python(shown, design):
-    ds = kinds(*design, analysis={"thresholds": {"life": [1.4, 9.0]}})
-    part = replicates_of(ds)
-    shown_cells = cells(shown(ds))
-    first = next(elements_of(ds, ["life"]))
-    for time in (1.4, 9.0):
-        assert first.unknown_sides(time).any()
-        (here,) = shown_cells[f"{first.name}/{time:g}"]
-        assert here == pytest.approx(
-            CountedRows(first, part).ended_by(time)[1].numbers, nan_ok=True
-        )
-    for name, quantile in (
-        (repr(p), CountedRows(first, part).life_quantile(p)) for p in (0.1, 0.5)
-    ):
-        (here,) = shown_cells[f"quantile/{name}"]
-        assert here == pytest.approx(quantile.numbers, nan_ok=True)
+def test_rows_censored_before_a_time_leave_its_share_unknown(shown):
+    ds = kinds(samples=400, analysis={"thresholds": {"life": [0.2, 1.4]}})
+    displayed = cells(browser := shown(ds))
+    element = next(elements_of(ds, ["life"]))
+    for time in (0.2, 1.4):
+        ((share, *_),) = displayed[f"{element.name}/{time:g}"]
+        unknown = element.unknown_sides(time).sum()
+        assert np.isnan(share) == (unknown > 0)
+        if not unknown:
+            assert share == element.below(time)[~element.failed].mean()
+        else:
+            assert f"{unknown} rows were censored" in browser.value("document.body.innerText")
 
 
 def test_chips_leave_out_a_regime(shown):
@@ -114,6 +89,6 @@ def test_chips_leave_out_a_regime(shown):
     shown_cells = cells(browser)
     assert shown_cells["regime/fast"][0][0] == 0 and shown_cells["regime/slow"][0][0] == 1
     slow = (ds["regime"].values == 0).sum()
-    assert browser.value("Number(document.querySelector('.said data').value)") == slow
+    assert browser.value("Number(document.querySelector('.status data').value)") == slow
     browser.value("document.querySelector('.clear').click()")
     assert len(cells(browser)["regime/fast"]) == 1

@@ -1,7 +1,26 @@
-// Where the points of a column lie: on an axis, or on a margin for each state without a value.
+// Axes: their scales, and where the points of a column lie, on an axis or on a margin for each state without a value.
+
+class Scale {
+  constructor({axis}) {
+    Object.assign(this, axis);
+    [this.from, this.to] = [this.bent(this.low), this.bent(this.high)];
+  }
+
+  bent(value) { return this.wide ? Math.log(value) : value; }
+
+  // The place of a value on the axis: 0 at its lower, 1 at its upper end.
+  place(value) { return (this.bent(value) - this.from) / (this.to - this.from); }
+
+  // The value at a place; the ends exactly.
+  value(place) {
+    if (place <= 0) return this.low;
+    if (place >= 1) return this.high;
+    const bent = this.from + place * (this.to - this.from);
+    return this.wide ? Math.exp(bent) : bent;
+  }
+}
 
 const LEFT = 62, BOTTOM = 26, EDGE = 8, STRIP = 20, TICK = 4, LETTER = 7, MARGIN = 6; // pixels
-const MARGINS = [[NEVER, "never"], [CENSORED, "censored"]]; // beyond the upper end of an axis
 
 // From one pixel to another.
 class Axis {
@@ -14,7 +33,7 @@ class Axis {
       this.strips.set("no value", from);
       from += sign * STRIP;
     }
-    for (const [state, name] of MARGINS) {
+    for (const [state, name] of [[NEVER, "never"], [CENSORED, "censored"]]) {
       if (!seen.has(state)) continue;
       to -= sign * STRIP;
       this.strips.set(name, to);

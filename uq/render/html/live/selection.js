@@ -4,17 +4,13 @@ class Selection {
   constructor(rows) {
     this.rows = rows;
     this.ranges = new Map(); // column -> [low, high]; an end that is open is infinite
-    this.refused = new Map(); // category -> codes that are not shown
+    this.refused = new Map(rows.categories.map(category => [category, new Set()])); // places of entries
     this.listeners = [];
     this.changed = eventually(() => {
       this.update();
       for (const listener of this.listeners) listener();
     });
     this.update();
-  }
-
-  get isAll() {
-    return this.ranges.size === 0 && [...this.refused.values()].every(codes => codes.size === 0);
   }
 
   range(column) {
@@ -27,37 +23,27 @@ class Selection {
     this.changed();
   }
 
-  toggle(category, code) {
-    const codes = this.refused.get(category) ?? new Set();
-    if (!codes.delete(code)) codes.add(code);
-    this.refused.set(category, codes);
+  toggle(category, place) {
+    const places = this.refused.get(category);
+    if (!places.delete(place)) places.add(place);
     this.changed();
-  }
-
-  shows(category, code) {
-    return !this.refused.get(category)?.has(code);
   }
 
   clear() {
     this.ranges.clear();
-    this.refused.clear();
+    for (const places of this.refused.values()) places.clear();
     this.changed();
   }
 
   // A life that never ends, or is censored, lies above every finite value.
   update() {
-    const mask = new Uint8Array(this.rows.count).fill(1);
-    for (const [category, codes] of this.refused) {
-      if (codes.size) category.codes.forEach((code, row) => { if (codes.has(code)) mask[row] = 0; });
-    }
-    for (const [column, [low, high]] of this.ranges) {
-      const {values, states} = column;
-      for (let row = 0; row < mask.length; row++) {
-        const inside = values[row] >= low && (states[row] === CENSORED ? high === Infinity : values[row] <= high);
-        if (!inside) mask[row] = 0;
-      }
-    }
-    this.mask = mask;
-    this.count = mask.reduce((sum, one) => sum + one, 0);
+    const isInside = ({values, states}, [low, high], row) =>
+      values[row] >= low && (states[row] === CENSORED ? high === Infinity : values[row] <= high);
+    const ranges = [...this.ranges], refused = [...this.refused].filter(([, places]) => places.size);
+    const isChosen = row => ranges.every(([column, range]) => isInside(column, range, row))
+      && !refused.some(([category, places]) => places.has(category.places[row]));
+    this.isAll = !ranges.length && !refused.length;
+    this.mask = Uint8Array.from(this.rows.numbers, (_, row) => Number(isChosen(row)));
+    this.count = this.mask.reduce((sum, chosen) => sum + chosen, 0);
   }
 }

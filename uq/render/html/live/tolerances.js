@@ -1,91 +1,109 @@
-// Sliders of tolerances, and what the rows say of other laws.
+// Sliders of tolerances: each stop has weights of the rows, and the numbers that Python estimates there.
 
-function tolerancesOf(rows) {
-  const reweighting = new Reweighting(rows), {without, refused} = rows.tolerances;
-  const outputs = rows.columns.filter(one => one.role === "output" && !(one.name in refused));
-  const events = outputs.flatMap(column => column.thresholds.map(({value, words}) => ({
-    key: `${column.name}/${value}`, words, column, value, hits: column.hits(value),
-  })));
-  let shown = outputs.find(one => one === rows.columns[rows.first[1]]) ?? outputs[0];
-  const before = events.map(event => reweighting.probability(event)), curves = new Map();
-  const said = make("p", {class: "said", role: "status"}), table = make("table", {class: "found"});
-  const promised = promisedOf(rows), picture = make("figure"), done = make("span", {role: "status"}), command = make("code", {});
-  const copy = make("button", {type: "button", "on:click": () => copied(command.textContent, done)}, "Copy");
-  const reset = make("button", {type: "button", "on:click": () => sliders.forEach(one => one.reset())}, "As studied");
-  const show = eventually(update), later = laterOf();
-  const sliders = reweighting.names.map(name => slidersOf(name, reweighting, show));
-
-  const chooser = make("label", {}, "Output: ", make("select", {
-    "on:change": event => { shown = outputs[event.target.value]; update(); },
-  }, ...outputs.map((one, i) => make("option", {value: i, selected: one === shown}, one.title))));
-
-  function update() {
-    const changed = reweighting.changed.length > 0, problem = reweighting.problem;
-    say(changed, problem);
-    reset.disabled = !changed;
-    command.textContent = reweighting.command;
-    command.parentElement.hidden = !changed || Boolean(problem);
-    const found = problem ? [] : events.map(event => reweighting.probability(event));
-    const heads = ["", ...(changed ? ["these laws"] : []), "as studied"].map(text => make("th", {scope: "col"}, text));
-    table.replaceChildren(make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...events.map((event, i) =>
-      make("tr", {"data-key": event.key}, make("th", {scope: "row"}, event.words),
-        ...(changed ? [cellOf(found[i] ?? {share: NaN})] : []), cellOf(before[i])))));
-    table.hidden = !events.length;
-    if (!curves.has(shown)) curves.set(shown, asStudied().curve);
-    const now = changed && !problem ? new WeightedCurve(reweighting, shown) : null, curve = now?.curve;
-    drawCurves(curve);
-    promised.element.replaceChildren();
-    later(afterwards(now, curve, changed && !problem));
+// The width and the shift of one input: a change of one takes back the other.
+class Slider {
+  constructor({name, tracks}, element, moved) {
+    Object.assign(this, {name, element, tracks, stop: null});
+    this.handles = [...element.querySelectorAll("input")];
+    this.handles.forEach((handle, i) => handle.addEventListener("input", () => { this.move(i); moved(); }));
+    this.reset();
   }
 
-  function say(changed, problem) {
-    const all = problem ? [] : [...new Set(outputs.map(column => reweighting.weights(column)).filter(Boolean))];
-    const used = all.filter(one => !one.refusal), why = [...new Set(all.map(one => one.refusal).filter(Boolean))];
-    const least = used.reduce((a, b) => b.effective < a.effective ? b : a, used[0]);
-    const most = used.reduce((a, b) => b.k > a ? b.k : a, -Infinity);
-    said.replaceChildren(...(problem ? [problem] : !changed ? ["The laws of the study."] : !least ? [capitalized(`${why.join("; ")}.`)]
-      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${grouped(least.rows)} ${rows.parts}${rows.count < rows.total ? " in this page" : ""}`,
-        isFinite(most) ? ` (Pareto k = ${number(most, 2)}).` : ".",
-        why.length ? ` Where a number is missing, ${why.join("; ")}.` : ""]));
+  move(moved) {
+    const {stops} = this.tracks[moved], stop = stops[this.handles[moved].value];
+    this.stop = stop.options ? stop : null;
+    this.handles.forEach((handle, i) => { if (i !== moved) handle.value = this.tracks[i].studied; });
+    this.element.querySelector("output").textContent = stop.words;
+    for (const handle of this.handles) handle.setAttribute("aria-valuetext", stop.words);
   }
 
-  function asStudied() {
-    return new WeightedCurve(new Reweighting(rows), shown);
+  reset() {
+    this.handles[0].value = this.tracks[0].studied;
+    this.move(0);
+  }
+}
+
+// The product of the weights of several stops.
+function productOf(rows, stops) {
+  const logs = new Float64Array(rows.count);
+  for (const {weights: {top, step, bytes}} of stops) {
+    numbersOf(bytes, Uint8Array).forEach((byte, row) => {
+      logs[row] += byte === rows.tolerances.impossible ? -Infinity : top - step * byte;
+    });
+  }
+  return logs.map(Math.exp);
+}
+
+// The number of rows of equal weight that are worth as much (L. Kish, Survey Sampling, 1965).
+function worthOf(weights) {
+  const sum = weights.reduce((before, weight) => before + weight, 0);
+  return sum ** 2 / weights.reduce((before, weight) => before + weight ** 2, 0) || 0;
+}
+
+class Tolerances {
+  constructor(rows, element) {
+    Object.assign(this, {rows, element, ...rows.tolerances, column: rows.columns[rows.first[1]]});
+    const show = eventually(() => this.update()), parts = [...element.querySelectorAll(".tolerance")];
+    this.sliders = rows.tolerances.sliders.map((plain, i) => new Slider(plain, parts[i], show));
+    this.events = rows.events.filter(event => event.output);
+    const choose = event => { this.column = rows.columns[event.target.value]; this.update(); };
+    element.querySelector("select").addEventListener("change", choose);
+    this.button = element.querySelector(".as-studied");
+    this.button.addEventListener("click", () => { this.sliders.forEach(slider => slider.reset()); this.update(); });
+    this.command = make("code");
+    const [copy, done] = copyButton(() => this.command.textContent);
+    element.querySelector(".command").append(this.command, " ", copy, " ", done);
   }
 
-  function drawCurves(curve, band) {
-    const before = {curve: curves.get(shown), name: "all"}, lines = [before];
-    if (curve) lines.push({curve, name: "chosen", band});
-    else before.band = band;
-    const title = `${shown.curveName}: ${shown.title}`;
-    const intervals = band ? ", pointwise 95 % intervals" : "";
-    picture.replaceChildren(curvesOf(shown, lines, title), make("figcaption", {},
-      curve ? `${title}: these laws (bold${intervals}) and as studied (thin).` : `${title}${intervals}.`));
+  update() {
+    const changed = this.sliders.filter(slider => slider.stop), stops = changed.map(slider => slider.stop);
+    const weights = stops.length && stops.every(stop => stop.weights) ? productOf(this.rows, stops) : null;
+    const why = this.whyNot(changed, stops, weights), part = name => this.element.querySelector(name);
+    this.button.disabled = !stops.length;
+    this.command.textContent = ["uq what-if", this.rows.file, ...stops.map(stop => stop.options)].join(" ");
+    part(".command").hidden = !stops.length;
+    part(".status").textContent = why || this.quality(stops, weights);
+    this.fillTable(stops, why ? null : weights);
+    const bounds = stops.length > 1 ? [] : (stops[0] ?? this.studied).promised?.[this.column.name] ?? [];
+    part(".promised").textContent = bounds.join(" ");
+    const curves = weights && !why ? [[weights, "chosen"], [this.rows.all, "all"]] : [[this.rows.all, "all"]];
+    showCurves(part("figure"), this.column, curves, curves.length > 1 ? ": these laws (bold) and as studied (thin)" : "");
   }
 
-  function* afterwards(now, curve, isChanged) {
-    yield* promised.fill(shown, reweighting, isChanged);
-    yield* withBand(now, curve);
-  }
-
-  // All rows take some time: for intervals, and for what was only sketched.
-  function* withBand(now, curve) {
-    let band;
-    if (!now || curves.get(shown).isSketch) {
-      for (band of asStudied().band()) yield;
-      if (curves.get(shown).isSketch) curves.set(shown, trusted(null, band));
-      if (!now && band?.low.some(isFinite)) drawCurves(null, band);
+  // Why these changes have no numbers, or "".
+  whyNot(changed, stops, weights) {
+    if (stops.length < 2) return "";
+    if (changed.filter(slider => this.correlated.includes(slider.name)).length > 1) {
+      return "These inputs depend on each other: the command weights the rows for both at once.";
     }
-    if (!curve) return;
-    for (band of now.band()) yield;
-    if (band) drawCurves(now.weights ? trusted(curve, band) : curve.isSketch ? trusted(null, band) : curve, band);
+    if (weights && this.worth(weights) >= this.fewest) return "";
+    return "Too few rows carry all these changes at once for a count; the command says how many it takes.";
   }
 
-  const notes = [...without, ...Object.entries(refused)].map(([name, why]) => `${name}: ${why}.`);
-  const element = make("div", {class: "explorer"},
-    make("div", {}, ...sliders.map(one => one.element), reset,
-      ...(notes.length ? [make("p", {class: "note"}, `Not here: ${notes.join(" ")}`)] : [])),
-    make("div", {}, chooser, said, make("div", {class: "wide"}, table), promised.element, picture,
-      make("p", {class: "command"}, command, " ", copy, " ", done)));
-  return {element, update};
+  worth(weights) {
+    return worthOf(weights) * this.parts / this.rows.count;
+  }
+
+  quality(stops, weights) {
+    if (stops.length < 2) return (stops[0] ?? this.studied).quality;
+    return `These weights are worth ${number(this.worth(weights), 3)} of ${grouped(this.parts)} ${this.partsName}.`;
+  }
+
+  // One change has the estimates of Python, several are counted by weight.
+  fillTable(stops, weights) {
+    const isCounted = stops.length > 1, table = this.element.querySelector(".counted");
+    const lines = this.events.map(event => {
+      const cells = isCounted ? [weights, this.rows.all].map(each => countedCell(event, each))
+        : [...stops, this.studied].map(({events}) => estimatedCell(events?.[event.key]));
+      return make("tr", {"data-key": event.key}, make("th", {scope: "row"}, event.words), ...cells);
+    });
+    const heads = ["", ...(stops.length ? ["these laws"] : []), "as studied"];
+    fill(table, heads.map(head => head && isCounted ? `${head}, counted` : head), lines);
+    table.hidden = !lines.length;
+  }
+}
+
+function estimatedCell({value = null, low, high, text = "\u2013", ends = "", more = ""} = {}) {
+  const small = [ends, more].filter(Boolean).join("; ");
+  return cell(value ?? NaN, text, small, {"data-low": low ?? NaN, "data-high": high ?? NaN});
 }

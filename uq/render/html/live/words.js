@@ -1,6 +1,5 @@
 // Numbers as words, and elements of the page.
 
-const KAPLAN_MEIER = "by Kaplan\u2013Meier, assuming that censoring is non-informative";
 const RAISED = "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
 function number(value, digits = 4) {
@@ -8,7 +7,7 @@ function number(value, digits = 4) {
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-4 || size >= 10 ** Math.max(6, digits))) {
     const [mantissa, power] = value.toExponential(digits - 1).split("e");
-    const raised = [...String(Number(power))].map(one => RAISED["-0123456789".indexOf(one)]);
+    const raised = [...String(Number(power))].map(sign => RAISED["-0123456789".indexOf(sign)]);
     return `${Number(mantissa)}\u00a0\u00d7\u00a010${raised.join("")}`.replace("-", "\u2212");
   }
   return String(Number(value.toPrecision(digits))).replace("-", "\u2212");
@@ -20,15 +19,12 @@ function grouped(count) {
 }
 
 function percent(share) {
+  if (isNaN(share)) return "\u2013";
   if (share === 0 || share === 1) return `${100 * share}\u00a0%`;
-  if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))}\u00a0%`;
+  if (share < 0.01) return `${Number((100 * share).toPrecision(2))}\u00a0%`;
   const rest = Number((1 - share).toFixed(12));
   const digits = rest > 0 && rest < 0.001 ? -Math.floor(Math.log10(100 * rest)) : 1;
   return `${(100 * share).toFixed(digits)}\u00a0%`;
-}
-
-function capitalized(text) {
-  return text.slice(0, 1).toUpperCase() + text.slice(1);
 }
 
 // The name of a column with its symbol, every other part of which is an index below the line.
@@ -37,9 +33,12 @@ function named({label, symbol = [""]}) {
   return symbol[0] ? [`${label} (`, ...indexed, ")"] : [label];
 }
 
+const DRAWN = ["svg", "path", "line", "text"];
+
 // An element with attributes and contents; a name with ":" is an event.
 function make(tag, attributes = {}, ...contents) {
-  const element = document.createElement(tag);
+  const space = DRAWN.includes(tag) ? "http://www.w3.org/2000/svg" : "http://www.w3.org/1999/xhtml";
+  const element = document.createElementNS(space, tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith("on:")) element.addEventListener(name.slice(3), value);
     else if (value !== false && value !== undefined) element.setAttribute(name, value === true ? "" : value);
@@ -48,29 +47,41 @@ function make(tag, attributes = {}, ...contents) {
   return element;
 }
 
-function draw(tag, attributes, ...contents) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...contents);
-  return element;
+// Fill a table: heads of its columns, and its lines.
+function fill(table, heads, lines) {
+  const head = make("tr", {}, ...heads.map(text => make("th", {scope: "col"}, text)));
+  table.replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
 }
 
-// A dot in the colour of a regime.
-function dotOf(colour) {
-  return colour ? [make("span", {class: "dot", style: `background:${colour}`})] : [];
+// A cell with a number that a program can read, too, and small print.
+function cell(value, text, more = "", attributes = {}) {
+  const small = more ? [make("small", {}, more)] : [];
+  return make("td", {class: "number", ...attributes}, make("data", {value: String(value)}, text), ...small);
 }
 
-// A number that a program can read, too.
-function data(value, text) {
-  return make("data", {value: String(value)}, text);
+// Place an element, in pixels.
+function place(element, box) {
+  for (const [name, pixels] of Object.entries(box)) element.style[name] = pixels === null ? "" : `${pixels}px`;
+}
+
+// A button that copies a text, and the place where it says so.
+function copyButton(text) {
+  const done = make("span", {role: "status"});
+  const copy = async () => {
+    try {
+      await navigator.clipboard.writeText(text());
+      done.textContent = "Copied";
+      setTimeout(() => { done.textContent = ""; }, 2000);
+    } catch {
+      done.textContent = "Select the command to copy it.";
+    }
+  };
+  return [make("button", {type: "button", "on:click": copy}, "Copy"), done];
 }
 
 // Call a function once before the next picture, however often it is asked for.
 function eventually(work) {
-  let waiting = false;
-  return () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => { waiting = false; work(); });
-  };
+  let waiting = null;
+  const go = () => { waiting = null; work(); };
+  return () => { waiting ??= requestAnimationFrame(go); };
 }
