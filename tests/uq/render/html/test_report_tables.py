@@ -198,7 +198,7 @@ def test_an_input_has_one_prefix_in_sentences_tables_figures_and_controls():
         plots.event_probability(ds, event.name),
     ):
         assert figure.axes[0].get_xlabel().endswith("[pm s⁻¹]")
-    assert rows_inside(Findings(Result(ds)), "a.nc")["columns"][0]["unit"] == "pm\u00a0s⁻¹"
+    assert rows_inside(Findings(Result(ds)), "a.nc")["columns"][0]["after"] == " pm\u00a0s⁻¹"
     assert event.over_unit.name == "pm s⁻¹"
 
 
