@@ -191,11 +191,7 @@ def _module_of(dotted, modules):
 WITHOUT_A_NOUN = {"one", "found", "known", "said", "own"}
 """Names that do not tell what they hold: a variable is called by the noun of the field."""
 
-NAMED = ("benchmarks", "models", "tests") + tuple(
-    f"uq/{package}"
-    for package in ("cli", "explore", "files", "indices", "learning", "machines")
-    + ("result", "sampling", "stats", "study", "text")
-)
+NAMED = ("benchmarks", "models", "tests", "uq")
 """Folders whose variables are all named for what they hold."""
 
 

@@ -162,7 +162,7 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
     injected("scheduler killed")
     reports = []
     ds = runner.run(study, "out.nc", workers=0, progress=reports.append)
-    assert reports[0].found > 20
+    assert reports[0].reused > 20
     assert ds.identical(computed_here(study))
 
 

@@ -52,7 +52,7 @@ class Pace:
             return 0.0
         if self._began is None:
             self._began = progress.done, now
-        if progress.done > progress.found and not self._arrived:
+        if progress.done > progress.reused and not self._arrived:
             self._arrived = True
             if now - self._began[1] < _START_SECONDS:
                 self._began = progress.done, now

@@ -61,7 +61,7 @@ def carried_out(
 
         def report(so_far: Progress) -> None:
             nonlocal computed, reused
-            computed, reused = so_far.done - so_far.found, so_far.found
+            computed, reused = so_far.done - so_far.reused, so_far.reused
             if so_far.done:
                 say_when_interrupted(
                     f"interrupted after {so_far.done} of {so_far.total} rows, kept in "

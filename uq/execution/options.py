@@ -15,7 +15,7 @@ class Progress(NamedTuple):
     ----------
     done, total, failed : int
         Rows.
-    found : int
+    reused : int
         Rows among those done that were there from the start.
     status : dict of str to int
         Status label -> rows.
@@ -34,7 +34,7 @@ class Progress(NamedTuple):
     done: int
     total: int
     failed: int
-    found: int = 0
+    reused: int = 0
     status: Mapping[str, int] = MappingProxyType({})
     median: tuple[str, float] | None = None
     shares: Mapping[str, float] = MappingProxyType({})

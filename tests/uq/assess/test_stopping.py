@@ -111,7 +111,7 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
         assert status.state == "interrupted" or place == "cut"
         reports = []
         runner.run(of, path, progress=reports.append)
-        assert reports[0].done == reports[0].found == status.done > 0
+        assert reports[0].done == reports[0].reused == status.done > 0
         assert reports[-1].done == reports[-1].total == total
         assert whole(path) == whole(folder / "once.nc")
         assert run_status(path).state == "complete"
@@ -127,7 +127,7 @@ def test_a_wish_for_more_goes_on_where_the_run_stopped(folder):
     first = runner.run(study(0.2), "out.nc")
     reports = []
     more = runner.run(study(0.1), "out.nc", progress=reports.append)
-    assert more.attrs["samples"] > first.attrs["samples"] == reports[0].found
+    assert more.attrs["samples"] > first.attrs["samples"] == reports[0].reused
     assert whole(folder / "out.nc") == whole_of(study(0.1), folder)
 
 

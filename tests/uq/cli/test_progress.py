@@ -167,9 +167,9 @@ def test_the_pace_of_slow_rows_counts_from_the_start():
 
 def test_the_pace_of_fast_rows_counts_from_the_first():
     pace = progress.Pace()
-    assert pace(Progress(5, 400, 0, found=5), 2.0) == 0.0
-    assert pace(Progress(6, 400, 0, found=5), 4.0) == 0.0
-    assert pace(Progress(106, 400, 0, found=5), 6.0) == pytest.approx(50.0)
+    assert pace(Progress(5, 400, 0, reused=5), 2.0) == 0.0
+    assert pace(Progress(6, 400, 0, reused=5), 4.0) == 0.0
+    assert pace(Progress(106, 400, 0, reused=5), 6.0) == pytest.approx(50.0)
 
 
 def test_the_time_left_runs_down_between_rows():

@@ -22,7 +22,7 @@ def index_bars(
     output: str,
     *,
     method: str | None = None,
-    found: TargetIndices | None = None,
+    indices: TargetIndices | None = None,
     axes: Axes | None = None,
 ) -> Figure:
     """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
@@ -35,7 +35,7 @@ def index_bars(
         A name that `uq.sensitivity` returns.
     method : str, optional
         By default the first that the study asks for.
-    found : TargetIndices, optional
+    indices : TargetIndices, optional
         The indices, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
@@ -50,14 +50,14 @@ def index_bars(
         When there is no such output, the name is ambiguous, or there are no indices.
     """
     result = Result.of(result)
-    found = found or _only(result, output, method)
-    name, every = found.name, found.kinds().items()
+    shown = indices or _only(result, output, method)
+    name, every = shown.name, shown.kinds().items()
     kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [
         labelled(result.dataset[parameter], width=30)
-        + f"\n({BY_CORRELATION})" * (parameter in found.indices.by_correlation)
+        + f"\n({BY_CORRELATION})" * (parameter in shown.indices.by_correlation)
         for parameter in parameters
     ]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
@@ -71,7 +71,7 @@ def index_bars(
         panel.barh(y, value, thickness, color=BARS[i % len(BARS)], label=kind.words)
         panel.hlines(y, low, high, color=INK, lw=0.8)
         ends.append((y, low, high))
-    for kind, null in found.indices.nulls.items():
+    for kind, null in shown.indices.nulls.items():
         colour = BARS[list(kinds).index(kind) % len(BARS)] if len(kinds) > 1 else INK
         single = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
         largest = "95 % limit for the largest of them"

@@ -83,7 +83,7 @@ def test_limits_that_coincide_are_one_line_of_the_legend():
     result = sensitivities(Result(ds), "rbd-fast", "y").targets["y"]
     (kind,) = result.indices.nulls
     same = replace(result.indices, nulls={kind: Null(0.1, 0.1)})
-    (legend,) = plots.index_bars(ds, "y", found=replace(result, indices=same)).legends
+    (legend,) = plots.index_bars(ds, "y", indices=replace(result, indices=same)).legends
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels == ["95 % limit for an input without effect, or several", "alone (S1)"]
 
