@@ -124,7 +124,7 @@ def test_inputs_of_samples_of_several_rows_say_which_rows_are_drawn():
     assert "30 rows per bin, one of each sample" in words(figure)
     lay_out(figure)
     assert not collisions(figure)
-    assert "row" not in words(plots.inputs(linear()))
+    assert "sample" not in words(plots.inputs(linear()))
 
 
 def test_the_title_of_weighted_inputs_has_room():
