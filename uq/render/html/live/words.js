@@ -37,8 +37,8 @@ const DRAWN = ["svg", "path", "line", "text"];
 
 // An element with attributes and contents; a name with ":" is an event.
 function make(tag, attributes = {}, ...contents) {
-  const space = DRAWN.includes(tag) ? "http://www.w3.org/2000/svg" : "http://www.w3.org/1999/xhtml";
-  const element = document.createElementNS(space, tag);
+  const element = DRAWN.includes(tag)
+    ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith("on:")) element.addEventListener(name.slice(3), value);
     else if (value !== false && value !== undefined) element.setAttribute(name, value === true ? "" : value);
