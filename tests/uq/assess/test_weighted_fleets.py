@@ -113,7 +113,11 @@ def test_an_event_that_the_inspections_make_rare_has_no_shares(posterior):
     assert hits > 10 and "hits of equal weight, and 5 are needed" in shares["shared"].reason
 
 
-@pytest.mark.parametrize("question", [lambda ds: fleet_of(Result(ds), 1), by_level])
+@pytest.mark.parametrize(
+    "question",
+    [lambda ds: fleet_of(Result(ds), 1), lambda ds: by_level(Result(ds))],
+    ids=["fleet", "levels"],
+)
 def test_an_inspected_unit_is_no_fleet(posterior, question):
     with pytest.raises(InputError, match="these rows stand for unit 'A'; use the whole posterior"):
         question(as_unit(posterior, "A"))

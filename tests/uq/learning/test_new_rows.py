@@ -83,7 +83,7 @@ def test_intervals_rest_on_independent_repetitions(result, new_rows):
     after = learnt_json(learnt(new_rows))["inputs"]["rate[unit=A]"]["posterior"]
     assert after["mean_low"] < after["mean"] < after["mean_high"]
     assert after["sd_low"] < after["sd"] < after["sd_high"]
-    assert own_rows(Result(prior_of(Result(new_rows)))).identical(result)
+    assert own_rows(prior_of(Result(new_rows))).dataset.identical(result)
 
 
 def test_bits_taught_are_exact(new_rows):

@@ -105,7 +105,11 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     ("units", "why"),
     [(2, "set .design. units = 3 or more"), (4, "each unit of a sample separately")],
 )
-@pytest.mark.parametrize("question", [lambda ds: fleet_of(Result(ds), 2), by_level])
+@pytest.mark.parametrize(
+    "question",
+    [lambda ds: fleet_of(Result(ds), 2), lambda ds: by_level(Result(ds))],
+    ids=["fleet", "levels"],
+)
 def test_units_that_are_weighted_one_by_one_have_no_fleet(units, why, question):
     ds = update(rows(units, samples=2000), measured(9.0, 20.0, cv=CV))
     with pytest.raises(InputError, match=why):

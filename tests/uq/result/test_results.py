@@ -87,7 +87,7 @@ def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
         assert ds.attrs["numpy"] == np.__version__
         assert ds.attrs["cpu"]
         facts = ("design", "samples", "replicates", "second_order", "seed", "schema_version")
-        assert [ds.attrs[name] for name in facts] == ["saltelli", 8, 2, 0, 5, 1]
+        assert [ds.attrs[name] for name in facts] == ["saltelli", 8, 2, 0, 5, 2]
 
 
 def test_flags_are_integers_without_fill_value(kinds):
@@ -162,8 +162,8 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
         "notes.txt": "not a readable netCDF file",
         "other.nc": "not a result of 'uq run'",
         "single.nc": "not a result of 'uq run'",
-        "future.nc": "written with schema version 99; this version of vibrolife reads 1",
-        "past.nc": "written with schema version 0; this version of vibrolife reads 1",
+        "future.nc": "written with schema version 99; this version of vibrolife reads 2",
+        "past.nc": "written with schema version 0; this version of vibrolife reads 2",
     }.items():
         with pytest.raises(InputError) as refused:
             result_file.open_result(name)

@@ -89,7 +89,7 @@ WEIGHTS = {
     "weights of a unit": (lambda ds: with_value(ds, "unit_weight", np.nan, (0, 0)), "unit_weight"),
     "one weight for all": (
         lambda ds: ds.assign(unit_weight=("inspected", np.ones(2), ds["weight"].attrs)),
-        "'unit_weight' is not of the dimensions inspected, sample",
+        "'unit_weight' is not of the dimensions inspected, row",
     ),
     "inspections of numbers": (
         lambda ds: ds.assign_attrs(inspections=np.zeros(2)),

@@ -13,7 +13,7 @@ import uq as api
 KEPT = Path(__file__).parents[2] / "support" / "version_1"
 KINDS = ("plain", "units", "posterior")
 VERBS = [
-    *((kind, verb) for kind in KINDS for verb in ("status", "summary --fits", "report", "plot")),
+    *((kind, verb) for kind in KINDS for verb in ("status", "summary", "report", "plot")),
     ("plain", "sensitivity"),
     ("plain", "convergence"),
     ("plain", "what-if --set uncertain.rate.sigma=0.9"),
@@ -27,9 +27,10 @@ VERBS = [
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_summary_of_version_one_has_the_same_numbers(kind, uq):
+def test_a_summary_of_version_one_has_the_same_numbers(kind, uq, folder):
     expected = json.loads((KEPT / f"{kind}.json").read_text())
-    assert json.loads(uq("summary", KEPT / f"{kind}.nc", "--json").out) == expected
+    shutil.copy(KEPT / f"{kind}.nc", f"{kind}.nc")
+    assert json.loads(uq("summary", f"{kind}.nc", "--json").out) == expected
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -124,7 +124,7 @@ def test_blocks_are_named_in_row_order():
 
 
 def test_blocks_of_a_plain_design_are_samples():
-    assert DESIGNS["halton"].layout.labels(("p", "q"), False, False) == ("row",)
+    assert DESIGNS["halton"].layout.labels(("p", "q"), False, False) == ("sample",)
 
 
 @pytest.mark.parametrize("method", ["latin-hypercube", "sobol"])

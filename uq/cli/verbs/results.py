@@ -11,7 +11,6 @@ import typer
 from uq.cli import options as given
 from uq.errors import InputError
 from uq.execution.options import RunOptions
-from uq.result.result import Result
 from uq.text.literals import plain_line
 
 
@@ -114,6 +113,7 @@ def summary(
     from uq.cli import summary_tables
     from uq.cli.changed_file import warn_if_altered
     from uq.cli.printing import print_json
+    from uq.result.result import Result
 
     opened = Result.open(result)
     findings = Findings(opened)
@@ -151,6 +151,7 @@ def sensitivity(
     from uq.assess.sensitivity_json import sensitivity_json
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import show
+    from uq.result.result import Result
 
     opened = Result.open(result)
     indices = sensitivities(opened, method, output, regime)
@@ -258,6 +259,7 @@ def plot(
 ) -> None:
     """Draw the figures of a result into a folder."""
     from uq.plots import save_all
+    from uq.result.result import Result
 
     for path in save_all(Result.open(result), folder or result.with_suffix("")):
         print(path)

@@ -109,7 +109,9 @@ class Drawable:
         """Return the figure."""
         needs = {need: getattr(self.findings, need) for need in self.entry.needs}
         names = filter(None, [self.subject.name])
-        return self.entry.draw(self.findings.result, *names, **needs, **self.subject.keywords)
+        return self.entry.draw(
+            self.findings.result.dataset, *names, **needs, **self.subject.keywords
+        )
 
 
 def drawables(
