@@ -68,5 +68,8 @@ def _truth():
 
 FEW_RANKS = "conservative: with few rows, ranks are coarse; 94 to 98 % from 4,096 rows"
 RAISED = "conservative: the ends allow for one more row as extreme as the most extreme"
-REASONS = {f"difference of quantile {p}": FEW_RANKS for p in QUANTILES} | {"ratio of sd": RAISED}
+REASONS = {f"difference of quantile {p}": FEW_RANKS for p in QUANTILES} | {
+    "ratio of sd": RAISED,
+    "difference of sd": RAISED,
+}
 """Quantity -> why its coverage is not 95 %."""
