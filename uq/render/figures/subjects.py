@@ -57,7 +57,7 @@ def targets(findings: Findings) -> Iterator[FigureSubject]:
     """Yield each target of each sensitivity method."""
     for method, target_indices in _indices(findings):
         yield FigureSubject(
-            target_indices.name, method, {"method": method, "found": target_indices}
+            target_indices.name, method, {"method": method, "indices": target_indices}
         )
 
 
