@@ -152,3 +152,12 @@ def test_a_verb_imports_only_what_it_needs(verbs, allowed, write_study, folder):
     for line in loaded_lines:
         assert DEAR & set(line.removeprefix("loaded: ").split()) == allowed
     assert len(loaded_lines) == len(verbs.split(","))
+
+
+def test_a_function_takes_a_path_a_dataset_or_refuses_in_a_line(write_study, folder):
+    ds = uq.run(write_study(), "small.nc", workers=0)
+    assert uq.summary("small.nc").equals(uq.summary(ds))
+    with pytest.raises(
+        uq.InputError, match="not a result: int .allowed: a path, an xarray.Dataset"
+    ):
+        uq.summary(3)

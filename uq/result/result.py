@@ -51,7 +51,7 @@ class Result:
         if isinstance(source, str | Path):
             return cls.open(source)
         raise InputError(
-            f"a {type(source).__name__} is not a result (allowed: a path, an xarray.Dataset)"
+            f"not a result: {type(source).__name__} (allowed: a path, an xarray.Dataset)"
         )
 
     @classmethod
