@@ -203,8 +203,9 @@ def _quality(reweighted: WhatIf, rows: Result) -> str:
     k = reweighted.pareto_k
     tail = f" (Pareto k = {k:.2g})" if isfinite(k) else ""
     count, name = _independent(rows)
-    worth = f"{reweighted.effective_rows:.3g} of {grouped(count)} {name}"
-    return printed(f"These weights are worth {worth}{tail}.")
+    digits = f"{reweighted.effective_rows:.3g}"
+    worth = grouped(int(float(digits))) if reweighted.effective_rows >= 1000 else digits
+    return printed(f"These weights are worth {worth} of {grouped(count)} {name}{tail}.")
 
 
 def _independent(rows: Result) -> tuple[int, str]:

@@ -1,6 +1,7 @@
 """Other tolerances: what the sliders of a page show, against what Python finds on the same rows."""
 
 import base64
+import re
 import shlex
 
 import numpy as np
@@ -162,6 +163,12 @@ def test_weights_survive_their_bytes():
     assert restored[0] == 0 and restored[-1] == pytest.approx(3.7) and 0 < restored[1] < 1e-6
     assert restored[2:] == pytest.approx(weights[2:], rel=0.04)
     assert weights_of(log_bytes(np.full(5, 2.0))) == pytest.approx(2.0)
+
+
+def test_many_rows_that_weights_are_worth_are_no_power_of_ten():
+    inside = rows_inside(Findings(Result(scaled({}, samples=3000))), "a.nc")
+    quality = stop_of(inside, "z", "width", 2)["quality"].replace("\N{NO-BREAK SPACE}", " ")
+    assert re.match(r"These weights are worth [12] \d\d0 of 3 000 rows", quality), quality
 
 
 def test_inputs_that_depend_on_each_other_are_left_to_the_command(shown):
