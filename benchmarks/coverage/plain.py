@@ -158,7 +158,7 @@ def _taken_for_independent(tally, y):
     tally.add("quantile 0.5", ishigami_ppf(0.5), *interval, by=by)
 
 
-AS_JUMPS = "conservative: between neighbouring rows, steep parts cannot be told from jumps"
+AS_JUMPS = "conservative: a steep slope between neighbouring rows counts as a jump"
 REASONS = {(design, "life"): {"mean": TAIL} for design in DESIGNS} | {
     ("saltelli", "jump"): {"quantile 0.05": FEW},
     ("sobol", "ishigami"): {"mean": AS_JUMPS},

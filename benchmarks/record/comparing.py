@@ -13,8 +13,8 @@ _LINES = 40
 def compare(first: Path, second: Path, only: str) -> int:
     """Print what differs, and return how many entries do.
 
-    Entries that differ in numbers come first, then those of which only words or names do, and those
-    that one record lacks.
+    Entries whose numbers differ come first, then entries whose words or names differ, and last
+    entries that one record lacks.
     """
     a, b = (json.loads(path.read_text()) for path in (first, second))
     keys = [key for key in {**a, **b} if re.search(only, key.partition(": ")[0])]

@@ -81,7 +81,7 @@ LEARNT = {
     "posterior-small": ("fleet-small", "inspections.csv"),
     "posterior-plain-small": ("lives-small", "single.csv"),
 }
-"""Posteriors: the result before, and what is measured."""
+"""Posteriors: their prior results and inspections."""
 
 ROWS = "rows.csv"
 

@@ -92,7 +92,7 @@ TRACED = {
     },
     "ishigami-saltelli-small": NUMBERS | {"levels": "levels"},
 }
-"""Results of which every number is traced: the beginning of its key, and the command with it."""
+"""Results whose numbers are all traced: prefix of the key -> command that prints the number."""
 
 
 DRAWN = (
@@ -103,7 +103,7 @@ DRAWN = (
     "mole-basins",
     "vibrator-tolerances",
 )
-"""Results of which the figures are drawn; pages have most of them, too."""
+"""Results whose figures are recorded; pages hold most of them as well."""
 
 EVERY_METHOD = ("lives-small", "ishigami-monte-carlo-small", "correlated-small", "beam-lifetime")
 

@@ -13,9 +13,7 @@ from uq.assess.summary import Described, summarise
 from uq.assess.targets import split_name
 from uq.errors import InputError
 from uq.indices.methods import METHODS, piloted_by
-from uq.result.elements import (
-    Element,
-)
+from uq.result.elements import Element
 from uq.result.result import AnyResult, Result
 from uq.result.variables import error_name
 from uq.sampling.designs import DESIGNS

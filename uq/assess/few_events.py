@@ -51,11 +51,11 @@ def few_hits(result: Result, target: IndexTarget, intervals: bool = True) -> tup
     if not 0 < rarer < ENOUGH_HITS * replicates:
         return ()  # without any the method refuses
     side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
-    each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
+    per_replicate = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
     samples = int(result.dataset.attrs["samples"])
     needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
     remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
-    seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{each}"
+    seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{per_replicate}"
     if rarer < FEWEST_HITS * replicates:
         if target.event and result.design.layout is not PLAIN:
             remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"

@@ -106,12 +106,12 @@ class Units:
         """
         if self.shared is None:
             return self._of_units(self.element.below(time))[..., None]
-        each, lives = [], self.element.values
+        probabilities, lives = [], self.element.values
         with np.errstate(over="ignore", under="ignore"):
             for longer in self.shared.longer(self.nodes):
                 other = replace(self.element, values=lives * np.exp(longer))
-                each.append(self._of_units(other.below(time)))
-        return np.stack(each, axis=-1)
+                probabilities.append(self._of_units(other.below(time)))
+        return np.stack(probabilities, axis=-1)
 
     def _of_units(self, numbers: Floats) -> Floats:
         """Return the mean over repeats, shape (samples, units); of units that are alike, one."""
@@ -178,8 +178,10 @@ class _MoreThan:
     def below(self, lives: Floats, time: float) -> Floats:
         units = self.units
         if units.shared is not None and units.element.law is None:
-            each = self._turns * units.shared.below(units.element.values, time)
-            probability = np.bincount(units.place.sample, each, units.place.samples).astype(float)
+            in_rows = self._turns * units.shared.below(units.element.values, time)
+            probability = np.bincount(units.place.sample, in_rows, units.place.samples).astype(
+                float
+            )
         else:
             ended = units.ended(time)
             probability = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights

@@ -105,9 +105,11 @@ def by_level(result: Result, output: str | None = None, *, plain: bool = False) 
             scales = Scales({}) if plain else _scales(rows, light)
             shares[light.name] = _shares(rows, light, place, scales, replicate, weights)
     switches = "regime" in output_names and output is None
-    mean, each = switching(rows, place, varying, worth) if switches else (None, np.empty(0))
+    mean, switches_of_samples = (
+        switching(rows, place, varying, worth) if switches else (None, np.empty(0))
+    )
     size = place.samples, place.units, place.repeats
-    return ByLevel(*size, rows.levels, shares, mean, each, weights)
+    return ByLevel(*size, rows.levels, shares, mean, switches_of_samples, weights)
 
 
 def _scales(rows: Result, target: IndexTarget) -> Scales:

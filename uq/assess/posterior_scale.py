@@ -56,9 +56,11 @@ class TermsOfLaws:
     """
 
     def __init__(self, law: Floats, scores: Floats):
-        each = terms_at(law, scores.ravel()).reshape(*scores.shape, -1) * _DENSITY[:, None]
-        steps = (each[:, 1:] + each[:, :-1]) * (_STEP / 2)
-        self._up_to = np.concatenate([np.zeros_like(each[:, :1]), np.cumsum(steps, axis=1)], axis=1)
+        densities = terms_at(law, scores.ravel()).reshape(*scores.shape, -1) * _DENSITY[:, None]
+        steps = (densities[:, 1:] + densities[:, :-1]) * (_STEP / 2)
+        self._up_to = np.concatenate(
+            [np.zeros_like(densities[:, :1]), np.cumsum(steps, axis=1)], axis=1
+        )
 
     @property
     def means(self) -> Floats:

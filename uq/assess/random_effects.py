@@ -181,9 +181,9 @@ class Noisy:
             return Estimate(reason=self.refusal)
         level = float(_probit(probability))
         above = np.clip((self._z - level) / self._cell + 0.5, 0.0, 1.0)
-        each = self._posterior @ above
-        slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
-        pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
+        expected = self._posterior @ above
+        slopes = self._posterior @ (above * self._statistics).T - expected[:, None] * self._given
+        pulls = expected[self._place] @ self._weights + self._influences @ (self._share @ slopes)
         estimate = weighted_share(pulls, self._worth, self._part, hits=[])
         if not isfinite(estimate.low):
             estimate = replace(estimate, low=estimate.value, high=estimate.value)

@@ -46,20 +46,20 @@ def switching(
     if CHANCE not in varying:
         return Estimate(0.0, 0.0, 0.0), np.where(codes >= 0, 0.0, np.nan)
     unit = place.sample * place.units + place.unit if OWN in varying else place.sample
-    each = _elsewhere(unit, codes)
-    defined = np.isfinite(each)
+    elsewhere = _elsewhere(unit, codes)
+    defined = np.isfinite(elsewhere)
     if not defined.any():
-        return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), each
-    value, clusters = float(each[defined].mean()), _clusters(rows, place)
+        return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), elsewhere
+    value, clusters = float(elsewhere[defined].mean()), _clusters(rows, place)
     if weights is not None:
         return weighted_share(
-            each[defined], weights[place.sample[defined]], clusters[defined]
-        ), each
-    means = by_replicate(each[defined], clusters[defined])
+            elsewhere[defined], weights[place.sample[defined]], clusters[defined]
+        ), elsewhere
+    means = by_replicate(elsewhere[defined], clusters[defined])
     low, high = scattered_share_interval(
         value, means, rows=int(defined.sum()), samples=clusters.samples
     )
-    return Estimate(value, float(low), float(high)), each
+    return Estimate(value, float(low), float(high)), elsewhere
 
 
 def _clusters(rows: Result, place: Nesting) -> Clusters:
@@ -69,7 +69,7 @@ def _clusters(rows: Result, place: Nesting) -> Clusters:
 
 def _elsewhere(unit: NDArray[np.integer], codes: NDArray[np.integer]) -> Floats:
     """Return for each row the share of the other rows of its unit with another code."""
-    each = np.full(len(codes), np.nan)
+    probabilities = np.full(len(codes), np.nan)
     kept = codes >= 0
     _, place = np.unique(unit[kept], return_inverse=True)
     pairs = place * (int(codes.max(initial=0)) + 1) + codes[kept]
@@ -77,5 +77,5 @@ def _elsewhere(unit: NDArray[np.integer], codes: NDArray[np.integer]) -> Floats:
     others = np.bincount(place)[place] - 1
     alike = np.bincount(same)[same] - 1
     share = np.divide(others - alike, others, out=np.full(len(place), np.nan), where=others > 0)
-    each[kept] = share
-    return each
+    probabilities[kept] = share
+    return probabilities

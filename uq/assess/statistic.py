@@ -38,20 +38,22 @@ class Context:
 
     Attributes
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result.
     analysis : AnalysisTable
         What the study asks for.
-    replicate : ndarray of int, shape (n,), or None
-        Of each row; None where rows are independent.
     weights : Smoothed, optional
         Of the rows with nothing integrated, where they stand for another study.
     """
 
     rows: Result
     analysis: AnalysisTable
-    replicate: Replicates
     weights: Smoothed | None = None
+
+    @property
+    def replicate(self) -> Replicates:
+        """The replicate of each row, shape (n,); None where rows are independent."""
+        return self.rows.replicates
 
     @cached_property
     def joint_bounds(self) -> list[JointBound]:

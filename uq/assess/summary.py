@@ -195,7 +195,7 @@ def summarise(
         result = result.within_regime(regime)
     rows = result.independent
     of_all = rows.weights if weighting is None else weighting.all_inputs
-    context = Context(rows, analysis, rows.replicates, of_all)
+    context = Context(rows, analysis, of_all)
     outputs, most = dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
     names = result.shown_outputs(analysis)

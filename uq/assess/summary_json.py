@@ -224,7 +224,10 @@ def convergence_json(running: "Mapping[str, Converging]") -> dict[str, Any]:
 def _converging(converging: "Converging") -> dict[str, Any]:
     entry: dict[str, Any] = {
         "estimates": {
-            label: [{"samples": samples} | estimate_json.numbers(each) for samples, each in sizes]
+            label: [
+                {"samples": samples} | estimate_json.numbers(estimate)
+                for samples, estimate in sizes
+            ]
             for label, sizes in converging.estimates.items()
         }
     }

@@ -192,9 +192,9 @@ def _reasons(output: Described, block: Block) -> Iterator[str]:
             and statistic.rows_needed is None
             and not statistic.otherwise
         )
-        for each in both if len(both) > 1 else both * alone:
-            if each.estimate.reason and each.estimate.reason not in noted:
-                lacking.setdefault(each.estimate.reason, []).append(block.label(each))
+        for missing in both if len(both) > 1 else both * alone:
+            if missing.estimate.reason and missing.estimate.reason not in noted:
+                lacking.setdefault(missing.estimate.reason, []).append(block.label(missing))
     for reason, labels in lacking.items():
         yield f"{', '.join(labels)}: {reason}"
 

@@ -119,8 +119,8 @@ def pilot(
         least = _CHUNKS_AT_LEAST * count
         if size * row_seconds > _LONG_SECONDS:
             least = max(_CHUNKS_AT_LEAST, count)
-            each = duration(row_seconds) or f"{row_seconds:.3g} s"
-            say(f"a row takes about {each}: running {least * size} more, {count} at a time")
+            row_duration = duration(row_seconds) or f"{row_seconds:.3g} s"
+            say(f"a row takes about {row_duration}: running {least * size} more, {count} at a time")
         done, chunks = _spread_chunks(workload, evaluators, size, least)
     starts, row_blocks, computed_chunks, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*row_blocks, strict=True)))
@@ -231,6 +231,6 @@ def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> tup
     mean, m = sum(seconds) / sum(rows), len(seconds)
     if m == chunks:
         return mean, 0.0
-    each = np.divide(seconds, rows)
-    deviation = each.std(ddof=1) / np.sqrt(m) * np.sqrt(1 - m / chunks)
+    row_durations = np.divide(seconds, rows)
+    deviation = row_durations.std(ddof=1) / np.sqrt(m) * np.sqrt(1 - m / chunks)
     return mean, float(student(upper_probability(), m - 1) * deviation / mean)

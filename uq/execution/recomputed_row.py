@@ -65,8 +65,8 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
     if wrong:
         raise InputError(*fault_lines("setting ", settings, wrong))
     axes, others = (
-        {dim: list(values) for dim, values in study.model.coordinates(each).items()}
-        for each in (changed, study.settings)
+        {dim: list(values) for dim, values in study.model.coordinates(variant).items()}
+        for variant in (changed, study.settings)
     )
     if axes != others:
         names = ", ".join(settings)

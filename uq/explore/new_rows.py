@@ -124,12 +124,12 @@ def enlarged(
     n, repetition_of = len(study_rows), repetitions_of(study_rows)
     count = len(np.unique(repetition_of))
     step = count * study_rows.nesting.units
-    each = -(-max(n // _SHARE, _FEWEST) // step) * step
-    if budget.rows < each:
-        raise InputError(f"rows = {budget.rows}: a round of new rows takes {each}")
+    round_size = -(-max(n // _SHARE, _FEWEST) // step) * step
+    if budget.rows < round_size:
+        raise InputError(f"rows = {budget.rows}: a round of new rows takes {round_size}")
     scores = special.ndtri(unit_block(study, 0, n))
-    rounds = _Rounds(study, study_rows, inspections, model_cv, budget, each)
-    seeking = [Repetition(scores[repetition_of == r], each // count) for r in range(count)]
+    rounds = _Rounds(study, study_rows, inspections, model_cv, budget, round_size)
+    seeking = [Repetition(scores[repetition_of == r], round_size // count) for r in range(count)]
     settled = rounds.settled(seeking, *rounds.until_enough(seeking, study_rows, updated))
     return Enlarged(*rounds.until_enough(settled, study_rows, updated), rounds.kept)
 
@@ -144,9 +144,14 @@ class _Rounds:
         inspections: Sequence[Inspection],
         model_cv: float,
         budget: Budget,
-        each: int,
+        round_size: int,
     ):
-        self._study, self._study_rows, self._budget, self._each = study, study_rows, budget, each
+        self._study, self._study_rows, self._budget, self._each = (
+            study,
+            study_rows,
+            budget,
+            round_size,
+        )
         self._inspections, self._cv = inspections, model_cv
         self._name = _digest(study_rows, inspections, model_cv)
         self._number = 0
@@ -183,9 +188,14 @@ class _Rounds:
     ) -> list[Repetition]:
         """Return repetitions that draw around the rows of these, and drop them."""
         repetition_of, likelihoods = rows.dataset["replicate"].values, _log_likelihoods(updated)
-        each = [[log[repetition_of == r] for log in likelihoods] for r in range(len(repetitions))]
+        likelihoods_by_repetition = [
+            [log[repetition_of == r] for log in likelihoods] for r in range(len(repetitions))
+        ]
         return Repetition.settled(
-            repetitions, each, _columns(self._study, updated), self._rng(len(repetitions))
+            repetitions,
+            likelihoods_by_repetition,
+            _columns(self._study, updated),
+            self._rng(len(repetitions)),
         )
 
     def _drawn(

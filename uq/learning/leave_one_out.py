@@ -46,8 +46,8 @@ def log_worth(
     for unit, rows in enumerate(likelihoods.blocks):
         sample = place.sample[rows]
         of_unit = sample * place.units + place.unit[rows]
-        each = likelihoods.log_likelihood(unit, values[unit])
-        joint = evidence.rest[unit][sample] + _mean_of_others(each, of_unit, sample)
+        log_rows = likelihoods.log_likelihood(unit, values[unit])
+        joint = evidence.rest[unit][sample] + _mean_of_others(log_rows, of_unit, sample)
         worth[rows] = special.logsumexp(joint, axis=1, keepdims=True) if is_own else joint
     return worth
 

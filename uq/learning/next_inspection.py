@@ -11,9 +11,7 @@ from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.observables import Look, Quantities, look_at, quantities_of
 from uq.learning.remaining_life import check_times
-from uq.result.elements import (
-    Element,
-)
+from uq.result.elements import Element
 from uq.result.nesting import Nesting
 from uq.result.result import AnyResult, Result
 from uq.result.weights import OF_UNIT

@@ -167,9 +167,9 @@ def on_wide_grids(updated: Posterior) -> tuple[list[QuadratureGrid], Evidence]:
     scale, likelihoods = updated.scale, updated.likelihoods
     grids = [wide(grid, scale.quantiles if scale else None) for grid in updated.evidence.grids]
     worlds = [updated.world[block] for block in likelihoods.blocks]
-    each = [partial(likelihoods.log_likelihood, unit) for unit in range(len(grids))]
+    likelihood_functions = [partial(likelihoods.log_likelihood, unit) for unit in range(len(grids))]
     count, is_own = int(updated.world.max()) + 1, bool(scale and scale.is_own)
-    return grids, weigh_on(grids, each, worlds, count, is_own)[1]
+    return grids, weigh_on(grids, likelihood_functions, worlds, count, is_own)[1]
 
 
 def _looks(rows: Result, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:

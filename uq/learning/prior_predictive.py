@@ -41,9 +41,9 @@ def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
     for unit, inspections in enumerate(posterior.likelihoods.inspections):
         block = posterior.likelihoods.blocks[unit]
         rows = _rows(block[posterior.importance.from_study[block]], posterior.world, world, rng)
-        each = rng.random(CAMPAIGNS)
+        uniform = rng.random(CAMPAIGNS)
         for inspection in inspections:
-            truth = _truth(posterior, inspection, rows, common, each)
+            truth = _truth(posterior, inspection, rows, common, uniform)
             score += _log_probability(posterior, inspection, truth, rng, model_cv)
     return float((score[:-1] <= score[-1] + 1e-9).mean())
 

@@ -38,9 +38,9 @@ class Repetition:
        135-143 (2000).
     """
 
-    def __init__(self, scores: Floats, each: int, last: Proposal | None = None):
+    def __init__(self, scores: Floats, round_size: int, last: Proposal | None = None):
         self.log_importance = np.zeros(len(scores))
-        self._scores, self._each, self._own, self._last = scores, each, len(scores), last
+        self._scores, self._each, self._own, self._last = scores, round_size, len(scores), last
         self._proposals: list[Proposal] = []
         self._log_mixture = np.full(len(scores), np.log(len(scores)))
 
@@ -105,7 +105,7 @@ class Repetition:
         """
         scores = np.concatenate([repetition._scores for repetition in repetitions])
         log_importance = np.concatenate([repetition.log_importance for repetition in repetitions])
-        of_units = [np.concatenate(each) for each in zip(*log_likelihoods, strict=True)]
+        of_units = [np.concatenate(parts) for parts in zip(*log_likelihoods, strict=True)]
         last = _around(scores, log_importance, of_units, columns, rng).wider(_WIDER)
         return [
             Repetition(repetition._scores[: repetition._own], repetition._each, last)

@@ -62,9 +62,11 @@ def _or_stopped(posterior: Posterior, label: str) -> str:
 
 def _reasons(posterior: Posterior) -> Iterator[str]:
     """Yield the reason for each unit, from the fewest effective rows."""
-    each = {"what all units share": posterior.any_unit}
-    each |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
-    for whose, weighted in sorted(each.items(), key=lambda pair: pair[1].weights.effective):
+    weighted_by_name = {"what all units share": posterior.any_unit}
+    weighted_by_name |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
+    for whose, weighted in sorted(
+        weighted_by_name.items(), key=lambda pair: pair[1].weights.effective
+    ):
         if why := _why(weighted):
             yield f"{whose}: {why}"
 

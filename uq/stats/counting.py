@@ -56,10 +56,10 @@ def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
     for block in np.array_split(lives, max(blocks, 1)):
         table = block.reshape(len(block), 1, -1) if are_alike else block
         order, ended = _one_by_one(table)
-        each = np.zeros(order.shape)
+        turn = np.zeros(order.shape)
         steps = np.diff(more_than(ended, size, allow, are_alike), axis=1, prepend=0.0)
-        np.put_along_axis(each, order, steps, axis=1)
-        probabilities.append(each)
+        np.put_along_axis(turn, order, steps, axis=1)
+        probabilities.append(turn)
     whole = np.nan_to_num(np.concatenate(probabilities)).reshape(lives.shape)
     return np.where(np.isnan(lives), 0.0, whole)
 
@@ -117,8 +117,8 @@ def _of_certain(ended: Floats, size: int, allow: int) -> Floats:
     units = ended.shape[1]
     count = np.arange(units + 1.0)
     in_fleet = np.arange(allow + 1.0)[:, None]
-    each = _log_choose(count, in_fleet) + _log_choose(units - count, size - in_fleet)
-    table = np.exp(each - _log_choose(units, size)).sum(axis=0)
+    log_ways = _log_choose(count, in_fleet) + _log_choose(units - count, size - in_fleet)
+    table = np.exp(log_ways - _log_choose(units, size)).sum(axis=0)
     return np.asarray(np.minimum(table, 1.0)[ended.sum(axis=1).astype(int)])
 
 

@@ -47,7 +47,7 @@ ROUGH = replace(
 def accuracy_of(ds, name):
     """Return what is said of the accuracy of an output without dimensions."""
     (element,) = elements_of(ds, [name])
-    (statistic,) = accuracy(element, Context(Result(ds), analysis_of(ds), None))
+    (statistic,) = accuracy(element, Context(Result(ds), analysis_of(ds)))
     return statistic.facts["accuracy"]
 
 

@@ -1,10 +1,10 @@
-"""The answer of a study: promises, drivers and advice.
+"""The answer of a study: what can be promised, what decides it, and what to do.
 
 Reading order; each part imports only those above it:
 
     sources             quality of the source of a number: measured, assumed, or chosen
     wording             inputs and elements by their names
-    measured_indices    the index of each input, and its separation from the others
+    measured_indices    index of each input, and its separation from the others
     assumptions         assumptions of an answer: laws and values without a measurement
     contributions       contributions of inputs
     earliest            the rows that end first, and their distinguishing inputs

@@ -118,21 +118,21 @@ def _earliest(earliest: Earliest) -> dict[str, Any]:
         "size": earliest.size,
         "of": earliest.total,
         "inputs": {
-            each.name: {
-                "direction": each.direction,
-                "outwards": each.outwards,
-                "median": each.median,
-                "median_of_others": each.others,
-                "rank": each.rank.value,
-                "rank_low": estimate_json.number(each.rank.low),
-                "rank_high": estimate_json.number(each.rank.high),
+            distinct.name: {
+                "direction": distinct.direction,
+                "outwards": distinct.outwards,
+                "median": distinct.median,
+                "median_of_others": distinct.others,
+                "rank": distinct.rank.value,
+                "rank_low": estimate_json.number(distinct.rank.low),
+                "rank_high": estimate_json.number(distinct.rank.high),
             }
-            for each in earliest.inputs or ()
+            for distinct in earliest.inputs or ()
         },
         "regimes": {
-            each.label: estimate_json.numbers(each.share)
-            | {"overall": each.overall, "is_more_frequent": each.is_more_frequent}
-            for each in earliest.regimes
+            regime_share.label: estimate_json.numbers(regime_share.share)
+            | {"overall": regime_share.overall, "is_more_frequent": regime_share.is_more_frequent}
+            for regime_share in earliest.regimes
         },
     }
 
@@ -154,7 +154,7 @@ def _promise(promise: ToleranceBound) -> dict[str, Any]:
     ends = (("lower", promise.ranks[0]), ("upper", promise.ranks[1]))
     places = {f"{side}_is_row": rank for side, rank in ends if rank}
     piled = {
-        f"share_at_{'largest' if each.upper else 'smallest'}": each.share for each in promise.piled
+        f"share_at_{'largest' if atom.upper else 'smallest'}": atom.share for atom in promise.piled
     }
     return {"sentence": promise.sentence, "reason": promise.reason} | plain | places | piled | joint
 
@@ -239,7 +239,7 @@ def _of_ranking(ranking: Ranking | None) -> dict[str, Any]:
         "index": ranking.kind,
         "reason": ranking.reason,
         "rows_factor": estimate_json.number(ranking.rows_factor),
-        "contributions": [_contribution(each) for each in ranking.contributions],
+        "contributions": [_contribution(contribution) for contribution in ranking.contributions],
     }
     if not isnan(ranking.unexplained.value):
         entry["unexplained"] = estimate_json.numbers(ranking.unexplained)
@@ -272,7 +272,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
     if advice.rows is not None:
         entry["rows"] = advice.rows
     if advice.tolerances:
-        entry["tolerances"] = [_tightened(each) for each in advice.tolerances]
+        entry["tolerances"] = [_tightened(tolerance) for tolerance in advice.tolerances]
     return entry
 
 

@@ -123,8 +123,8 @@ class Contribution:
         if len(self.changes) == 1:
             return self.changes[0].sentence()
         names = (called_together([name]) for name in self.inputs)
-        each = zip(self.changes, names, strict=True)
-        return "; ".join(effect.sentence(name) for effect, name in each)
+        changes_by_name = zip(self.changes, names, strict=True)
+        return "; ".join(effect.sentence(name) for effect, name in changes_by_name)
 
 
 @dataclass(frozen=True)

@@ -36,9 +36,7 @@ from uq.assess.summary import Described, resolution_of, summarise
 from uq.assess.targets import lightened, number_of, split_name
 from uq.errors import InputError
 from uq.indices.methods import METHODS
-from uq.result.elements import (
-    Element,
-)
+from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.study.file import AnalysisTable
@@ -70,8 +68,7 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     summary = summarise(result, asked) if only else findings.summary
     parts = [part for part in ("quantiles", "tolerance") if _asks(wanted, asked, part)]
     more = summarise(result, wanted, parts=parts).outputs if parts else {}
-    part = findings.rows.replicates
-    context = Context(findings.rows, wanted, part, findings.rows.weights)
+    context = Context(findings.rows, wanted, findings.rows.weights)
     return [
         _quantity(
             findings,

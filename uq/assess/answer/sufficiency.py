@@ -110,13 +110,15 @@ def enough_of(
         *answered
     ]
     about, rest = ([], primary) if regimes else (primary[:1], primary[1:])
-    question = [each for quantity in about for each in unsettled(quantity)]
-    question += [each for regime in regimes for each in unsettled_share(regime)]
+    question = [unsettled_number for quantity in about for unsettled_number in unsettled(quantity)]
+    question += [
+        unsettled_number for regime in regimes for unsettled_number in unsettled_share(regime)
+    ]
     question += bounds_unsettled(findings, primary)
     besides = [
-        replace(each, clause=f"{each.clause} ({quantity.words})")
+        replace(other, clause=f"{other.clause} ({quantity.words})")
         for quantity in rest
-        for each in unsettled(quantity)
+        for other in unsettled(quantity)
     ]
     errors = None if not about or result.has_weights else _errors(findings, about[0])
     enough = Enough(

@@ -134,8 +134,11 @@ class ToleranceBound:
         if bounds and self.joint:
             return f"{self._confidence}, at least {covered} {' and '.join(bounds)}{self._others}."
         if bounds:
-            each, joined = " each" * (len(bounds) > 1), f", and at least {covered} ".join(bounds)
-            return f"{self._confidence}{each}, at least {covered} {joined}."
+            separately, joined = (
+                " each" * (len(bounds) > 1),
+                f", and at least {covered} ".join(bounds),
+            )
+            return f"{self._confidence}{separately}, at least {covered} {joined}."
         share = " ".join(filter(None, (share, self.support.phrase(self._noun))))
         cautious: list[str] = []
         for i, quantile in enumerate(self.quantiles):

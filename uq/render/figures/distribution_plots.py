@@ -117,8 +117,8 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit = display_unit(chosen[0].units, together)
     edges, wide = bins(together / unit.size)
-    each = 1.1 if len(chosen) < 3 else 0.75
-    panels = column(axes, 0.7 + each * len(chosen), len(chosen))
+    height = 1.1 if len(chosen) < 3 else 0.75
+    panels = column(axes, 0.7 + height * len(chosen), len(chosen))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():

@@ -14,27 +14,22 @@ from uq.assess.findings import Findings
 from uq.assess.independent_inputs import independent_inputs
 from uq.assess.scaling import population
 from uq.assess.summary import REGIME
-from uq.contract import Floats
-from uq.render.figures.elements_plot import display_unit, occurring_regimes
+from uq.render.figures.elements_plot import occurring_regimes
 from uq.render.figures.style import LIMIT, ROWS
-from uq.render.figures.words import element_in_words, literal, meaning_of, symbol_beside, unbroken
-from uq.render.html.axes import axis_of, common_digits
+from uq.render.figures.words import element_in_words, literal
+from uq.render.html.embedded_columns import input_column, output_column
 from uq.render.html.encoded import encoded
 from uq.render.html.first_scatter import first_element, first_input
 from uq.render.html.moved_laws import STOPS
-from uq.render.html.symbols import parts_of
 from uq.render.html.tolerances import event_key, tolerances
 from uq.result.element import Element
-from uq.result.elements import (
-    flags,
-)
+from uq.result.elements import flags
 from uq.result.result import Result
 from uq.stats.clusters import Clusters
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
 from uq.text.numbers import grouped, printed, threshold
 from uq.text.symbols import readable
-from uq.text.units import ReadableUnit
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""
@@ -51,7 +46,6 @@ QUARTERS = (
     " 22 and 28 %. The inputs that differ most come first."
 )
 
-_ENDED, _CENSORED, _NEVER, _UNDEFINED, _FAILED = range(5)
 _MISS, _HIT, _NO_PART, _UNKNOWN = range(4)
 
 
@@ -80,8 +74,8 @@ def rows_inside(
     numbers = len(inputs) + sum(1 for _ in whole.elements(outputs))
     rows = part_of(whole, numbers + ceil(len(inputs) * STOPS / _BYTES_OF_NUMBER))
     elements = list(population(rows, outputs))
-    columns = [_input(rows, name, findings.result.input_unit(name)) for name in inputs]
-    columns += [_output(rows, element, analysis) for element in elements]
+    columns = [input_column(rows, name, findings.result.input_unit(name)) for name in inputs]
+    columns += [output_column(rows, element, analysis) for element in elements]
     promises = {lead.name: lead.promise for lead in answered[:1] if lead.promise is not None}
     drawn = first_element(elements, answered, analysis)
     first = list(inputs).index(first_input(independent_inputs(rows), elements[drawn], answered))
@@ -171,53 +165,6 @@ def part_of(rows: Result, columns: int) -> Result:
     return rows.take(np.isin(sample, chosen))
 
 
-def _input(rows: Result, name: str, unit: ReadableUnit) -> dict[str, Any]:
-    variable = rows.dataset[name]
-    values = variable.values
-    symbol = parts_of(symbol_beside(called(name), variable))
-    column = _column(name, called(name), unit, values, np.zeros(len(values)), symbol)
-    return column | {
-        "role": "input",
-        "meaning": plain(readable(meaning_of(variable))),
-        "curve": "Share above each value",
-        "lines": [],
-        "quarters": np.quantile(values, (0.25, 0.5, 0.75)).tolist(),
-    }
-
-
-def _output(rows: Result, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
-    unit = display_unit(element.units, element.values)
-    label = element_in_words(rows, element)
-    column = _column(element.name, label, unit, element.values, _states(element), [""])
-    asked = analysis.thresholds.get(element.output, ())
-    lines = [
-        side * float(value) for value in asked for side in ((-1, 1) if element.is_angle else (1,))
-    ]
-    axis = column["axis"]
-    return column | {
-        "role": "output",
-        "meaning": "",
-        "curve": _curve(element),
-        "lines": [line for line in lines if axis["low"] <= line <= axis["high"]],
-    }
-
-
-def _curve(element: Element) -> str:
-    """Return what the curve of an output shows."""
-    if element.declared.success:
-        return "Share that has not yet succeeded"
-    return "Share that outlives each time" if element.is_lifetime else "Share above each value"
-
-
-def _states(element: Element) -> NDArray[np.int_]:
-    """Return how each row ended, as the scripts number it."""
-    states = np.where(np.isposinf(element.values), _NEVER, _ENDED)
-    states[element.censored] = _CENSORED
-    states[np.isnan(element.values)] = _UNDEFINED
-    states[element.failed] = _FAILED
-    return states
-
-
 def _thresholds(
     rows: Result, elements: Sequence[Element], analysis: AnalysisTable
 ) -> Iterator[dict[str, Any]]:
@@ -278,41 +225,6 @@ def _asked(rows: Result, element: Element, value: float) -> str:
         does = "succeeds" if element.declared.success else "ends"
         return f"P({does} within {printed(at)}), {label}"
     return f"P({f'|{label}|' if element.is_angle else label} > {printed(at)})"
-
-
-def _column(
-    name: str,
-    words: str,
-    unit: ReadableUnit,
-    values: Floats,
-    states: NDArray[Any],
-    symbol: Sequence[str],
-) -> dict[str, Any]:
-    """Return a column of numbers: how it is called, written and drawn."""
-    label = plain(printed(readable(words)))
-    shown = "" if unit.name == "1" else plain(unbroken(unit.name))
-    title = f"{label} ({symbol[0]})" if symbol[0] and len(symbol) == 1 else label
-    axis = axis_of(values[states <= _CENSORED], unit.size)
-    return {
-        "name": name,
-        "label": label,
-        "symbol": symbol,
-        "title": f"{title} [{shown}]" if shown else title,
-        "after": _after(shown),
-        "per": unit.size,
-        "common": common_digits(axis),
-        "axis": axis,
-        "values": encoded(values, "<f8"),
-        "states": encoded(states, "u1") if states.any() else None,
-    }
-
-
-def _after(unit: str) -> str:
-    """Return a unit as it follows a number."""
-    if unit in ("", "\N{DEGREE SIGN}"):
-        return unit
-    space = "\N{NO-BREAK SPACE}"
-    return f"{space}\N{MULTIPLICATION SIGN}{space}{unit}" if unit.startswith("10") else f" {unit}"
 
 
 def _categories(rows: Result) -> Iterator[dict[str, Any]]:

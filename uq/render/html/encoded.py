@@ -12,9 +12,9 @@ IMPOSSIBLE = 255
 
 _STEPS = 254
 _ALIKE = 1e-9  # differences of logarithms that are rounding
-_DEEPEST = (
-    16.0  # logarithm; a row of less than a ten millionth of the largest weight is as good as none
-)
+_DEEPEST = 16.0
+"""Largest fall of a logarithm that is kept: less than a ten millionth of the largest weight is
+negligible."""
 
 
 def encoded(values: Any, kind: str) -> str:

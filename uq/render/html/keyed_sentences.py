@@ -80,19 +80,23 @@ def levels(answer: Answer) -> Markup:
     """Return which level decides, as far as that is known."""
     if (decomposition := answer.levels) is None:
         return Markup()
-    shares = (_answer("levels", "shares", each.name, "value") for each in decomposition.levels)
+    shares = (_answer("levels", "shares", level.name, "value") for level in decomposition.levels)
     another = keyed(decomposition.switching, _answer("levels", "another_regime", "value"))
     return Markup(" ").join(filter(None, (keyed(decomposition.sentence, *shares), another)))
 
 
 def events(quantity: Quantity) -> list[Markup]:
     """Return the probabilities that are known, and what decides them."""
-    return [_event(each, _path(quantity, each)) for each in quantity.events if each.sentence]
+    return [
+        _event(sub_event, _path(quantity, sub_event))
+        for sub_event in quantity.events
+        if sub_event.sentence
+    ]
 
 
 def others(answer: Quantity) -> list[Markup]:
     """Return the same of the events that do not stand first."""
-    return [_event(each, _path(answer, each)) for each in answer.others if each.sentence]
+    return [_event(other, _path(answer, other)) for other in answer.others if other.sentence]
 
 
 def first(answer: Quantity) -> tuple[Markup, Markup]:
@@ -173,11 +177,11 @@ def earliest(quantity: Quantity) -> Iterator[Markup]:
     if (earliest_rows := quantity.earliest) is None:
         return
     if earliest_rows.sentence:
-        apart = [("inputs", each.name) for each in earliest_rows.inputs or ()]
-        apart += [("regimes", each.label) for each in earliest_rows.regimes]
+        apart = [("inputs", distinct.name) for distinct in earliest_rows.inputs or ()]
+        apart += [("regimes", regime_share.label) for regime_share in earliest_rows.regimes]
         yield keyed(
             earliest_rows.sentence,
-            *(_key(quantity, "earliest", *each) for each in [("size",), *apart]),
+            *(_key(quantity, "earliest", *path) for path in [("size",), *apart]),
         )
     command = Markup("<code>{}</code>").format(plain(earliest_rows.command))
     first = keyed(earliest_rows.first, _key(quantity, "earliest", "lives"))
@@ -202,8 +206,8 @@ def advice(advice_given: Advice) -> Markup:
             if advice_given.sure is None
             else keyed(advice_given.sure.promised, advice_given.sure.key)
         )
-        worse = (keyed(each.besides, each.key) for each in advice_given.harmed)
-        also = keyed(advice_given.also, *(each.key for each in advice_given.alike))
+        worse = (keyed(harm.besides, harm.key) for harm in advice_given.harmed)
+        also = keyed(advice_given.also, *(similar.key for similar in advice_given.alike))
         proposal = keyed(advice_given.sentence, advice_given.key)
         return Markup(" ").join(filter(None, (proposal, sure, *worse, also)))
     if advice_given.rows is not None:

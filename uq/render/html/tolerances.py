@@ -122,7 +122,7 @@ def _why_without(name: str, inputs: Inputs) -> str:
 def _asked(
     rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
 ) -> Asked:
-    """Return what is estimated at each stop."""
+    """Return the estimates at each stop."""
     analysis = rows.analysis
     shown = {
         element.output: None
@@ -175,7 +175,7 @@ def _place_of_study(stops: Sequence[Mapping[str, Any]]) -> int:
 def _stop(
     rows: Result, name: str, law: Law, arguments: Arguments, asked: Asked, before: Summary
 ) -> dict[str, Any] | None:
-    """Return what is known of the rows with other arguments of one law.
+    """Return weights and estimates of the rows with other arguments of one law.
 
     None where these make no law of the parameter.
     """
@@ -290,7 +290,7 @@ def _promised_then(
 ) -> list[str]:
     """Return what bounds of an element would then be, beside the same estimates as studied."""
     return [
-        _then(bound, *(_end(each.outputs.get(name), bound, p) for each in (summary, before)))
+        _then(bound, *(_end(side.outputs.get(name), bound, p) for side in (summary, before)))
         for p in promise.probabilities
         if (bound := promise.of_quantile(p)) is not None
     ]

@@ -46,7 +46,9 @@ def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     if path[:1] == (BOUNDARY,):
         whole |= boundary_json(boundary(result))
     for name, described in summary.outputs.items():
-        others = [each for each in described.statistics if not each.is_read_by(Reader.JSON)]
+        others = [
+            statistic for statistic in described.statistics if not statistic.is_read_by(Reader.JSON)
+        ]
         for parent, _, entry in written(others):
             put(whole["outputs"][name], parent, entry)
     return whole

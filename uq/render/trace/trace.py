@@ -159,7 +159,7 @@ def trace_json(record: Trace) -> dict[str, Any]:
         **record.numbers,
         "equal": record.equal,
         "again": dict(record.again),
-        "estimators": [each._asdict() for each in record.estimators],
+        "estimators": [citation._asdict() for citation in record.estimators],
         "rows": {
             "used": record.rows_used,
             "of": record.rows,
