@@ -80,11 +80,11 @@ def main() -> int:
     paths = [Path(path) for path in arguments[: 1 if command == "run" else 2]]
     only = "".join(arguments[len(paths) :]).replace("quick", QUICK)
     if command == "compare":
-        return min(compare(*paths, only), 1)
+        return min(compare(paths[0], paths[1], only), 1)
     if command == "run":
-        run(*paths, only)
+        run(paths[0], only)
     else:
-        read(*paths, only)
+        read(paths[0], paths[1], only)
     return 0
 
 
