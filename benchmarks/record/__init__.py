@@ -8,8 +8,8 @@ read by another: old results then print the same.
 
 A regular expression as the last argument selects groups of entries, by result or by kind: ``quick``
 stands for a few that cover most of the code, in two minutes; all of it takes a quarter of an hour
-of one core. Only commands and public functions are used, and names of modules and folders and
-hashes of code are left out: one version of this package records any state of the code.
+of one core. Only commands and public functions are used, and names of modules and folders, and
+hashes of code, are left out: one version of this package records any state of the code.
 
 Reading order; each part imports only those above it:
 

@@ -60,8 +60,8 @@ def _processor_time() -> float:
     return times.user + times.system + times.children_user + times.children_system
 
 
-def read(folder: Path, only: str) -> dict[str, object]:
-    """Return the bits of every variable and what every verb reports."""
+def read(folder: Path, target: Path, only: str) -> None:
+    """Record the bits of every variable and what every verb reports."""
     _load()
     entries: dict[str, object] = {}
     for group, make in groups_of(folder).items():
@@ -69,8 +69,8 @@ def read(folder: Path, only: str) -> dict[str, object]:
             began = _processor_time()
             made = recorded(folder, make)
             entries |= {f"{group}: {name}": entry for name, entry in made.items()}
+            target.write_text(json.dumps(entries, indent=1))
             print(group, len(made), f"{_processor_time() - began:.1f} s", flush=True)
-    return entries
 
 
 def main() -> int:
@@ -80,11 +80,11 @@ def main() -> int:
     paths = [Path(path) for path in arguments[: 1 if command == "run" else 2]]
     only = "".join(arguments[len(paths) :]).replace("quick", QUICK)
     if command == "compare":
-        return min(compare(*paths, only), 1)
+        return min(compare(paths[0], paths[1], only), 1)
     if command == "run":
-        run(*paths, only)
+        run(paths[0], only)
     else:
-        paths[1].write_text(json.dumps(read(paths[0], only), indent=1))
+        read(paths[0], paths[1], only)
     return 0
 
 

@@ -25,8 +25,8 @@ def compare(first: Path, second: Path, only: str) -> int:
     for kind, differing in (("numbers differ", in_numbers), ("words differ", in_words)):
         for key in differing:
             print(f"=== {key}: {kind}")
-            sides = [_text(side[key]).splitlines() for side in (a, b)]
-            lines = list(difflib.unified_diff(*sides, lineterm="", n=0))[2:]
+            before, after = (_text(side[key]).splitlines() for side in (a, b))
+            lines = list(difflib.unified_diff(before, after, lineterm="", n=0))[2:]
             print(*lines[:_LINES], *(["..."] * (len(lines) > _LINES)), sep="\n")
     for key in absent:
         print(f"=== {key}: in {first if key in a else second} only")

@@ -17,7 +17,7 @@ from benchmarks.record.command import forked, reported
 from benchmarks.record.mistakes import FILES, MISTAKES
 from benchmarks.record.plain import digest, embedded, outcome_of, words_of
 from benchmarks.record.studies import METHODS, SHIPPED, files, small_studies
-from benchmarks.record.verbs import DRAWN, TRACED, WITHOUT_JSON, commands_of, has_page
+from benchmarks.record.verbs import DRAWN, TRACED, commands_of, endings_of, has_page
 
 PAIRS = (
     ("ishigami-monte-carlo-small", "ishigami-sobol-small"),
@@ -115,8 +115,8 @@ def _traced(name: str, folder: Path) -> Entries:
     reported("report", file, "-o", "report.html", folder=folder)
     page = (folder / "report.html").read_text()
     keys += sorted({*re.findall(r'data-trace="(inputs/[^"\n]*)', page)})
-    traces = forked(partial(_print_traces, file, keys), folder)
-    yield from zip(keys, map(outcome_of, json.loads(str(traces["out"]))), strict=True)
+    outcome = forked(partial(_print_traces, file, keys), folder)
+    yield from zip(keys, map(outcome_of, json.loads(str(outcome["out"]))), strict=True)
 
 
 def _print_traces(file: str, keys: list[str]) -> None:
@@ -203,7 +203,7 @@ def _name(model: Any) -> str:
 
 def _reported(folder: Path, verb: str, *arguments: str) -> Entries:
     options = [word for word in arguments if not word.endswith(".nc")]
-    for ending in ((),) if verb in WITHOUT_JSON else ((), ("--json",)):
+    for ending in endings_of(Path(arguments[0] if arguments else "").stem, verb):
         outcome = outcome_of(reported(verb, *arguments, *ending, folder=folder))
         yield " ".join([verb, *options, *ending]), outcome
         for made in folder.glob("posterior.nc"):

@@ -9,6 +9,7 @@ from typing import Any
 _REPLACED = (
     (r"\buq\.(?:[a-z_0-9]+\.)+(?=\w)", ""),  # packages and modules of a function
     (r"/tmp/\S*/", ""),
+    (r"(\d rows? computed) in [\d.]+ \w+", r"\1"),
     (r"(?m)^(code +)[0-9a-f]{16,}.*$", r"\1..."),
     (r'("code": )"[0-9a-f]{16,}"', r'\1"..."'),
     (r"; the code of the model has changed since", ""),

@@ -28,7 +28,6 @@ CHOSEN: dict[str, tuple[str, ...]] = {
         "verify",
     ),
     "exponential-wear-sobol-small": OF_LIVES,
-    "exponential-wear-saltelli-small": OF_LIVES,
     "lives-small": (*OF_LIVES, "trace outputs/life/tolerance/lower"),
     "never-small": OF_LIVES,
     "ishigami-saltelli-small": (
@@ -95,27 +94,38 @@ TRACED = {
 """Results whose numbers are all traced: prefix of the key -> command that prints the number."""
 
 
-DRAWN = (
-    "lives-small",
-    "ishigami-saltelli-small",
-    "posterior-small",
-    "beam-depths",
-    "mole-basins",
-    "vibrator-tolerances",
-)
+DRAWN = ("lives-small", "beam-depths", "mole-basins")
 """Results whose figures are recorded; pages hold most of them as well."""
 
-EVERY_METHOD = ("lives-small", "ishigami-monte-carlo-small", "correlated-small", "beam-lifetime")
+EVERY_METHOD = ("lives-small", "ishigami-monte-carlo-small", "correlated-small")
+ONE_OF_MANY = re.compile("(ishigami|exponential-wear)-.*-small")
+WITHOUT_PAGE = re.compile(
+    "ishigami-.*-small|exponential-wear-(halton|latin-hypercube|monte-carlo|rbd-fast|sobol)-small"
+    "|beam-(basins|lifetime-561|random-load|sensitivity|worn-depth)"
+    "|mole-(circuit|frequency|outcome|progression)|vibrator-(feed|run-up|startup|supports)"
+)
+
+
+def _is_minor(name: str) -> bool:
+    return bool(ONE_OF_MANY.fullmatch(name)) and name not in CHOSEN
 
 
 def has_page(name: str) -> bool:
-    """Whether the page of a result is recorded: of shipped studies, and of small ones of lives."""
-    return not re.match("ishigami-(?!saltelli|fast).*-small", name)
+    """Whether the page of a result is recorded: of one of its kind."""
+    return name in DRAWN or name in TRACED or not WITHOUT_PAGE.fullmatch(name)
 
 
 def commands_of(name: str, methods: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
     """Yield the commands that are recorded of a result, each without its file."""
-    yield from (("status",), ("summary", "--fits"), ("convergence",), ("sensitivity",))
+    yield from (("status",), ("convergence",), ("sensitivity",))
+    yield ("summary",) if _is_minor(name) else ("summary", "--fits")
     if name in EVERY_METHOD:
         yield from (("sensitivity", "--method", method) for method in methods)
     yield from (tuple(shlex.split(command)) for command in CHOSEN.get(name, ()))
+
+
+def endings_of(name: str, verb: str) -> tuple[tuple[str, ...], ...]:
+    """Return the options that choose text and JSON."""
+    if verb in WITHOUT_JSON:
+        return ((),)
+    return (("--json",),) if _is_minor(name) else ((), ("--json",))
