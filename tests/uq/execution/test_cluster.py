@@ -134,8 +134,11 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     study = load_study(write_study())
     with monkeypatch.context() as hasty:
         hasty.setattr(remote_cluster, "_REMOTE_SECONDS", 1)
-        for address in ("tcp://127.0.0.1:9", "nonsense://x"):
-            with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
+        for address, why in (
+            ("tcp://127.0.0.1:9", "cannot connect: .+"),
+            ("nonsense://x", "not an address such as tcp://host:8786"),
+        ):
+            with pytest.raises(InputError, match=rf"^scheduler {address}: {why}$"):
                 compute(study, scheduler=address)
     with cluster(n_workers=0) as empty:
         address = empty.scheduler_address

@@ -148,7 +148,7 @@ def test_several_units_of_a_sample():
     mean, cov = start + gain @ (np.log(lives) - look @ start), prior - gain @ look @ prior
     for i, unit in enumerate("AB"):
         assert_exact(updated, mean[[i, 2]], cov[np.ix_([i, 2], [i, 2])], unit)
-    assert own_rows(Result(prior_of(Result(updated)))).identical(ds)
+    assert own_rows(prior_of(Result(updated))).dataset.identical(ds)
 
 
 @pytest.mark.slow
@@ -157,7 +157,7 @@ def test_designs_with_replicates(method):
     ds = wear(samples=64, method=method, replicates=8)
     updated = update(ds, FAR, **SMALL)
     assert_exact(updated, *exactly([2e7], cv=0.05))
-    assert own_rows(Result(prior_of(Result(updated)))).identical(ds)
+    assert own_rows(prior_of(Result(updated))).dataset.identical(ds)
 
 
 @pytest.mark.slow
