@@ -2,6 +2,7 @@
 
 Reading order; each part imports only those above it:
 
+    fact                  facts of a result: numbers, sentence and estimators in a tree
     effects               average effects of inputs
     event_curve           the probability of an event over an input
     independent_inputs    the inputs of a result with a law of their own

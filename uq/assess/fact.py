@@ -1,0 +1,122 @@
+"""Facts of a result: numbers with their sentence and the functions that computed them, in a tree.
+
+Every verb writes its numbers once, as a tree of facts. The renderers read it: JSON the numbers,
+terminal and HTML the sentences with their keys, ``uq trace`` functions and rows.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from uq.result.result import Result
+
+Functions = tuple[Callable[..., Any], ...]
+"""Functions that compute a number; their docstrings cite the source."""
+
+Path = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Fact:
+    """Numbers of a result that belong together, and the facts that they consist of.
+
+    Attributes
+    ----------
+    members : dict
+        Name -> number, words, list of these, or `Fact`, in the order of the JSON. A member called
+        ``sentence`` (``text`` of advice) says in words what the numbers are.
+    by : tuple of callable
+        The functions that compute its numbers, and those of its facts without functions.
+    by_member : dict of str to tuple of callable
+        Name of a member -> the functions that compute it, where they differ.
+    rows : Result, optional
+        The rows that suffice to compute its numbers again; by default those of its parent.
+    mentions : tuple of tuple of str
+        Paths from here to the numbers in the sentence; by default the fact itself.
+    notes : tuple of str
+        Sentences on how it was computed.
+    """
+
+    members: Mapping[str, Any]
+    by: Functions = ()
+    by_member: Mapping[str, Functions] = field(default_factory=dict)
+    rows: Result | None = None
+    mentions: tuple[Path, ...] = ((),)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """Its numbers in words; "" where it has none."""
+        return str(self.members.get("sentence") or self.members.get("text") or "")
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """The numbers and sentences of it and its facts in plain data."""
+        return {name: _plain(member) for name, member in self.members.items()}
+
+    def at(self, *path: str) -> "Place":
+        """Return what stands at a path, with its functions and rows.
+
+        Raises
+        ------
+        KeyError
+            When the path leads nowhere.
+        """
+        fact, place = self, Place(self, self.by, self.rows, self.notes)
+        for depth, name in enumerate(path):
+            member = _member(fact.members, name)
+            by = fact.by_member.get(name, place.by)
+            if isinstance(member, Fact):
+                fact = member
+                notes = place.notes + fact.notes
+                place = Place(fact, fact.by or by, fact.rows or place.rows, notes)
+                continue
+            for inner in path[depth + 1 :]:  # inside of plain data
+                member = _member(member, inner)
+            return Place(member, by, place.rows, place.notes)
+        return place
+
+    def walk(self, path: Path = ()) -> Iterator[tuple[Path, "Fact"]]:
+        """Yield every fact of the tree with its path, parents first."""
+        yield path, self
+        for name, member in self.members.items():
+            if isinstance(member, Fact):
+                yield from member.walk((*path, name))
+
+
+class Place(NamedTuple):
+    """What stands at a path of a tree of facts.
+
+    Attributes
+    ----------
+    content : Fact or plain data
+    by : tuple of callable
+        The functions that compute its numbers.
+    rows : Result or None
+        The rows that suffice to compute it again; None for all.
+    notes : tuple of str
+        Of the facts on the way.
+    """
+
+    content: Any
+    by: Functions
+    rows: Result | None
+    notes: tuple[str, ...]
+
+
+def _plain(member: Any) -> Any:
+    if isinstance(member, Fact):
+        return member.json
+    if isinstance(member, list):
+        return [_plain(element) for element in member]
+    return member
+
+
+def _member(members: Any, name: str) -> Any:
+    if isinstance(members, list):
+        if not name.isdecimal() or int(name) >= len(members):
+            raise KeyError(name)
+        return members[int(name)]
+    if not isinstance(members, Mapping):
+        raise KeyError(name)
+    return members[name]
