@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.coverage.problems import computed, study_of, with_seed
 from benchmarks.coverage.tally import Tally
 from uq.assess.comparison import comparison
-from uq.assess.summary_json import comparison_json
+from uq.assess.summary_json import comparison_facts
 from uq.result.result import Result
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
@@ -31,7 +31,7 @@ def differences(repetitions):
         wide, narrow = _studies(*design)
         for seed in range(repetitions):
             pair = computed(with_seed(wide, seed)), computed(with_seed(narrow, seed + apart))
-            compared = comparison_json(comparison(*map(Result, pair)))["outputs"]["y"]
+            compared = comparison_facts(comparison(*map(Result, pair))).json["outputs"]["y"]
             entries = {f"quantile {p}": compared["quantiles"][p] for p in QUANTILES} | {
                 "sd": compared["sd"],
                 f"P(> {THRESHOLD})": compared["thresholds"][str(THRESHOLD)]["above"],

@@ -10,7 +10,7 @@ from benchmarks.coverage.tally import Tally
 from uq.assess.design_sample import sample_of
 from uq.assess.sensitivities import few_hits
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.assess.targets import IndexTarget
 from uq.assess.two_fidelities import with_twin
 from uq.indices.index import RefusedError
@@ -155,7 +155,7 @@ def failed(repetitions):
         ds = blank.copy(deep=True)
         ds["life"].values[:] = np.where(lost, np.nan, life)
         ds["status"].values[lost] = 2
-        entry = summary_json(summarise(Result(ds)))["outputs"]["life"]
+        entry = summary_facts(summarise(Result(ds))).json["outputs"]["life"]
         above = entry["thresholds"]["5.0"]["above"]
         median, b10 = entry["quantiles"]["0.5"], entry["b_lives"]["B10"]
         for quantity, truth, statistic in (

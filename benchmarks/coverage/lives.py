@@ -12,7 +12,7 @@ from benchmarks.coverage.tally import Tally
 from uq.assess.life_fit import fits_of
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
 from uq.result.result import Result
@@ -53,7 +53,7 @@ def lives(design, repetitions):
         )
     }
     for ds in repeated(study, repetitions):
-        outputs = summary_json(summarise(Result(ds)))["outputs"]
+        outputs = summary_facts(summarise(Result(ds))).json["outputs"]
         for name, tally in tallies.items():
             cdf = never_cdf if name == "never" else LIFE.cdf  # alike below the plateau
             for label, p in B_LIVES.items():
@@ -97,7 +97,7 @@ def mixed(design, samples, repetitions):
     rows = f"{design}, {replicates} replicates of " * (replicates > 1) + f"{samples} rows"
     tally = Tally(f"60 % never end, known at once, the others may be censored; {rows}")
     for ds in repeated(study, repetitions):
-        entry = summary_json(summarise(Result(ds)))["outputs"]["mixed"]
+        entry = summary_facts(summarise(Result(ds))).json["outputs"]["mixed"]
         tally.entry("B10", MIXED.ppf(0.1 / ENDS), entry["b_lives"]["B10"])
         for time in LIMITS:
             below = entry["thresholds"][repr(time)]["kaplan_meier"]["below"]

@@ -17,7 +17,7 @@ from benchmarks.coverage.problems import Inputs, Settings, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.assess.level_shares import by_level
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.contract import Model, Output
 from uq.result.result import Result
 from uq.stats.variance_components import nested_shares
@@ -105,7 +105,7 @@ def statistics(name, repetitions):
 
 
 def _count(tally, ds, quantiles):
-    summary = summary_json(summarise(Result(ds)))
+    summary = summary_facts(summarise(Result(ds))).json
     entry = summary["outputs"]["y"]
     tally.entry("mean", MEAN, entry["mean_interval"])
     tally.entry("sd", np.sqrt(VARIANCE), entry["sd_interval"])

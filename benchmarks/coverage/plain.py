@@ -17,7 +17,7 @@ from benchmarks.coverage.problems import (
 )
 from benchmarks.coverage.tally import Tally
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.result.result import Result
 
 QUANTILES = (0.05, 0.5, 0.95)
@@ -84,7 +84,7 @@ def plain(design, repetitions):
         for name in TRUTH
     }
     for number, ds in enumerate(repeated(study, repetitions)):
-        summary = summary_json(summarise(Result(ds)))
+        summary = summary_facts(summarise(Result(ds))).json
         for name, tally in tallies.items():
             _summary(tally, summary["outputs"][name], *TRUTH[name])
         shares = tallies["jump"]
@@ -92,7 +92,7 @@ def plain(design, repetitions):
         between = summary["outputs"]["jump"]["between_regimes"]
         shares.entry("variance between regimes", jump()["between"], between)
         if independent:
-            within = summary_json(summarise(Result(ds), regime="upper"))["outputs"]["jump"]
+            within = summary_facts(summarise(Result(ds), regime="upper")).json["outputs"]["jump"]
             shares.entry("mean in a regime", jump()["within"]["upper"], within["mean_interval"])
             median = within["quantiles"]["0.5"]
             shares.entry("median in a regime", jump_ppf(0.5, "upper"), median)

@@ -9,7 +9,7 @@ from scipy import stats
 from scipy.optimize import brentq
 
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_json
+from uq.assess.sensitivity_json import sensitivity_facts
 from uq.contract import Model, Output, Parameter
 from uq.result import result_file
 from uq.result.result import Result
@@ -277,7 +277,7 @@ def computed(study):
 
 def indices_of(ds, method=None, output=None):
     """Return the sensitivity indices of each output, as ``uq sensitivity --json`` has them."""
-    return sensitivity_json(sensitivities(Result(ds), method, output))["outputs"]
+    return sensitivity_facts(sensitivities(Result(ds), method, output)).json["outputs"]
 
 
 def repeated(study, repetitions):

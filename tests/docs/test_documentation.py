@@ -23,7 +23,7 @@ from matplotlib import pyplot
 import uq as public
 from uq import plots
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.cli.summary_tables import show_summary
 from uq.errors import InputError
 from uq.render.html.page import page
@@ -216,7 +216,7 @@ def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch,
     def number():
         ds = public.open_result("out.nc")
         public.summary(ds)
-        summary_json(summarise(Result(ds)))
+        assert summary_facts(summarise(Result(ds))).json
         show_summary(Result(ds), summarise(Result(ds)))
         public.survival(ds, "life")
         public.compare(ds, ds)

@@ -7,7 +7,7 @@ import numpy as np
 
 from uq.assess.comparison import comparison
 from uq.assess.summary import summarise
-from uq.assess.summary_json import comparison_json, summary_json
+from uq.assess.summary_json import comparison_facts, summary_facts
 from uq.result.result import Result
 from uq.result.result_file import build
 from uq.study import row_sampling
@@ -81,12 +81,12 @@ def kinds(method="monte-carlo", samples=64, replicates=1, analysis=None):
 
 def summarised(ds, **asked):
     """Return the summary of a result as JSON has it."""
-    return summary_json(summarise(Result(ds), **asked))
+    return summary_facts(summarise(Result(ds), **asked)).json
 
 
 def compared(*pair):
     """Return the comparison of two results as JSON has it."""
-    return comparison_json(comparison(*map(Result, pair)))
+    return comparison_facts(comparison(*map(Result, pair))).json
 
 
 def with_seed(study, seed):

@@ -38,7 +38,7 @@ Reading order; each part imports only those above it:
     sensitivities         sensitivity indices of a whole result, by every method
     pairing               pairing of the rows of two results
     statistic             a statistic of an output
-    sensitivity_json      sensitivity indices as the command line prints them with ``--json``
+    sensitivity_json      sensitivity indices as a tree of facts
     sensitivity_table     sensitivity indices as arrays
     stopping              when a run may stop
     failed_rows           bounds of an estimate with the failed rows at best and at worst
@@ -52,17 +52,17 @@ Reading order; each part imports only those above it:
     level_table           variance shares by level as a Dataset
     fit_table             laws fitted to a lifetime as a table
     summary               the summary of a result
+    summary_json          the numbers of summaries, comparisons and levels as trees of facts
     convergence           convergence
     differences           differences between the statistics of two results
     fleet                 fleets
     regime_boundary       the boundary between the regimes of a result
     summary_table         the summary of a result as a table
-    running_estimates     running estimates, each with the numbers of samples that it comes from
+    running_estimates     running estimates of each output, and the errors of all rows
     comparison            two studies of one model
     findings              a result and what several tables and figures show of it
     regimes               the regimes of a result compared
-    summary_json          summaries and comparisons as JSON
-    fleet_json            numbers of fleets as the command line prints them with ``--json``
+    fleet_json            numbers of fleets as a tree of facts
     what_if               a result under other laws of its inputs: the same rows, weighted
     answer                the answer of a study
 """

@@ -1,22 +1,25 @@
 """Convergence: estimates as the rows came in, and the error of sampling beside other errors."""
 
 from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
+from uq.assess.fact import Functions
 from uq.assess.sensitivities import sensitivities
 from uq.assess.statistic import Reader
 from uq.assess.statistics.counts import stated_error
 from uq.assess.summary import Described, summarise
 from uq.assess.targets import split_name
 from uq.errors import InputError
-from uq.indices.methods import METHODS, piloted_by
+from uq.indices.methods import METHODS, indices_of, piloted_by
 from uq.result.elements import Element
 from uq.result.result import AnyResult, Result
 from uq.result.variables import error_name
 from uq.sampling.designs import DESIGNS
+from uq.stats.estimate import Estimate
 from uq.text.element_names import is_whole, whole_name
 
 COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "input"]
@@ -54,7 +57,39 @@ def running_estimates(result: AnyResult, output: str | None = None) -> pd.DataFr
     >>> running[running["estimate"] == "mean"]["samples"].to_list()
     [16, 32, 63, 125, 250, 500, 1000]
     """
-    result = Result.of(result)
+    lines = [
+        (line.output, line.label, samples, *line.estimate.numbers, line.kind, line.input)
+        for samples, line in running(Result.of(result), output)
+    ]
+    return pd.DataFrame(lines, columns=COLUMNS)
+
+
+class RunningEstimate(NamedTuple):
+    """An estimate from the first rows of a result.
+
+    Attributes
+    ----------
+    output, label : str
+    estimate : Estimate
+    by : tuple of callable
+        The functions that compute it.
+    rows : Result
+        The rows that suffice to compute it again.
+    kind, input : str
+        Of an index; "" elsewhere.
+    """
+
+    output: str
+    label: str
+    estimate: Estimate
+    by: Functions
+    rows: Result
+    kind: str = ""
+    input: str = ""
+
+
+def running(result: Result, output: str | None = None) -> Iterator[tuple[int, RunningEstimate]]:
+    """Yield the lines of `running_estimates`: number of samples, estimate from them."""
     result.refuse_weights("running estimates")
     names = None
     if output is not None:
@@ -64,13 +99,10 @@ def running_estimates(result: AnyResult, output: str | None = None) -> pd.DataFr
     targets = (
         list(sensitivities(result, method).targets) if (method := method_shown(result)) else []
     )
-    lines = [
-        (name, label, samples, *numbers, *index)
-        for samples in _sizes(result)
-        for name, label, numbers, *index in estimates_from(result.first_samples(samples), targets)
-        if names is None or split_name(name)[1] in names
-    ]
-    return pd.DataFrame(lines, columns=COLUMNS)
+    for samples in _sizes(result):
+        for line in estimates_from(result.first_samples(samples), targets):
+            if names is None or split_name(line.output)[1] in names:
+                yield samples, line
 
 
 def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
@@ -178,17 +210,18 @@ def method_shown(result: Result) -> str | None:
     return name if name and groups >= METHODS[name].least else None
 
 
-Line = tuple[str, str, tuple[float, float, float], str, str]
-
-
-def estimates_from(result: Result, targets: list[str]) -> Iterator[Line]:
-    """Yield output, label and estimate of each statistic, for an index also kind and input."""
-    for name, output in summarise(result).outputs.items():
+def estimates_from(result: Result, targets: list[str]) -> Iterator[RunningEstimate]:
+    """Yield the statistics of some rows, and the indices of some targets."""
+    summary = summarise(result)
+    for name, output in summary.outputs.items():
         for statistic in output.statistics:
             if statistic.is_read_by(Reader.RUNNING):
-                yield name, statistic.label, statistic.estimate.finite.numbers, "", ""
+                estimate = statistic.estimate.finite
+                yield RunningEstimate(name, statistic.label, estimate, statistic.by, summary.rows)
     if method := method_shown(result):
         for name, target_indices in sensitivities(result, method, targets).targets.items():
             for kind, values in target_indices.kinds().items():
+                by = (partial(indices_of, method, kind.key),)
                 for label, index in values.items():
-                    yield name, f"{kind.key} {label}", index.numbers, kind.key, label
+                    words = f"{kind.key} {label}"
+                    yield RunningEstimate(name, words, index, by, result, kind.key, label)

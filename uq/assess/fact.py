@@ -5,7 +5,7 @@ terminal and HTML the sentences with their keys, ``uq trace`` functions and rows
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from uq.result.result import Result
@@ -23,36 +23,49 @@ class Fact:
     Attributes
     ----------
     members : dict
-        Name -> number, words, list of these, or `Fact`, in the order of the JSON. A member called
-        ``sentence`` (``text`` of advice) says in words what the numbers are.
+        Name -> number, words, `Fact`, list or dict of these, in the order of the JSON. A member
+        called ``sentence`` (``text`` of advice) says in words what the numbers are. A number alone
+        stands for itself.
     by : tuple of callable
         The functions that compute its numbers, and those of its facts without functions.
     by_member : dict of str to tuple of callable
         Name of a member -> the functions that compute it, where they differ.
     rows : Result, optional
-        The rows that suffice to compute its numbers again; by default those of its parent.
+        The rows that suffice to compute its numbers again; by default those of its parent, of the
+        whole tree all rows.
+    words : str
+        Its numbers in words, where no member holds them.
     mentions : tuple of tuple of str
         Paths from here to the numbers in the sentence; by default the fact itself.
     notes : tuple of str
-        Sentences on how it was computed.
+        Sentences on how its functions compute it.
+    more : dict
+        Further members, which the JSON omits.
     """
 
-    members: Mapping[str, Any]
+    members: Any
     by: Functions = ()
     by_member: Mapping[str, Functions] = field(default_factory=dict)
     rows: Result | None = None
+    words: str = ""
     mentions: tuple[Path, ...] = ((),)
     notes: tuple[str, ...] = ()
+    more: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def sentence(self) -> str:
         """Its numbers in words; "" where it has none."""
-        return str(self.members.get("sentence") or self.members.get("text") or "")
+        members = self.members if isinstance(self.members, Mapping) else {}
+        return str(members.get("sentence") or members.get("text") or self.words)
 
     @property
-    def json(self) -> dict[str, Any]:
+    def json(self) -> Any:
         """The numbers and sentences of it and its facts in plain data."""
-        return {name: _plain(member) for name, member in self.members.items()}
+        return _plain(self.members)
+
+    def each(self, change: Callable[["Fact"], "Fact"]) -> "Fact":
+        """Return the tree with a change of it and of every fact in it."""
+        return change(replace(self, members=_mapped(self.members, lambda fact: fact.each(change))))
 
     def at(self, *path: str) -> "Place":
         """Return what stands at a path, with its functions and rows.
@@ -62,26 +75,24 @@ class Fact:
         KeyError
             When the path leads nowhere.
         """
-        fact, place = self, Place(self, self.by, self.rows, self.notes)
-        for depth, name in enumerate(path):
-            member = _member(fact.members, name)
-            by = fact.by_member.get(name, place.by)
-            if isinstance(member, Fact):
-                fact = member
-                notes = place.notes + fact.notes
-                place = Place(fact, fact.by or by, fact.rows or place.rows, notes)
-                continue
-            for inner in path[depth + 1 :]:  # inside of plain data
-                member = _member(member, inner)
-            return Place(member, by, place.rows, place.notes)
+        place = Place(self, self.by, self.rows, self.notes)
+        for name in path:
+            content, by = place.content, place.by
+            if isinstance(content, Fact):
+                by = content.by_member.get(name, by)
+                content = content.more if name in content.more else content.members
+            place = place._replace(content=_member(content, name), by=by)
+            if isinstance(fact := place.content, Fact):
+                # Functions of its own have notes of their own.
+                notes = fact.notes if fact.by else place.notes + fact.notes
+                rows = place.rows if fact.rows is None else fact.rows
+                place = Place(fact, fact.by or by, rows, notes)
         return place
 
     def walk(self, path: Path = ()) -> Iterator[tuple[Path, "Fact"]]:
         """Yield every fact of the tree with its path, parents first."""
         yield path, self
-        for name, member in self.members.items():
-            if isinstance(member, Fact):
-                yield from member.walk((*path, name))
+        yield from _walk(self.members, path)
 
 
 class Place(NamedTuple):
@@ -103,13 +114,33 @@ class Place(NamedTuple):
     rows: Result | None
     notes: tuple[str, ...]
 
+    @property
+    def json(self) -> Any:
+        """The content in plain data."""
+        return _plain(self.content)
+
 
 def _plain(member: Any) -> Any:
+    return _mapped(member, lambda fact: fact.json)
+
+
+def _mapped(member: Any, change: Callable[[Fact], Any]) -> Any:
+    """Return plain data with a change of the facts in it."""
     if isinstance(member, Fact):
-        return member.json
+        return change(member)
+    if isinstance(member, Mapping):
+        return {name: _mapped(element, change) for name, element in member.items()}
     if isinstance(member, list):
-        return [_plain(element) for element in member]
+        return [_mapped(element, change) for element in member]
     return member
+
+
+def _walk(member: Any, path: Path) -> Iterator[tuple[Path, Fact]]:
+    """Yield the facts in plain data."""
+    numbered = enumerate(member) if isinstance(member, list) else ()
+    for name, element in member.items() if isinstance(member, Mapping) else numbered:
+        place = (*path, str(name))
+        yield from element.walk(place) if isinstance(element, Fact) else _walk(element, place)
 
 
 def _member(members: Any, name: str) -> Any:

@@ -1,13 +1,13 @@
 """The boundary between the regimes of a result: how intermingled they are."""
 
-from typing import Any
-
 import numpy as np
 
+from uq.assess.fact import Fact
 from uq.assess.independent_inputs import independent_inputs
 from uq.assess.row_inputs import EVERYWHERE
-from uq.assess.statistic import Statistic, entry
+from uq.assess.statistic import Statistic
 from uq.assess.summary import REGIME
+from uq.assess.summary_json import estimate_fact
 from uq.result.result import Result
 from uq.sampling.truncation import cdf_within
 from uq.stats.estimate import Estimate
@@ -71,9 +71,12 @@ def _exponent(rows: Result) -> Estimate:
     return uncertainty_exponent(table[:, ~np.array(listed)], rows.dataset[REGIME].values, kinds)
 
 
-def boundary_json(statistic: Statistic | None) -> dict[str, Any]:
-    """Return the boundary in plain data; empty without several regimes."""
-    return {} if statistic is None else {BOUNDARY: {EXPONENT: entry(statistic)}}
+def boundary_facts(result: Result, statistic: Statistic | None) -> Fact:
+    """Return the boundary of a result; empty without several regimes."""
+    if statistic is None:
+        return Fact({})
+    exponent = Fact({EXPONENT: estimate_fact(statistic)}, rows=compared_rows(result))
+    return Fact({BOUNDARY: exponent})
 
 
 def still_uncertain(exponent: Estimate) -> Estimate:

@@ -6,12 +6,14 @@ from typing import NamedTuple
 import numpy as np
 import scipy  # which imports scipy.stats when it is first used
 
+from uq.assess.fact import Fact
 from uq.assess.independent_inputs import independent_inputs
 from uq.result.elements import Floats
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within, factor_of, ppf_within
+from uq.stats.estimate_json import number
 from uq.study.definition import Study
 from uq.study.input_checks import laws_of
 from uq.study.row_sampling import row_block, rows
@@ -147,3 +149,20 @@ def weights_of_samples(result: Result) -> Floats | None:
 
 def _first_rows(result: Result) -> Result:
     return result.independent.first_rows
+
+
+def inputs_facts(result: Result, only: str = "") -> Fact:
+    """Return quantiles of the inputs: of their laws as ``stated``, and as ``sampled``.
+
+    Of a single input if `only` names one.
+    """
+    given, weights = laws_and_values(result), weights_of_samples(result)
+    facts = {}
+    for name in [only] if only in given else given:
+        comparison = compare(*given[name], weights)
+        quantiles = {
+            kind: dict(zip(map(repr, PROBABILITIES), map(number, values), strict=True))
+            for kind, values in (("stated", comparison.stated), ("sampled", comparison.sampled))
+        }
+        facts[name] = quantiles | {"distance": comparison.distance}
+    return Fact(facts, (compare,))

@@ -71,12 +71,15 @@ class Sensitivities:
         Of the rows with a value of every target that has indices.
     targets : dict of str to TargetIndices
         By name.
+    rows : Result
+        The rows that rank inputs, one of each sample.
     """
 
     method: str
     rows_used: int
     groups_dropped: int
     targets: Mapping[str, TargetIndices]
+    rows: Result
 
 
 def methods(result: Result, dependent: bool | None = None) -> tuple[str, ...]:
@@ -156,7 +159,8 @@ def sensitivities(
         (whole if target_indices.refused else used).append(target_sample.whole)
     if nested:
         targets = {name: _with_reason(target_indices) for name, target_indices in targets.items()}
-    return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), targets)
+    counts = _counts(*(used or whole), rows=len(sample.values))
+    return Sensitivities(method, *counts, targets, result)
 
 
 def _with_reason(target_indices: TargetIndices) -> TargetIndices:

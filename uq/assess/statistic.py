@@ -1,6 +1,6 @@
 """A statistic of an output: its name, its estimate, and how each reader shows it."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Flag, auto
 from functools import cached_property
@@ -12,13 +12,12 @@ from uq.assess.joint_bounds import JointBound, joint_bounds
 from uq.assess.sample import Sample, as_sample
 from uq.result.elements import Element
 from uq.result.result import Result
-from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
 from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import Replicates, replicates_of_some
 from uq.study.file import AnalysisTable
-from uq.text.numbers import number
+from uq.text.numbers import number, percent, percent_interval
 
 
 class Reader(Flag):
@@ -91,39 +90,6 @@ class Listing:
     keeps_empty: bool = False
 
 
-def entry(statistic: "Statistic") -> dict[str, Any]:
-    """Return a statistic as JSON."""
-    document = estimate_json.whole(statistic.estimate)
-    if statistic.rows_needed is not None:
-        document["rows_needed"] = statistic.rows_needed
-    if statistic.of:
-        document["of"] = statistic.of
-    if statistic.otherwise is not None:
-        document["kaplan_meier"] = entry(statistic.otherwise)
-    return document | estimate_json.failed(statistic.failed)
-
-
-def entries(group: Sequence["Statistic"]) -> dict[str, Any]:
-    """Return each statistic under the last part of its key."""
-    return {statistic.key[-1]: statistic.kind.entry(statistic) for statistic in group}
-
-
-def counts(group: Sequence["Statistic"]) -> dict[str, int | None]:
-    """Return numbers of rows; None where no number will do."""
-    numbers = {statistic.key[-1]: statistic.estimate.value for statistic in group}
-    return {name: int(count) if isfinite(count) else None for name, count in numbers.items()}
-
-
-def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
-    """Return the facts of the statistics."""
-    return {name: fact for statistic in group for name, fact in statistic.facts.items()}
-
-
-def count_in_words(value: float) -> str:
-    """Return a number of rows, or "" for zero."""
-    return f"{value:.0f}" if value else ""
-
-
 @dataclass(frozen=True, kw_only=True)
 class StatisticKind:
     """How statistics of one kind are shown.
@@ -132,17 +98,19 @@ class StatisticKind:
     ----------
     name : str
         In the plural, at the start of a sentence.
-    entry : callable
-        Statistic -> its own JSON.
-    write : callable
-        Statistics whose keys differ only in the last part -> their JSON.
-    shown : callable
-        Value -> words.
-    ends : callable
-        Estimate, length of the unit -> its interval in words.
+    form : str
+        Of its JSON (`uq.assess.summary_json`): ``estimate``; ``moment``, the number, its interval
+        beside it; ``bound``, the number, and why there is none beside it; ``side`` of a threshold;
+        ``share`` of a category; ``count``; ``number``; ``facts``, those of the statistic; "" for
+        none of its own.
+    text : str
+        Format of its value; by default to five digits.
+    is_share : bool
+        Whether its value is written in per cent.
+    without : str, optional
+        Written in place of a value that is not above zero.
     is_count : bool
         Whether it is a number of rows.
-    has_interval : bool
     listing : Listing
         The table of a report that holds it.
     readers : Reader
@@ -150,25 +118,37 @@ class StatisticKind:
     """
 
     name: str = "These"
-    entry: Callable[["Statistic"], dict[str, Any]] = entry
-    write: Callable[[Sequence["Statistic"]], dict[str, Any]] = entries
-    shown: Callable[[float], str] = number
-    ends: Callable[[Estimate, float], str] = interval_text
+    form: str = "estimate"
+    text: str = ""
+    is_share: bool = False
+    without: str | None = None
     is_count: bool = False
-    has_interval: bool = True
     listing: Listing = field(default_factory=Listing)
     readers: Reader = ~Reader(0)
+
+    @property
+    def has_interval(self) -> bool:
+        """Whether its value has an interval."""
+        return self.form in ("estimate", "moment", "side", "share")
+
+    def words(self, value: float) -> str:
+        """Return a value in words."""
+        if self.without is not None and not value > 0:
+            return self.without
+        if self.is_share:
+            return percent(value)
+        return self.text.format(value) if self.text else number(value)
 
 
 ESTIMATE = StatisticKind()
 COUNT = StatisticKind(
-    write=counts,
-    shown=count_in_words,
+    form="count",
+    text="{:.0f}",
+    without="",
     is_count=True,
-    has_interval=False,
     readers=~(Reader.COMPARED | Reader.RUNNING),
 )
-FACT = StatisticKind(write=facts, has_interval=False, readers=Reader.JSON | Reader.COLUMNS)
+FACT = StatisticKind(form="facts", readers=Reader.JSON | Reader.COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -204,7 +184,7 @@ class Statistic:
     notes : tuple of str
         Sentences below the table on a terminal.
     facts : dict
-        The JSON of a `FACT`.
+        The JSON of a statistic of the form ``facts``.
     estimator : Estimator, optional
         How it depends on the rows, for the difference between two studies with paired rows.
     by : tuple of callable
@@ -252,7 +232,7 @@ class Statistic:
         if isfinite(value):
             if self.resolution:
                 return number(value / per, self.resolution / per)
-            return self.kind.shown(value / per)
+            return self.kind.words(value / per)
         if self.rows_needed is not None:
             never = isinf(self.rows_needed)
             return "too many failed" if never else f"needs {self.rows_needed:.0f} rows"
@@ -260,9 +240,10 @@ class Statistic:
 
     def interval(self, per: float = 1.0) -> str:
         """Return its interval in units of length `per`; "" where it has none."""
-        if self.resolution:
-            return interval_text(self.estimate, per, self.resolution)
-        return self.kind.ends(self.estimate, per)
+        low, high = self.estimate.low, self.estimate.high
+        if self.kind.is_share:
+            return percent_interval(low, high) if self.estimate.has_interval else ""
+        return interval_text(self.estimate, per, self.resolution)
 
 
 Maker = Callable[[Element, Context], Iterable[Statistic]]

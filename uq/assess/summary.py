@@ -3,7 +3,6 @@
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +23,6 @@ from uq.result.elements import (
 from uq.result.nesting import size_in_words
 from uq.result.result import Result
 from uq.result.weights import ONLY_INSPECTED
-from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import replicates_of_some, share_interval
@@ -50,20 +48,7 @@ SOME_FAILED = (
 )
 
 
-def share_json(statistic: Statistic) -> dict[str, Any]:
-    """Return count and share of a category as JSON has them."""
-    share = {
-        "count": statistic.facts["count"],
-        "share": estimate_json.number(statistic.estimate.value),
-    }
-    return share | estimate_json.ends(statistic.estimate) | estimate_json.failed(statistic.failed)
-
-
-def _compared_json(statistic: Statistic) -> dict[str, Any]:
-    return share_json(statistic) | {"value": estimate_json.number(statistic.estimate.value)}
-
-
-SHARE = StatisticKind(entry=_compared_json)
+SHARE = StatisticKind(form="share")
 
 _OF_VALUES = {"moments", "quantiles", "b_lives", "tolerance", "joint_bounds"}
 _DIGITS = 5  # of numbers in tables
@@ -109,9 +94,9 @@ class Summary:
 
     Attributes
     ----------
-    samples : int
-        All rows.
-    rows_used : int
+    result : Result
+        All rows, or those in a regime.
+    rows : Result
         The independent rows, on which everything but `status` is based.
     status : dict of str to int
         Number of rows with each status, of all rows.
@@ -128,14 +113,24 @@ class Summary:
         Of the rows, where inspections have weighted them.
     """
 
-    samples: int
-    rows_used: int
+    result: Result
+    rows: Result
     status: Mapping[str, int]
     shares: Mapping[str, Shares]
     outputs: Mapping[str, Described]
     most_failed: int
     notes: list[str]
     weights: Smoothed | None = None
+
+    @property
+    def samples(self) -> int:
+        """Number of all rows."""
+        return len(self.result)
+
+    @property
+    def rows_used(self) -> int:
+        """Number of independent rows."""
+        return len(self.rows)
 
     @property
     def regimes(self) -> Shares:
@@ -206,8 +201,8 @@ def summarise(
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=len(rows)))
     return Summary(
-        samples=len(result),
-        rows_used=len(rows),
+        result=result,
+        rows=rows,
         status=status_counts(result),
         shares={name: category_shares(rows, name, of_all) for name in _categories(result, names)},
         outputs=outputs,
@@ -220,7 +215,13 @@ def summarise(
 def _described(
     element: Element, context: Context, fits: bool, wanted: Collection[str]
 ) -> Described:
-    parts = {name: tuple(STATISTICS[name](element, context)) for name in wanted}
+    parts = {
+        name: tuple(
+            statistic if statistic.by else replace(statistic, by=(STATISTICS[name],))
+            for statistic in STATISTICS[name](element, context)
+        )
+        for name in wanted
+    }
     if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
         for name in _OF_VALUES & parts.keys():
             parts[name] = tuple(replace(statistic, resolution=step) for statistic in parts[name])

@@ -1,33 +1,46 @@
-"""Summaries and comparisons as JSON."""
+"""The numbers of summaries, comparisons and levels as trees of facts."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import groupby
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from itertools import chain, groupby
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from uq.assess.fact import Fact
 from uq.assess.input_changes import InputMoments, OnlyChange
-from uq.assess.life_fit import Fit
+from uq.assess.life_fit import Fit, fits_of
+from uq.assess.regime_switching import switching
 from uq.assess.statistic import Reader, Statistic
-from uq.assess.statistics.table import EMPTY, JSON_ORDER
-from uq.assess.summary import REGIME, Described, Shares, Summary, share_json
+from uq.assess.statistics.table import EMPTY, JSON_ORDER, STATISTICS
+from uq.assess.summary import REGIME, Described, Summary, status_counts
+from uq.result.elements import independent_rows
+from uq.result.nesting import nesting_of
 from uq.stats import estimate_json
-from uq.stats.importance_weights import Smoothed, quality
+from uq.stats.importance_weights import Smoothed, effective_rows, quality, tail_shape
+from uq.stats.variance_components import nested_shares
 
 if TYPE_CHECKING:
     from uq.assess.comparison import Comparison, Side
     from uq.assess.differences import ComparedOutput, ComparedStatistic
     from uq.assess.level_shares import ByLevel
-    from uq.assess.running_estimates import Converging
-    from uq.assess.two_fidelities import Sharpened, TwoFidelities
     from uq.assess.variance_by_level import LevelShares
 
+_QUALITY = {"effective_rows": effective_rows, "pareto_k": tail_shape}
+"""Quality of weighted rows -> its estimator."""
 
-def summary_json(summary: Summary) -> dict[str, Any]:
-    """Return a summary in plain data.
+
+def summary_facts(summary: Summary, *, of_reports: bool = False) -> Fact:
+    """Return the numbers of a summary.
+
+    Parameters
+    ----------
+    summary : Summary
+    of_reports : bool
+        Whether the statistics that only a report shows are among them.
 
     Returns
     -------
-    dict
+    Fact
         ``samples`` and ``status`` count all rows. Everything else describes the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``categories`` (the
         same of other categories, such as the period, where they occur), ``outputs`` (name of
@@ -38,45 +51,156 @@ def summary_json(summary: Summary) -> dict[str, Any]:
         laws fitted to a lifetime. Where inspections have weighted the rows: ``effective_rows`` and
         ``pareto_k``.
     """
-    return quality_json(summary.weights) | {
-        "samples": summary.samples,
-        "rows_used": summary.rows_used,
-        "status": summary.status,
-        "regime": _labels(summary.regimes),
-        "categories": {name: _labels(shares) for name, shares in summary.categories.items()},
-        "outputs": {name: _described(described) for name, described in summary.outputs.items()},
-        "notes": summary.notes,
+    rows = summary.rows if summary.rows_used else summary.result
+    shares = {name: _labels(by_label) for name, by_label in summary.categories.items()}
+    described = {name: _described(output, of_reports) for name, output in summary.outputs.items()}
+    outputs = Fact(described, rows=rows)
+    if not summary.rows_used:  # the notes say why
+        notes = tuple(summary.notes)
+        outputs = outputs.each(lambda fact: replace(fact, notes=notes))
+    members = {
+        name: replace(fact, rows=rows) for name, fact in quality_facts(summary.weights).items()
+    }
+    return Fact(
+        members
+        | {
+            "samples": summary.samples,
+            "rows_used": Fact(summary.rows_used, (independent_rows,), rows=rows),
+            "status": summary.status,
+            "regime": Fact(_labels(summary.regimes), rows=rows),
+            "categories": Fact(shares, rows=rows),
+            "outputs": outputs,
+            "notes": summary.notes,
+        },
+        (status_counts,),
+        rows=summary.result,
+    )
+
+
+def quality_facts(weights: Smoothed | None) -> dict[str, Fact]:
+    """Return the effective sample size and the tail shape of weights; nothing without weights."""
+    return {
+        name: Fact(estimate_json.number(number), (_QUALITY[name],))
+        for name, number in quality(weights).items()
     }
 
 
-def _labels(shares: Shares) -> dict[str, Any]:
-    return {label: share_json(statistic) for label, statistic in shares.items()}
+def _labels(shares: Mapping[str, Statistic]) -> dict[str, Fact]:
+    return {label: Fact(_share(statistic), statistic.by) for label, statistic in shares.items()}
 
 
-def quality_json(weights: Smoothed | None) -> dict[str, Any]:
-    """Return effective sample size and tail shape of weights in plain data."""
-    return {name: estimate_json.number(number) for name, number in quality(weights).items()}
-
-
-def _described(described: Described) -> dict[str, Any]:
-    document: dict[str, Any] = {"units": described.units}
+def _described(described: Described, of_reports: bool) -> Fact:
+    """Return the statistics of an element, each under its key."""
+    members: dict[str, Any] = {"units": described.units}
     for name in dict.fromkeys((*JSON_ORDER, *described.parts)):
-        statistics = [s for s in described.parts[name] if s.is_read_by(Reader.JSON)]
+        statistics = [s for s in described.parts[name] if of_reports or s.is_read_by(Reader.JSON)]
         if name in EMPTY:
-            document[name] = {} if statistics else EMPTY[name]
-        for parent, _, entry in written(statistics):
-            put(document, parent, entry)
+            empty = Fact(None, (STATISTICS[name],)) if EMPTY[name] is None else {}
+            members[name] = {} if statistics else empty
+        for (parent, form), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.form)):
+            _put(members, parent, _FORMS[form](list(group)))
     fits = {law: _fit(fit) for law, fit in described.fits.items()}
-    return document | ({"fits": fits} if fits else {})
+    return Fact(members | ({"fits": Fact(fits, (fits_of,))} if fits else {}))
 
 
-def written(
-    statistics: Iterable[Statistic],
-) -> Iterator[tuple[tuple[str, ...], list[Statistic], dict[str, Any]]]:
-    """Yield path, statistics and JSON of each group of statistics with one entry."""
-    for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
-        members = list(group)
-        yield parent, members, members[0].kind.write(members)
+def _put(members: dict[str, Any], path: Iterable[str], entry: Mapping[str, Any]) -> None:
+    """Merge an entry into members at a path, creating the path if absent."""
+    for part in path:
+        members = members.setdefault(part, {})
+    members |= entry
+
+
+def estimate_fact(statistic: Statistic) -> Fact:
+    """Return a statistic with its interval, and why any of them is missing."""
+    members: dict[str, Any] = estimate_json.whole(statistic.estimate)
+    if statistic.rows_needed is not None:
+        members["rows_needed"] = statistic.rows_needed
+    if statistic.of:
+        members["of"] = statistic.of
+    if statistic.otherwise is not None:
+        members["kaplan_meier"] = estimate_fact(statistic.otherwise)
+    return Fact(members | estimate_json.failed(statistic.failed), statistic.by)
+
+
+def _moments(group: list[Statistic]) -> dict[str, Fact]:
+    members = {}
+    for statistic in group:
+        name, estimate = statistic.key[-1], statistic.estimate
+        members[name] = Fact(estimate_json.number(estimate.value), statistic.by)
+        members[f"{name}_interval"] = Fact(estimate_json.ends(estimate), statistic.by)
+    return members
+
+
+def _bounds(group: list[Statistic]) -> dict[str, Any]:
+    members: dict[str, Any] = _numbers(group)
+    for statistic in group:
+        members |= estimate_json.flag(f"{statistic.key[-1]}_", statistic.estimate, "value")
+    return members
+
+
+def _numbers(group: list[Statistic]) -> dict[str, Fact]:
+    return {
+        statistic.key[-1]: Fact(estimate_json.number(statistic.estimate.value), statistic.by)
+        for statistic in group
+    }
+
+
+def _counts(group: list[Statistic]) -> dict[str, Fact]:
+    """Return numbers of rows; None where no number will do."""
+    counts = {statistic.key[-1]: statistic for statistic in group}
+    return {
+        name: Fact(
+            int(count) if isfinite(count := statistic.estimate.value) else None, statistic.by
+        )
+        for name, statistic in counts.items()
+    }
+
+
+def _sides(group: list[Statistic]) -> dict[str, Any]:
+    """Return both sides of a threshold."""
+    both = tuple(dict.fromkeys(chain.from_iterable(statistic.by for statistic in group)))
+    members: dict[str, Any] = {statistic.key[-1]: _side(statistic) for statistic in group}
+    members |= {name: Fact(number, both) for name, number in group[0].facts.items()}
+    guesses = {statistic.key[-1]: statistic.otherwise for statistic in group if statistic.otherwise}
+    if reason := group[0].estimate.reason:
+        members["reason"] = reason
+    if guesses:
+        assumes = group[0].best.estimate.assumes
+        sides = {side: _side(guess) for side, guess in guesses.items()}
+        members["kaplan_meier"] = sides | {"assumes": assumes}
+    return members
+
+
+def _side(statistic: Statistic) -> Fact:
+    reason = statistic.estimate.reason if statistic.estimate.assumes else ""
+    bare = replace(statistic.estimate, assumes="", reason=reason)
+    return estimate_fact(replace(statistic, estimate=bare, otherwise=None))
+
+
+def _share(statistic: Statistic) -> dict[str, Any]:
+    """Return count and share of a category."""
+    share = {
+        "count": statistic.facts["count"],
+        "share": estimate_json.number(statistic.estimate.value),
+    }
+    return share | estimate_json.ends(statistic.estimate) | estimate_json.failed(statistic.failed)
+
+
+_FORMS: dict[str, Callable[[list[Statistic]], Mapping[str, Any]]] = {
+    "": lambda group: {},
+    "estimate": lambda group: {statistic.key[-1]: estimate_fact(statistic) for statistic in group},
+    "moment": _moments,
+    "bound": _bounds,
+    "side": _sides,
+    "count": _counts,
+    "number": _numbers,
+    "facts": lambda group: {
+        name: Fact(fact, statistic.by)
+        for statistic in group
+        for name, fact in statistic.facts.items()
+    },
+}
+"""Form of the JSON of a kind -> members from the statistics whose keys differ in the last part."""
 
 
 def _fit(fit: Fit) -> dict[str, Any]:
@@ -94,25 +218,18 @@ def _fit(fit: Fit) -> dict[str, Any]:
     return entry
 
 
-def put(document: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
-    """Merge an entry into JSON at a path, creating the path if absent."""
-    for part in path:
-        document = document.setdefault(part, {})
-    document |= entry
-
-
-def comparison_json(comparison: "Comparison") -> dict[str, Any]:
-    """Return a comparison in plain data.
+def comparison_facts(comparison: "Comparison") -> Fact:
+    """Return the numbers of a comparison.
 
     Returns
     -------
-    dict
+    Fact
         ``a`` and ``b``: title, samples, rows_used and status of each. ``changed``: kind, name, a
         and b of each entry that differs. ``only``: the one input that differs, if it is the only
         thing: name, units, and mean and sd of each; else None. ``pairing``: see
         `Comparison`. ``regime``: label -> estimate; ``categories``: the same of others, such as
         the period; ``outputs``: element -> its statistics under their keys in a summary, each with
-        ``a`` and ``b``, as `summary_json` has them, and ``difference``: ``value``, ``low``,
+        ``a`` and ``b``, as `summary_facts` has them, and ``difference``: ``value``, ``low``,
         ``high`` of b less a, with ``identical`` where the rows are paired and agree: then there is
         no interval. ``no_row_changes_sides``: where they differ, but none is a hit in one result
         alone; the ends are the largest share that may change sides. A scale also has ``ratio``.
@@ -122,25 +239,27 @@ def comparison_json(comparison: "Comparison") -> dict[str, Any]:
         name: {label: _compared(statistic) for label, statistic in statistics.items()}
         for name, statistics in comparison.shares.items()
     }
-    return {
-        "a": _about(comparison.first),
-        "b": _about(comparison.second),
-        "changed": [
-            {"kind": change.kind, "name": change.name, "a": change.first, "b": change.second}
-            for change in comparison.changed
-        ],
-        "only": None if comparison.only is None else _only(comparison.only),
-        "pairing": comparison.pairing,
-        "regime": shares.pop(REGIME, {}),
-        "categories": shares,
-        "outputs": {name: _output(output) for name, output in comparison.outputs.items()},
-        "notes": comparison.notes,
-    }
+    return Fact(
+        {
+            "a": _about(comparison.first),
+            "b": _about(comparison.second),
+            "changed": [
+                {"kind": change.kind, "name": change.name, "a": change.first, "b": change.second}
+                for change in comparison.changed
+            ],
+            "only": None if comparison.only is None else _only(comparison.only),
+            "pairing": comparison.pairing,
+            "regime": shares.pop(REGIME, {}),
+            "categories": shares,
+            "outputs": {name: _output(output) for name, output in comparison.outputs.items()},
+            "notes": comparison.notes,
+        },
+    )
 
 
 def _about(side: "Side") -> dict[str, Any]:
-    facts = {name: getattr(side.summary, name) for name in ("samples", "rows_used", "status")}
-    return {"title": side.title} | facts
+    counts = {name: getattr(side.summary, name) for name in ("samples", "rows_used", "status")}
+    return {"title": side.title} | counts
 
 
 def _only(change: OnlyChange) -> dict[str, Any]:
@@ -152,33 +271,44 @@ def _only(change: OnlyChange) -> dict[str, Any]:
 
 
 def _output(output: "ComparedOutput") -> dict[str, Any]:
-    document: dict[str, Any] = {"units": output.units}
+    members: dict[str, Any] = {"units": output.units}
     for name, pairs in output.parts.items():
         if EMPTY.get(name) == {}:
-            document[name] = {}
+            members[name] = {}
         for pair in pairs:
             *parent, last = pair.first.key
-            put(document, parent, {last: _compared(pair)})
-    return document
+            _put(members, parent, {last: _compared(pair)})
+    return members
 
 
-def _compared(statistic: "ComparedStatistic") -> dict[str, Any]:
+def _compared(statistic: "ComparedStatistic") -> Fact:
     same = {"identical": True} if statistic.identical else {}
     if statistic.no_row_changes_sides:
         same = {"no_row_changes_sides": True}
-    entry = {
-        "a": statistic.first.kind.entry(statistic.first),
-        "b": statistic.second.kind.entry(statistic.second),
-    }
-    entry["difference"] = estimate_json.numbers(statistic.difference) | same
+    members: dict[str, Any] = {"a": _alone(statistic.first), "b": _alone(statistic.second)}
+    members["difference"] = estimate_json.numbers(statistic.difference) | same
     if statistic.ratio is not None:
-        entry["ratio"] = estimate_json.numbers(statistic.ratio) | same
-    return entry
+        members["ratio"] = estimate_json.numbers(statistic.ratio) | same
+    return Fact(members, statistic.first.by)
 
 
-def levels_json(levels: "ByLevel") -> dict[str, Any]:
-    """Return shares of the variance in plain data."""
-    whole: dict[str, Any] = quality_json(levels.weights) | {
+def _alone(statistic: Statistic) -> Fact:
+    """Return a statistic of one of two results."""
+    estimate = statistic.estimate
+    if statistic.kind.form == "moment":
+        return Fact(estimate_json.numbers(estimate), statistic.by)
+    if statistic.kind.form == "share":
+        value = {"value": estimate_json.number(estimate.value)}
+        return Fact(_share(statistic) | value, statistic.by)
+    if statistic.kind.form == "side":
+        side, assumes = _side(statistic), {"assumes": estimate.assumes} if estimate.assumes else {}
+        return replace(side, members=side.members | assumes)
+    return estimate_fact(statistic)
+
+
+def levels_facts(levels: "ByLevel") -> Fact:
+    """Return the shares of the variance by level."""
+    members: dict[str, Any] = quality_facts(levels.weights) | {
         "samples": levels.samples,
         "units": levels.units,
         "repeats": levels.repeats,
@@ -186,60 +316,13 @@ def levels_json(levels: "ByLevel") -> dict[str, Any]:
         "outputs": {name: _shares(target) for name, target in levels.outputs.items()},
     }
     if levels.another_regime is not None:
-        whole["regime"] = {"another": estimate_json.whole(levels.another_regime)}
-    return whole
+        another = estimate_json.whole(levels.another_regime)
+        members["regime"] = Fact({"another": another}, (switching,))
+    return Fact(members, (nesting_of,))
 
 
-def _shares(target: "LevelShares") -> dict[str, Any]:
+def _shares(target: "LevelShares") -> Fact:
     shares = {name: estimate_json.whole(share) for name, share in target.shares.items()}
     more = {"variance": estimate_json.number(target.variance), "samples_left_out": target.left_out}
-    return shares | more | {"integrated": list(target.integrated), "notes": list(target.notes)}
-
-
-def twin_json(two_fidelities: "TwoFidelities") -> dict[str, Any]:
-    """Return estimates with a twin in plain data."""
-    outputs = {
-        name: {label: _sharpened(sharpened) for label, sharpened in estimates.items()}
-        for name, estimates in two_fidelities.outputs.items()
-    }
-    return vars(two_fidelities) | {"outputs": outputs}
-
-
-def _sharpened(sharpened: "Sharpened") -> dict[str, Any]:
-    plain = {"plain": estimate_json.numbers(sharpened.plain), "reduction": sharpened.reduction}
-    note = {"note": sharpened.note} if sharpened.note else {}
-    return (
-        estimate_json.numbers(sharpened.estimate)
-        | plain
-        | estimate_json.failed(sharpened.failed)
-        | note
-    )
-
-
-def convergence_json(running: "Mapping[str, Converging]") -> dict[str, Any]:
-    """Return running estimates in plain data."""
-    return {"outputs": {name: _converging(converging) for name, converging in running.items()}}
-
-
-def _converging(converging: "Converging") -> dict[str, Any]:
-    entry: dict[str, Any] = {
-        "estimates": {
-            label: [
-                {"samples": samples} | estimate_json.numbers(estimate)
-                for samples, estimate in sizes
-            ]
-            for label, sizes in converging.estimates.items()
-        }
-    }
-    return entry | errors_json(converging.errors)
-
-
-def errors_json(errors: Mapping[Any, Any] | None) -> dict[str, Any]:
-    """Return a line of `uq.enough` in plain data."""
-    if not errors:
-        return {}
-    return {
-        "sampling_error": estimate_json.number(errors["sampling"]),
-        "own_error": estimate_json.number(errors["own"]),
-        "warning": errors["warning"],
-    }
+    words = {"integrated": list(target.integrated), "notes": list(target.notes)}
+    return Fact(shares | more | words, (nested_shares,))

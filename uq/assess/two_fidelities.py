@@ -6,12 +6,14 @@ a row cheap, such as fewer modes.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from uq.assess.counted_rows import share_of
+from uq.assess.fact import Fact
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.statistics.thresholds import SIDES
 from uq.contract import Floats
@@ -20,9 +22,11 @@ from uq.result.elements import Element, elements_of, shown_outputs
 from uq.result.result import AnyResult, Result
 from uq.result.result_file import build_rows
 from uq.sampling.named_values import read_settings
+from uq.stats import estimate_json
 from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
 from uq.stats.exact_shares import FEW
+from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import moments
 from uq.study.definition import Study, study_from_text
 from uq.study.evaluate import evaluate
@@ -148,6 +152,32 @@ def with_twin(result: Result, model: str | None = None) -> TwoFidelities:
         len(many[0].values),
         {name: estimates for name, estimates in by_element.items() if estimates},
     )
+
+
+def twin_facts(fidelities: TwoFidelities) -> Fact:
+    """Return estimates with a twin, and those from the rows of the result alone."""
+    outputs = {
+        name: {label: _sharpened(label, estimate) for label, estimate in estimates.items()}
+        for name, estimates in fidelities.outputs.items()
+    }
+    return Fact(vars(fidelities) | {"outputs": outputs}, (with_twin,), notes=TWIN_ROWS)
+
+
+def _sharpened(label: str, sharpened: Sharpened) -> Fact:
+    by, plain_by = _MEAN if label == "mean" else _SHARE
+    plain = Fact(estimate_json.numbers(sharpened.plain), plain_by)
+    members: dict[str, Any] = estimate_json.numbers(sharpened.estimate)
+    members |= {"plain": plain, "reduction": sharpened.reduction}
+    members |= estimate_json.failed(sharpened.failed)
+    note = {"note": sharpened.note} if sharpened.note else {}
+    return Fact(members | note, by, notes=TWIN_ROWS)
+
+
+TWIN_ROWS = ("It also rests on rows of the twin alone.",)
+
+_MEAN = (controlled_mean,), (moments, mean_interval)
+_SHARE = (controlled_share,), (share_of, share_interval)
+"""Estimators with the twin, and without."""
 
 
 def _estimates(

@@ -1,17 +1,18 @@
 """A result under other laws of its inputs: the same rows, weighted."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import pandas as pd
 
 from uq.assess.densities import changed_laws, depends_otherwise
+from uq.assess.fact import Fact
 from uq.assess.reweighting import Weighting
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import Summary, summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.assess.summary_table import table_of
 from uq.contract import Parameter
 from uq.errors import InputError, RunError, nearest
@@ -20,7 +21,7 @@ from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
-from uq.stats.importance_weights import Smoothed
+from uq.stats.importance_weights import Smoothed, effective_rows, tail_shape
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 from uq.text.literals import key, read_toml, shown, toml
@@ -118,10 +119,19 @@ def answer(
     )
 
 
-def what_if_json(answered: WhatIf) -> dict[str, Any]:
-    """Return the answer in plain data: as `uq summary --json`, with the quality of the weights."""
-    quality = {"effective_rows": answered.effective_rows, "pareto_k": number(answered.pareto_k)}
-    return quality | summary_json(answered.summary)
+def what_if_facts(answered: WhatIf) -> Fact:
+    """Return the quality of the weights, and the numbers of the summary."""
+    facts = summary_facts(answered.summary)
+    counts = {name: facts.members[name] for name in ("samples", "rows_used", "status")}
+    rows = facts.members["rows_used"].rows
+    quality = {
+        "effective_rows": Fact(answered.effective_rows, (effective_rows,), rows=rows),
+        "pareto_k": Fact(number(answered.pareto_k), (tail_shape,), rows=rows),
+    }
+    weighted = Fact(quality | facts.members).each(
+        lambda fact: replace(fact, by=fact.by and (what_if, *fact.by))
+    )
+    return replace(facts, members=weighted.members | counts)
 
 
 def read_changes(texts: Sequence[str]) -> dict[str, Any]:

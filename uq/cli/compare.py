@@ -7,7 +7,7 @@ from pathlib import Path
 
 from uq.assess.comparison import Comparison, Side, comparison
 from uq.assess.differences import ComparedOutput, ComparedStatistic
-from uq.assess.summary_json import comparison_json
+from uq.assess.summary_json import comparison_facts
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
@@ -25,7 +25,7 @@ def compare(first: Path, second: Path, json: bool) -> None:
     if not json:
         _show(differences, first, second)
         return
-    document = comparison_json(differences)
+    document = comparison_facts(differences).json
     for key, path in (("a", first), ("b", second)):
         document[key] = {"file": str(path)} | document[key]
     print_json(document)

@@ -7,9 +7,8 @@ from pathlib import Path
 from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
-from uq.assess.running_estimates import converging
-from uq.assess.summary_json import convergence_json, twin_json
-from uq.assess.two_fidelities import with_twin
+from uq.assess.running_estimates import convergence_facts, converging
+from uq.assess.two_fidelities import twin_facts, with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
@@ -58,7 +57,7 @@ def twin(result: Path, model: str | None, json: bool) -> None:
     opened = Result.open(result)
     fidelities = with_twin(opened, model)
     if json:
-        print_json(twin_json(fidelities))
+        print_json(twin_facts(fidelities).json)
         return
     heading(
         f"With {fidelities.twin} as twin",
@@ -101,27 +100,26 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
     opened = Result.open(result)
     outputs = converging(opened, output)
     if json:
-        print_json(convergence_json(outputs))
+        print_json(convergence_facts(outputs).json)
         return
     for line in verdict(Findings(opened), output):
         paragraph(line, indent=0)
-    for name, running in outputs.items():
-        if running.errors and running.errors["warning"]:
-            paragraph(f"{name}: {running.errors['warning']}.", indent=0)
-    for name, running in outputs.items():
-        block = _Block(
-            opened, name, {label: sizes[-1][1] for label, sizes in running.estimates.items()}
-        )
+    for name, (_, errors) in outputs.items():
+        if errors and errors["warning"]:
+            paragraph(f"{name}: {errors['warning']}.", indent=0)
+    for name, (estimates, errors) in outputs.items():
+        last = {label: sizes[-1][1].estimate for label, sizes in estimates.items()}
+        block = _Block(opened, name, last)
         block.show_heading()
-        for label, sizes in running.estimates.items():
+        for label, sizes in estimates.items():
             grid(
                 [
-                    (str(samples), *block.cells(label, estimate))
-                    for samples, estimate in sizes[-_SHOWN:]
+                    (str(samples), *block.cells(label, line.estimate))
+                    for samples, line in sizes[-_SHOWN:]
                 ],
                 header=("samples", block.label(label), "95 % interval"),
             )
-        if running.errors and isfinite(running.errors["own"]):
-            kinds = (Estimate(running.errors[kind]) for kind in ("sampling", "own"))
+        if errors and isfinite(errors["own"]):
+            kinds = (Estimate(errors[kind]) for kind in ("sampling", "own"))
             sampling, rows = (block.cells("mean", error)[0] for error in kinds)
             paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", indent=2)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from uq.assess.fleet import fleet_of, reasons, the_life
-from uq.assess.fleet_json import fleet_json
+from uq.assess.fleet_json import fleet_facts
 from uq.assess.fleet_numbers import Banded
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.result.result import Result
@@ -29,7 +29,7 @@ def fleet(
     times = [read_threshold("--by", text, "a life", units) for text in by]
     first_ends = fleet_of(opened, size, times, allow, output, plain=plain)
     if json:
-        print_json(fleet_json(first_ends))
+        print_json(fleet_facts(first_ends).json)
         return
     heading(
         str(opened.dataset.attrs["title"]), f"{opened.dataset.attrs['source']}, {first_ends.design}"

@@ -14,7 +14,7 @@ from uq.execution.runner import output_path, run_study
 from uq.explore.new_rows import Budget
 from uq.explore.updating import is_study, learn, samples_for
 from uq.files.whole_files import check_target
-from uq.learning.answer import Learnt, learnt, learnt_json
+from uq.learning.answer import Learnt, learnt, learnt_facts
 from uq.learning.information_gain import Taught
 from uq.learning.inspection_log import read
 from uq.learning.posterior_inputs import InputLearnt
@@ -61,7 +61,7 @@ def update(
         posterior = Result(learn(result, new, output, model_error, budget))
     answer = learnt(posterior, times)
     if json:
-        print_json(learnt_json(answer))
+        print_json(learnt_facts(answer).json)
     elif not quiet:
         _show(posterior, answer)
         console.print()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.level_shares import by_level
-from uq.assess.summary_json import levels_json
+from uq.assess.summary_json import levels_facts
 from uq.assess.variance_by_level import SOLVER, LevelShares
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.indices.index import S1
@@ -20,7 +20,7 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     opened = Result.open(result)
     decomposition = by_level(opened, output, plain=plain)
     if json:
-        print_json(levels_json(decomposition))
+        print_json(levels_facts(decomposition).json)
         return
     heading(
         str(opened.dataset.attrs["title"]),

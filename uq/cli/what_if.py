@@ -3,7 +3,7 @@
 from math import isfinite
 from pathlib import Path
 
-from uq.assess.what_if import answer, read_changes, what_if_json
+from uq.assess.what_if import answer, read_changes, what_if_facts
 from uq.cli.printing import note, print_json
 from uq.cli.summary_tables import show_summary
 from uq.result.result import Result
@@ -14,7 +14,7 @@ def what_if(result: Path, changes: list[str], json: bool) -> None:
     opened = Result.open(result)
     reweighted = answer(opened, read_changes(changes))
     if json:
-        print_json(what_if_json(reweighted))
+        print_json(what_if_facts(reweighted).json)
         return
     show_summary(opened, reweighted.summary)
     note(

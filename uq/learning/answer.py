@@ -2,13 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 from unicodedata import normalize
 
 import numpy as np
 
-from uq.assess.summary_json import quality_json
+from uq.assess.fact import Fact
+from uq.assess.population import Population
+from uq.assess.summary_json import quality_facts
 from uq.errors import InputError
+from uq.learning.epistemic_band import over_shared
 from uq.learning.information_gain import Taught, taught
 from uq.learning.inspections import Inspection
 from uq.learning.posterior import Posterior, posterior
@@ -18,6 +22,7 @@ from uq.learning.posterior_inputs import (
     PosteriorMoments,
     confounded,
     inputs_learnt,
+    quantiles,
 )
 from uq.learning.posterior_result import as_table, inspections_of, prior_of, unit_quality
 from uq.learning.prior_predictive import STRANGE, strangeness
@@ -25,7 +30,9 @@ from uq.learning.remaining_life import ANY, Remaining, remaining
 from uq.result.result import AnyResult, Result
 from uq.result.weights import MODEL_ERROR
 from uq.stats import estimate_json
-from uq.stats.importance_weights import Smoothed
+from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import Smoothed, effective_rows
+from uq.stats.weighted_means import moments_of_rows
 from uq.text.numbers import percent
 
 
@@ -127,12 +134,12 @@ def _interpolated(updated: Posterior) -> Iterator[str]:
             )
 
 
-def learnt_json(summary: Learnt) -> dict[str, Any]:
-    """Return the answer in plain data.
+def learnt_facts(summary: Learnt) -> Fact:
+    """Return the numbers of a posterior.
 
     Returns
     -------
-    dict
+    Fact
         ``effective_rows``, ``pareto_k``; ``inputs``: name -> ``prior`` and ``posterior``, each with
         ``mean``, ``sd`` (of the posterior with intervals, ``mean_low``, ..., and ``mean_reason``
         where it is missing) and ``quantiles``; of a unit as ``NAME[unit=LABEL]``; ``confounded``:
@@ -144,57 +151,77 @@ def learnt_json(summary: Learnt) -> dict[str, Any]:
         the same of units never inspected, with ``over_shared`` beside a probability, where known:
         its 2.5 and 97.5 % points over what units share.
     """
+    fact = partial(Fact, notes=tuple(summary.notes))
+
+    def spread(moments: PosteriorMoments) -> Fact:
+        points = {repr(p): value for p, value in moments.quantiles.items()}
+        members: dict[str, Any] = {}
+        for name, estimate in (("mean", moments.mean), ("sd", moments.sd)):
+            members[name] = estimate_json.number(estimate.value)
+            members |= {
+                f"{name}_{end}": value for end, value in estimate_json.ends(estimate).items()
+            }
+            members |= {f"{name}_reason": estimate.reason} if estimate.reason else {}
+        members["quantiles"] = fact(points, (posterior, inputs_learnt, quantiles))
+        return fact(members, (posterior, inputs_learnt, moments_of_rows))
+
+    def ended(remaining_life: Remaining, time: float, probability: Estimate) -> dict[str, Any]:
+        members: dict[str, Any] = estimate_json.whole(probability)
+        if points := remaining_life.over_shared.get(time, {}):
+            by_share = {repr(p): x for p, x in points.items()}
+            members["over_shared"] = fact(by_share, (posterior, remaining, over_shared))
+        return members
+
+    def life(remaining_life: Remaining) -> Fact:
+        members = {
+            "units": remaining_life.units,
+            "seen": remaining_life.seen,
+            "runs": estimate_json.whole(remaining_life.runs),
+            "remaining": {
+                repr(p): estimate_json.whole(quantile)
+                for p, quantile in remaining_life.life.items()
+            },
+            "by": {
+                repr(time): ended(remaining_life, time, probability)
+                for time, probability in remaining_life.by.items()
+            },
+            "effective_rows": fact(
+                remaining_life.effective_rows, (posterior, remaining, effective_rows)
+            ),
+        }
+        return fact(members, (posterior, remaining, Population))
+
     units: dict[str, dict[str, Any]] = {}
     for remaining_life in summary.lives:
-        units.setdefault(remaining_life.unit, {})[remaining_life.output] = _life(remaining_life)
-    return {
-        **quality_json(summary.worst),
+        units.setdefault(remaining_life.unit, {})[remaining_life.output] = life(remaining_life)
+    quality = {
+        name: fact(number.members, (posterior, *number.by))
+        for name, number in quality_facts(summary.worst).items()
+    }
+    members = quality | {
         "inspections": len(summary.inspections),
         "inputs": {
             learnt_input.name: {
                 "units": learnt_input.units,
-                "prior": _spread(learnt_input.prior),
-                "posterior": _spread(learnt_input.posterior),
+                "prior": spread(learnt_input.prior),
+                "posterior": spread(learnt_input.posterior),
             }
             for learnt_input in summary.inputs
         },
-        "confounded": [
-            {"inputs": [pair.first, pair.second], "correlation": pair.correlation}
-            for pair in summary.confounded
-        ],
-        "taught": [as_table(gain.inspection) | {"bits": gain.bits} for gain in summary.taught],
-        "strangeness": summary.strangeness,
+        "confounded": fact(
+            [
+                {"inputs": [pair.first, pair.second], "correlation": pair.correlation}
+                for pair in summary.confounded
+            ],
+            (posterior, confounded),
+        ),
+        "taught": fact(
+            [as_table(gain.inspection) | {"bits": gain.bits} for gain in summary.taught],
+            (posterior, taught),
+        ),
+        "strangeness": fact(summary.strangeness, (posterior, strangeness)),
         "notes": summary.notes,
         "uninspected": units.pop(ANY, {}),
         "units": units,
     }
-
-
-def _spread(moments: PosteriorMoments) -> dict[str, Any]:
-    quantiles = {repr(p): value for p, value in moments.quantiles.items()}
-    entries: dict[str, Any] = {}
-    for name, estimate in (("mean", moments.mean), ("sd", moments.sd)):
-        entries[name] = estimate_json.number(estimate.value)
-        entries |= {f"{name}_{end}": value for end, value in estimate_json.ends(estimate).items()}
-        entries |= {f"{name}_reason": estimate.reason} if estimate.reason else {}
-    return entries | {"quantiles": quantiles}
-
-
-def _life(remaining_life: Remaining) -> dict[str, Any]:
-    def spread(time: float) -> dict[str, Any]:
-        points = remaining_life.over_shared.get(time, {})
-        return {"over_shared": {repr(p): x for p, x in points.items()}} if points else {}
-
-    return {
-        "units": remaining_life.units,
-        "seen": remaining_life.seen,
-        "runs": estimate_json.whole(remaining_life.runs),
-        "remaining": {
-            repr(p): estimate_json.whole(quantile) for p, quantile in remaining_life.life.items()
-        },
-        "by": {
-            repr(time): estimate_json.whole(p) | spread(time)
-            for time, p in remaining_life.by.items()
-        },
-        "effective_rows": remaining_life.effective_rows,
-    }
+    return fact(members, (posterior,))

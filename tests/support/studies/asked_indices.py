@@ -6,7 +6,7 @@ import numpy as np
 from computed import computed, study_of
 
 from uq.assess import sensitivities as estimation
-from uq.assess.sensitivity_json import sensitivity_json
+from uq.assess.sensitivity_json import sensitivity_facts
 from uq.indices.methods import METHODS
 from uq.indices.sample import DesignSample
 from uq.result.result import Result
@@ -30,7 +30,7 @@ def ishigami(method="saltelli", samples=128, replicates=8, seed=1, **more_design
 
 def sensitivities(ds, *asked, **more):
     """Return the indices of a result as ``uq sensitivity --json`` has them."""
-    return sensitivity_json(estimation.sensitivities(Result.of(ds), *asked, **more))
+    return sensitivity_facts(estimation.sensitivities(Result.of(ds), *asked, **more)).json
 
 
 def indices(ds, method=None, output=None):

@@ -6,7 +6,7 @@ from computed import computed, study_of
 from scipy import special, stats
 
 from uq.assess.fleet import fleet_of
-from uq.assess.fleet_json import fleet_json
+from uq.assess.fleet_json import fleet_facts
 from uq.assess.random_effects import Noisy
 from uq.result.result import Result
 
@@ -42,7 +42,7 @@ def test_worlds_whose_units_never_end_have_no_end_of_the_band():
     assert fleet.first[0.5].high.numbers == (np.inf,) * 3
     assert fleet.first[0.95].estimate.value == np.inf
     assert 0 < fleet.first[0.95].low.low < fleet.first[0.95].low.high < 2
-    entry = fleet_json(fleet)["first"]["quantiles"]["0.5"]
+    entry = fleet_facts(fleet).json["first"]["quantiles"]["0.5"]
     assert entry["band_high"] is None and entry["band_high_never"] is True
     assert entry["band_high_low_never"] is entry["band_high_high_never"] is True
 

@@ -9,7 +9,7 @@ from fleet_studies import LISTED, SHARED, brute_force, fleet_result, fleet_study
 import uq as api
 from benchmarks.coverage import fleets as counted
 from uq.assess.fleet import fleet_of
-from uq.assess.fleet_json import fleet_json
+from uq.assess.fleet_json import fleet_facts
 from uq.assess.fleets import units_of
 from uq.assess.random_effects import ONE_UNIT, Noisy
 from uq.assess.summary_table import summary
@@ -77,7 +77,7 @@ def test_points_over_what_is_shared_state_what_they_assume():
     for estimate in counted_units.by[5e5]:
         assert estimate.low.assumes and estimate.high.assumes and not estimate.estimate.assumes
     assert counted_units.first[0.5].high.assumes
-    entry = fleet_json(counted_units)["by"]["500000.0"]["failed"]
+    entry = fleet_facts(counted_units).json["by"]["500000.0"]["failed"]
     assert "about normal" in entry["band_low_assumes"] and "assumes" not in entry
     table = api.fleet(fleet_result(units=4, samples=100, depth=LISTED), 4, by=5e5)
     of_numbers = table["assumes"].loc[["failed", "at_most_allowed"]]

@@ -7,7 +7,7 @@ from scipy import stats
 import uq
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.errors import InputError
 from uq.result.result import Result
 from uq.stats.location_scale import FAMILIES, anderson_darling, fit
@@ -79,7 +79,7 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
 def test_fits_are_a_table_and_in_json():
     life = lives(sample(LOGNORMAL))
     table = uq.life_fits(life, "life")
-    entries = summary_json(summarise(Result(life), fits=True))["outputs"]["life"]["fits"]
+    entries = summary_facts(summarise(Result(life), fits=True)).json["outputs"]["life"]["fits"]
     assert table.index.to_list() == [("life", "weibull"), ("life", "lognormal")]
     good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
     assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]

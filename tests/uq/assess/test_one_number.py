@@ -10,7 +10,7 @@ from computed import asking, kinds, summarised
 from uq.assess.answer.answer import answer
 from uq.assess.answer.answer_json import answer_json
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_json
+from uq.assess.sensitivity_json import sensitivity_facts
 from uq.render.html.page import page
 from uq.result.result import Result
 
@@ -23,7 +23,7 @@ def life(monkeypatch):
 
 
 def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
-    table = sensitivity_json(sensitivities(Result(life)))["outputs"]["log(life)"]["S1"]
+    table = sensitivity_facts(sensitivities(Result(life))).json["outputs"]["log(life)"]["S1"]
     ranking = answer_json(answer(life))["quantities"]["life"]["ranking"]
     shares = {
         k: v for contribution in ranking["contributions"] for k, v in contribution["inputs"].items()

@@ -8,7 +8,7 @@ from until_studies import PAIR, WEAR, study, tables, wear
 from benchmarks.coverage import whole
 from uq.assess import stopping
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_json
+from uq.assess.sensitivity_json import sensitivity_facts
 from uq.errors import InputError
 from uq.execution import runner
 from uq.result.result import Result
@@ -70,7 +70,7 @@ def test_an_index_is_that_of_the_sensitivity(monkeypatch, more, widest):
     of = study(1.0, samples=64, method="saltelli", replicates=8, index="S1", **more)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    index_values = sensitivity_json(sensitivities(Result(ds)))["outputs"]["y"]["S1"]
+    index_values = sensitivity_facts(sensitivities(Result(ds))).json["outputs"]["y"]["S1"]
     halves = {
         name: (estimate["high"] - estimate["low"]) / 2 for name, estimate in index_values.items()
     }
@@ -186,9 +186,9 @@ def test_a_run_may_stop_at_the_index_of_all_elements_together(monkeypatch, desig
     of = study_of(given | {"uncertain": whole.LAWS}, whole.NAME)
     ds = computed(of)
     seen = seen_with_confidence(monkeypatch, 0.95, of, ds)
-    every = sensitivity_json(sensitivities(Result(ds), output="front[:]"))["outputs"]["front[:]"][
-        index
-    ]
+    every = sensitivity_facts(sensitivities(Result(ds), output="front[:]")).json["outputs"][
+        "front[:]"
+    ][index]
     settled = {name: estimate for name, estimate in every.items() if estimate["low"] is not None}
     halves = {name: (estimate["high"] - estimate["low"]) / 2 for name, estimate in settled.items()}
     widest = max(halves, key=halves.get)

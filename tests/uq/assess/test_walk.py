@@ -20,7 +20,7 @@ from computed import (
 import uq
 from uq.assess import stopping
 from uq.assess.convergence import enough, running_estimates
-from uq.assess.summary_json import twin_json
+from uq.assess.summary_json import twin_facts
 from uq.assess.two_fidelities import with_twin
 from uq.errors import InputError
 from uq.explore.rare_events import ESTIMATORS as RARE
@@ -284,7 +284,7 @@ def test_twin(damage):
         ds = ds.isel(row=slice(None, 193))
     elif damage == "constant":
         ds["y"][:] = 0.1
-    outputs = strict(twin_json(with_twin(Result(ds), PAIRED)))["outputs"]
+    outputs = strict(twin_facts(with_twin(Result(ds), PAIRED)).json)["outputs"]
     if damage == "all failed":
         assert outputs == {}
         return

@@ -13,7 +13,7 @@ from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
 from uq.errors import InputError, RunError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
-from uq.learning.answer import learnt, learnt_json
+from uq.learning.answer import learnt, learnt_facts
 from uq.learning.importance import own_rows
 from uq.learning.posterior_result import as_unit, prior_of
 from uq.result.result import Result
@@ -68,7 +68,7 @@ def check(result, inspections, ds, mean, cov):
     with pytest.raises(RunError, match=r"or update the result with --rows N"):
         update(result, inspections)
     assert_exact(ds, mean, cov)
-    answer = learnt_json(learnt(ds))
+    answer = learnt_facts(learnt(ds)).json
     assert answer["effective_rows"] >= 400 and answer["pareto_k"] < 0.7
     assert answer["strangeness"] < 0.01
     # The laws before the inspections are those of the study, whatever the rows were drawn from.
@@ -80,7 +80,7 @@ def check(result, inspections, ds, mean, cov):
 def test_intervals_rest_on_independent_repetitions(result, new_rows):
     assert np.unique(new_rows["replicate"]).tolist() == list(range(8))
     assert new_rows.attrs["replicates"] == 8
-    after = learnt_json(learnt(new_rows))["inputs"]["rate[unit=A]"]["posterior"]
+    after = learnt_facts(learnt(new_rows)).json["inputs"]["rate[unit=A]"]["posterior"]
     assert after["mean_low"] < after["mean"] < after["mean_high"]
     assert after["sd_low"] < after["sd"] < after["sd_high"]
     assert own_rows(prior_of(Result(new_rows))).dataset.identical(result)

@@ -11,7 +11,7 @@ from worn_studies import pads
 from uq.errors import InputError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
-from uq.learning.answer import learnt, learnt_json
+from uq.learning.answer import learnt, learnt_facts
 from uq.learning.remaining_life import ANY, remaining
 from uq.result.result import Result
 
@@ -156,7 +156,9 @@ def test_units_that_may_be_one_are_named():
 
 
 def test_json_names_the_unit(worn):
-    document = learnt_json(learnt(update(worn, [inspection("A", "survived", 60.0, LEFT)]), [150.0]))
+    document = learnt_facts(
+        learnt(update(worn, [inspection("A", "survived", 60.0, LEFT)]), [150.0])
+    ).json
     assert {entry["units"] for unit in document["units"].values() for entry in unit.values()} == {
         "h"
     }

@@ -11,7 +11,7 @@ from uq.assess.level_shares import by_level
 from uq.assess.summary import summarise
 from uq.errors import InputError, RunError
 from uq.explore.updating import update
-from uq.learning.answer import learnt, learnt_json
+from uq.learning.answer import learnt, learnt_facts
 from uq.learning.posterior_result import as_unit
 from uq.learning.remaining_life import remaining
 from uq.result.result import Result
@@ -71,7 +71,7 @@ def test_without_rows_of_their_own_they_have_no_life():
     ds = update(rows(2, samples=2000), measured(9.0, 20.0, cv=CV))
     why = "set [design] units = 3 or more"
     assert any(why in note for note in summarise(Result(ds)).notes)
-    document = learnt_json(learnt(ds))
+    document = learnt_facts(learnt(ds)).json
     assert document["uninspected"] == {} and document["units"].keys() == {"A", "B"}
     assert any(why in note for note in document["notes"])
     assert not any(why in note for note in summarise(Result(as_unit(ds, "A"))).notes)
@@ -91,7 +91,7 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     none = np.average((1 - p) ** 3, weights=np.exp(-(z**2) / 2))
     kept = fleet_of(Result(ds), 3, [6e5]).by[6e5][1].estimate
     assert kept.low < none < kept.high and kept.high - kept.low < 0.06
-    probability = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
+    probability = learnt_facts(learnt(ds, [6e5])).json["uninspected"]["life"]["by"]["600000.0"]
     ends = stats.norm.cdf((np.log(6e5) - middle + spread * np.array([-1.96, 1.96])) / sd)
     assert list(probability["over_shared"].values()) == pytest.approx(ends, abs=0.02)
     share = by_level(Result(ds)).outputs["log(life)"].shares["shared"]
@@ -121,7 +121,7 @@ def test_the_range_over_what_is_shared_needs_its_probabilities_without_noise():
     of_worlds = update(wear(600, rate="shared", units=3), measured(6e5, 7e5, cv=CV))
     nothing = update(wear(600), measured(6e5, cv=CV))
     for ds in (of_worlds, nothing):
-        of_time = learnt_json(learnt(ds, [6e5]))["uninspected"]["life"]["by"]["600000.0"]
+        of_time = learnt_facts(learnt(ds, [6e5])).json["uninspected"]["life"]["by"]["600000.0"]
         assert "over_shared" not in of_time and of_time["value"] > 0
 
 

@@ -14,7 +14,7 @@ from scipy.stats import lognorm, norm
 from uq.errors import InputError, RunError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
-from uq.learning.answer import learnt, learnt_json
+from uq.learning.answer import learnt, learnt_facts
 from uq.learning.next_inspection import worth
 from uq.learning.posterior_result import as_unit, prior_of, unit_quality
 from uq.result.result import Result
@@ -35,7 +35,7 @@ def three_units():
 
 
 def inputs_of(ds):
-    return learnt_json(learnt(ds))["inputs"]
+    return learnt_facts(learnt(ds)).json["inputs"]
 
 
 def assert_close(moments, mean, sd):
@@ -182,7 +182,7 @@ def test_a_model_error_blurs_a_limit_but_not_what_was_seen_to_run(result):
 
 def test_the_life_left_is_that_of_a_unit_that_runs(result):
     lived = [{"unit": "A", "output": "life", "kind": "survived", "time": 1e6}]
-    life = learnt_json(learnt(update(result, lived), [2e6]))["units"]["A"]["life"]
+    life = learnt_facts(learnt(update(result, lived), [2e6])).json["units"]["A"]["life"]
     lives = lognorm((0.5**2 + 0.3**2) ** 0.5, scale=1e6)
     gone = (lives.cdf(2e6) - lives.cdf(1e6)) / lives.sf(1e6)
     assert life["by"]["2000000.0"]["value"] == pytest.approx(gone, abs=0.02)

@@ -13,7 +13,7 @@ from in_memory import compute
 
 import uq
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_json
+from uq.assess.summary_json import summary_facts
 from uq.contract import Status
 from uq.errors import InputError
 from uq.execution import runner
@@ -233,7 +233,10 @@ def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch
     small = result_file.open_result(path)
     monkeypatch.setattr(result_file, "_IN_MEMORY_BYTES", 0)
     with result_file.open_result(path) as large:
-        assert summary_json(summarise(Result(large))) == summary_json(summarise(Result(small)))
+        assert (
+            summary_facts(summarise(Result(large))).json
+            == summary_facts(summarise(Result(small))).json
+        )
         assert large.identical(small)
         assert not any(large[name].variable._in_memory for name in large.data_vars if name != "x1")
 

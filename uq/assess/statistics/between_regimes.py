@@ -22,23 +22,15 @@ from uq.stats.intervals import (
 )
 from uq.stats.quantile_functions import normal
 from uq.stats.tails import lacks_variance
-from uq.text.numbers import percent, percent_interval
 
 MIN_IN_REGIME = 2
 """A regime with fewer rows has no variance of its own, and is skipped."""
 
 
-def _shown(share: float) -> str:
-    """Return the share in words; it is corrected for chance, so it may be negative."""
-    return percent(share) if share > 0 else "none seen"
-
-
-def _ends(share: Estimate, per: float) -> str:
-    return percent_interval(share.low, share.high) if share.has_interval else ""
-
-
 _KIND = StatisticKind(
-    shown=_shown, ends=_ends, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT
+    is_share=True,
+    without="none seen",  # corrected for chance, it may be negative
+    readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT,
 )
 
 

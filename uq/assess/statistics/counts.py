@@ -1,8 +1,7 @@
 """Numbers of rows without a value, or less accurate than requested."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -12,22 +11,12 @@ from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, Statist
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.result.variables import error_name
-from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows, per_sample
 from uq.stats.intervals import Replicates, replicates_of_some
 from uq.text.numbers import counted, percent
 
-
-def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    return {
-        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
-    }
-
-
-_EFFECTIVE = StatisticKind(
-    write=_write, shown=lambda rows: f"{rows:.0f}", has_interval=False, readers=COUNT.readers
-)
+_EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
 
 
 def counts(element: Element, context: Context) -> Iterator[Statistic]:
@@ -88,7 +77,7 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
         "rows short of the accuracy",
         Estimate(float(missed)),
         "rows",
-        replace(COUNT, write=FACT.write, readers=readers),
+        replace(COUNT, form=FACT.form, readers=readers),
         column="accuracy_missed",
         more=lost,
         notes=(words,) if missed else (),

@@ -15,7 +15,7 @@ from uq.stats.estimate_json import number
 _AT = "B10"
 _KIND = replace(
     FACT,
-    shown=lambda worth: f"{worth:.2g} times",
+    text="{:.2g} times",
     listing=LIFE.listing,
     readers=FACT.readers | Reader.REPORT,
 )

@@ -1,25 +1,14 @@
 """Tolerance bounds that hold for several outputs at once."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from math import isnan
-from typing import Any
 
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
-from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.order_statistics import joint_bounds, rows_for_bound
 from uq.study.file import USUAL
-
-
-def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    numbers: dict[str, Any] = {
-        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
-    }
-    for statistic in group:
-        numbers |= estimate_json.flag(f"{statistic.key[-1]}_", statistic.estimate, "value")
-    return numbers
 
 
 def joint(element: Element, context: Context) -> Iterator[Statistic]:
@@ -37,7 +26,7 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     )
     is_first = context.joint_bounds[0].element == element.name
     listing = Listing(words, keeps_empty=True)
-    bound = StatisticKind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
+    bound = StatisticKind(form="bound", listing=listing, readers=COUNT.readers)
     for joint_bound in bounds:
         yield Statistic(
             ("joint_bounds", joint_bound.side),

@@ -1,6 +1,6 @@
 """Mean, standard deviation, and the tail that may rule them out."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import isfinite, isnan, nan
 from typing import Any
@@ -8,7 +8,6 @@ from typing import Any
 from uq.assess.estimators import MEAN, SD
 from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
-from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import mean_interval
@@ -16,20 +15,7 @@ from uq.stats.moments import Moments, moments, sd_interval, standard_deviation
 from uq.stats.tails import heavier_tail
 from uq.stats.weighted_means import moments_of_rows, weighted_moments
 
-
-def _numbers(statistic: Statistic) -> dict[str, Any]:
-    return estimate_json.numbers(statistic.estimate)
-
-
-def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    numbers: dict[str, Any] = {}
-    for statistic in group:
-        numbers[statistic.key[-1]] = estimate_json.number(statistic.estimate.value)
-        numbers[f"{statistic.key[-1]}_interval"] = estimate_json.ends(statistic.estimate)
-    return numbers
-
-
-MOMENT = StatisticKind(entry=_numbers, write=_write)
+MOMENT = StatisticKind(form="moment")
 SPREAD = replace(MOMENT, readers=~Reader.RUNNING)
 
 

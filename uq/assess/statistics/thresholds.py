@@ -1,59 +1,31 @@
 """Probabilities that an output lies above and below thresholds."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import nan
-from typing import Any
 
 from uq.assess.counted_rows import CountedRows, share_of
 from uq.assess.estimators import SelectedRows, share
 from uq.assess.failed_rows import bounded
 from uq.assess.population import Population
 from uq.assess.sample import Sample
-from uq.assess.statistic import Context, Listing, Reader, Statistic, StatisticKind, entry
+from uq.assess.statistic import Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import share_interval
 from uq.stats.kaplan_meier import kaplan_meier
-from uq.text.numbers import percent
 
 SIDES = {"above": ">", "below": "<"}
 
 
-def _alone(statistic: Statistic) -> dict[str, Any]:
-    """Return one side as `uq compare` has it."""
-    assumes = statistic.estimate.assumes
-    return _side(statistic) | ({"assumes": assumes} if assumes else {})
-
-
-def _side(statistic: Statistic) -> dict[str, Any]:
-    reason = statistic.estimate.reason if statistic.estimate.assumes else ""
-    bare = replace(statistic.estimate, assumes="", reason=reason)
-    return entry(replace(statistic, estimate=bare, otherwise=None))
-
-
-def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    """Return both sides of a threshold."""
-    sides: dict[str, Any] = {statistic.key[-1]: _side(statistic) for statistic in group}
-    sides |= group[0].facts
-    guesses = {statistic.key[-1]: statistic.otherwise for statistic in group if statistic.otherwise}
-    if reason := group[0].estimate.reason:
-        sides["reason"] = reason
-    if guesses:
-        assumes = group[0].best.estimate.assumes
-        sides["kaplan_meier"] = {side: _side(guess) for side, guess in guesses.items()}
-        sides["kaplan_meier"]["assumes"] = assumes
-    return sides
-
-
 _LISTING = Listing("Probabilities, with 95 % intervals", by="threshold")
-PROBABILITY = StatisticKind(entry=_alone, write=_write, listing=_LISTING)
+PROBABILITY = StatisticKind(form="side", listing=_LISTING)
 UNDEFINED = StatisticKind(
-    write=lambda group: dict(group[0].facts),
-    shown=lambda share: percent(share) if share else "",
+    form="",
+    is_share=True,
+    without="",
     is_count=True,
-    has_interval=False,
     listing=_LISTING,
     readers=Reader.REPORT,
 )

@@ -1,27 +1,16 @@
 """Tolerance bounds: limits for a given share of all values, with a given confidence."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from math import isnan
-from typing import Any
 
 import numpy as np
 
 from uq.assess.counted_rows import whenever_censored_rows_end
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
-from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.stats.order_statistics import rows_for_bound, rows_still_needed, tolerance_bounds
-
-
-def _write(group: Sequence[Statistic]) -> dict[str, Any]:
-    numbers: dict[str, Any] = {
-        statistic.key[-1]: estimate_json.number(statistic.estimate.value) for statistic in group
-    }
-    for statistic in group:
-        numbers |= estimate_json.flag(f"{statistic.key[-1]}_", statistic.estimate, "value")
-    return numbers
 
 
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
@@ -44,7 +33,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         f" lower, and {coverage} % below the upper" + ", or the magnitude's" * element.is_angle,
         keeps_empty=True,
     )
-    bound = StatisticKind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
+    bound = StatisticKind(form="bound", listing=listing, readers=COUNT.readers)
     bounds = {"lower": lower, "upper": upper}
     if element.is_angle:
         largest = tolerance_bounds(np.abs(element.at_most), failed, *asked)[1]

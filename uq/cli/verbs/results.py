@@ -107,9 +107,9 @@ def summary(
     from uq.assess.answer.answer import conclude
     from uq.assess.answer.answer_json import answer_json
     from uq.assess.findings import Findings
-    from uq.assess.regime_boundary import boundary_json
+    from uq.assess.regime_boundary import boundary_facts
     from uq.assess.summary import summarise
-    from uq.assess.summary_json import summary_json
+    from uq.assess.summary_json import summary_facts
     from uq.cli import summary_tables
     from uq.cli.changed_file import warn_if_altered
     from uq.cli.printing import print_json
@@ -131,8 +131,8 @@ def summary(
         warn_if_altered(result)
         return
     answer = {"answer": answer_json(conclude(findings))} if answered else {}
-    between = boundary_json(findings.boundary) if answered else {}
-    print_json(summary_json(statistics) | between | answer)
+    between = boundary_facts(opened, findings.boundary).json if answered else {}
+    print_json(summary_facts(statistics).json | between | answer)
     warn_if_altered(result)
 
 
@@ -148,14 +148,14 @@ def sensitivity(
 ) -> None:
     """Show which inputs cause the scatter."""
     from uq.assess.sensitivities import sensitivities
-    from uq.assess.sensitivity_json import sensitivity_json
+    from uq.assess.sensitivity_json import sensitivity_facts
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import show
     from uq.result.result import Result
 
     opened = Result.open(result)
     indices = sensitivities(opened, method, output, regime)
-    print_json(sensitivity_json(indices)) if json else show(opened, indices)
+    print_json(sensitivity_facts(indices).json) if json else show(opened, indices)
 
 
 def levels(

@@ -1,6 +1,7 @@
 """The numbers of the answer and their origins."""
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 from uq.assess.answer.answer import conclude, regimes_of, without_advice
@@ -15,6 +16,7 @@ from uq.assess.convergence import compared
 from uq.assess.earliest import inputs_apart
 from uq.assess.effects import effects
 from uq.assess.event_curve import event_curve
+from uq.assess.fact import Fact, Functions
 from uq.assess.findings import Findings
 from uq.assess.joint_bounds import SIDES
 from uq.assess.population import Population
@@ -23,12 +25,10 @@ from uq.assess.regime_switching import switching
 from uq.assess.solver_error import error_share, off_by_error, stating_none
 from uq.assess.statistics.counts import accuracy, never_ending
 from uq.assess.summary import status_counts, summarise
+from uq.assess.summary_json import summary_facts
 from uq.assess.targets import split_name
 from uq.assess.what_if import what_if
-from uq.render.trace.citations import Citation, cited
-from uq.render.trace.indices import estimator_of
-from uq.render.trace.origin import Origin
-from uq.render.trace.summary import functions_of, states_of
+from uq.indices.methods import indices_of
 from uq.result.result import Result
 from uq.stats.intervals import share_interval
 from uq.stats.uncertainty_exponent import uncertainty_exponent
@@ -62,43 +62,51 @@ def json_of(result: Result, options: Options, path: Path) -> dict[str, Any]:
     return answer_json(whole(findings))
 
 
-def origin(result: Result, options: Options, path: Path, document: Json) -> Origin:
-    """Return the origin of a number of the answer."""
+def facts(result: Result, options: Options, path: Path) -> Fact:
+    """Return the facts of the answer: of the quantity or the part alone that a path names."""
+    document = json_of(result, options, path)
+    by, rows, notes = _origin(result, path, document) if path else ((), None, ())
+    return Fact(document, by, rows=rows, notes=notes)
+
+
+def _origin(
+    result: Result, path: Path, document: Json
+) -> tuple[Functions, Result | None, tuple[str, ...]]:
+    """Return functions, rows (None for all) and notes of a number of the answer."""
     part, *names = path
     if part in ("rows", "failed"):
-        return Origin((cited(status_counts),), result)
+        return (status_counts,), None, ()
     if part == "intermingled":
-        return Origin((cited(uncertainty_exponent),), compared_rows(result))
+        return (uncertainty_exponent,), compared_rows(result), ()
     if part == "levels":
-        return Origin((cited(switching if "another_regime" in names else nested_shares),), result)
+        return (switching if "another_regime" in names else nested_shares,), None, ()
     if part == "enough":
         if "error" in names[-1]:
-            return Origin((cited(compared),), result.independent)
-        return Origin((cited(found_again), cited(share_interval)), result)
+            return (compared,), result.independent, ()
+        return (found_again, share_interval), None, ()
     if part == "advice":
-        return Origin((cited(what_if if "tolerances" in names else unsettled),), result)
+        return (what_if if "tolerances" in names else unsettled,), None, ()
     if "ranking" in names:
         ranking = value_at(document, path[: path.index("ranking") + 1])
-        index = estimator_of(ranking["method"], ranking["index"])
         if "effects" in names:
-            return Origin((cited(effects),), result)
-        return Origin((index,), result, notes=tuple(_notes(result)))
+            return (effects,), None, ()
+        return (
+            (partial(indices_of, ranking["method"], ranking["index"]),),
+            None,
+            tuple(_notes(result)),
+        )
     if "earliest" in names:
-        return Origin((cited(inputs_apart),), result)
+        return (inputs_apart,), None, ()
     if "limit" in names:
-        return Origin((cited(limit_of), cited(event_curve), cited(share_interval)), result)
+        return (limit_of, event_curve, share_interval), None, ()
     if "parts" in names or "decided_by" in names:
-        return Origin((cited(event_curve), cited(share_interval)), result)
+        return (event_curve, share_interval), None, ()
     rows = result.independent
     if part == "regimes":
         statistic = summarise(result, result.analysis).regimes[names[0]]
-        return Origin(tuple(map(cited, statistic.by)), rows)
-    states = states_of(rows.named_elements(names[0])[0])
-    return Origin(
-        tuple(dict.fromkeys(_estimators(result, document["quantities"][names[0]], *names))),
-        rows,
-        states,
-    )
+        return statistic.by, rows, ()
+    by = tuple(dict.fromkeys(_estimators(result, document["quantities"][names[0]], *names)))
+    return by, rows, ()
 
 
 def _notes(result: Result) -> Iterator[str]:
@@ -110,27 +118,25 @@ def _notes(result: Result) -> Iterator[str]:
 
 def _estimators(
     result: Result, entry: Json, name: str, part: str, *rest: str
-) -> Iterator[Citation]:
+) -> Iterator[Callable[..., Any]]:
     """Yield the estimators of a number of a promise, range, event or prediction interval."""
     asked = with_bounds(result.analysis_of(name.partition("[")[0]), Findings(result))
-    described = summarise(result, asked).outputs[name]
+    described = summary_facts(summarise(result, asked), of_reports=True)
     keys: list[Path] = [("quantiles", repr(LOW))]
     if part == "another_seed":
-        yield cited(found_again)
+        yield found_again
         promised = entry["promise"]["sentence"] if "promise" in entry else ""
         part, rest = ("range", ()) if promised else ("events", tuple(entry["events"]))
     if part == "own_error":
-        yield from map(
-            cited, _ERROR_ESTIMATORS.get("".join(rest), (off_by_error, error_share, accuracy))
-        )
+        yield from _ERROR_ESTIMATORS.get("".join(rest), (off_by_error, error_share, accuracy))
         keys *= any(end in rest for end in ("lower", "upper"))
         if keys and not entry["promise"]["reason"]:
             keys = [("tolerance", "lower")]
     elif part == "range" and "".join(rest).startswith("never"):
-        yield from map(cited, (never_ending, Population if result.has_weights else share_interval))
+        yield from (never_ending, Population if result.has_weights else share_interval)
         keys = []
     elif part == "promise" and "".join(rest).startswith("share_at"):
-        yield cited(piles)
+        yield piles
         keys = []
     elif part == "promise":
         joint = asked.joint_bounds.get(name.partition("[")[0])
@@ -140,4 +146,7 @@ def _estimators(
         side = "below" if "<" in rest[0] else "above"
         keys = [("thresholds", split_name(rest[0])[2], side)]
     for key in keys:
-        yield from map(cited, functions_of(described, key))
+        try:
+            yield from described.at("outputs", name, *key).by
+        except KeyError:  # there is no such number
+            yield from described.at("outputs", name, key[0]).by

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
+from uq.indices.methods import METHODS, indices_of
+
 
 class Citation(NamedTuple):
     """An estimator.
@@ -26,7 +28,9 @@ class Citation(NamedTuple):
 
 
 def cited(function: Callable[..., Any]) -> Citation:
-    """Return summary and references of an estimator from its docstring."""
+    """Return summary and references of an estimator: its docstring, or that of its method."""
+    if isinstance(function, partial) and function.func is indices_of:
+        return _of_index(*function.args)
     while isinstance(function, partial):
         function = function.func
     docstring = inspect.getdoc(function) or ""
@@ -37,6 +41,16 @@ def cited(function: Callable[..., Any]) -> Citation:
     entries = re.split(r"^\.\. (?=\[\d+\] )", section[1], flags=re.MULTILINE) if section else []
     code = f"{function.__module__}.{getattr(function, '__qualname__', '')}"
     return Citation(first.removesuffix("."), code, tuple(filter(None, map(_joined, entries))))
+
+
+def _of_index(method: str, key: str) -> Citation:
+    """Return question, estimator and references of a method; "" is the key of no kind of index."""
+    estimator = METHODS[method]
+    kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]
+    code = f"uq.indices.methods.METHODS['{method}']"
+    references = [estimator.source, estimator.intervals and f"intervals: {estimator.intervals}"]
+    sources = (*filter(None, references), *cited(estimator.estimate).sources)
+    return Citation(f"{estimator.question}{''.join(kinds)}", code, sources)
 
 
 def _joined(text: str) -> str:

@@ -8,12 +8,12 @@ from typing import Any
 import pandas as pd
 
 from uq.errors import InputError
-from uq.render.trace.citations import Citation
+from uq.render.trace.citations import Citation, cited
 from uq.render.trace.row_sets import Run, in_words, runs_of
 from uq.render.trace.verbs import VERBS
 from uq.result.result import AnyResult, Result
 from uq.study.provenance import provenance
-from uq.text.keys import key_of, no_such_key, numbers_in, taken_apart, value_at
+from uq.text.keys import key_of, no_such_key, numbers_in, taken_apart
 
 RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256", "study_identity")
 """Attributes of a result that say how its rows were drawn."""
@@ -109,36 +109,35 @@ def traced(result: Result, key: str, model: str | None = None) -> Trace:
     parts = taken_apart(key.strip(), {name: verb.options for name, verb in VERBS.items()})
     verb, path = VERBS[parts.verb], parts.path
     options = parts.options | ({"model": model} if model else {})
-    document, numbers = {}, {}
+    numbers = {}
     try:
-        document = verb.json_of(result, options, path)
-        numbers = numbers_in(value_at(document, path))
+        facts = verb.facts(result, options, path)
+        place = facts.at(*path)
+        numbers = numbers_in(place.json)
     except (KeyError, InputError):  # no such output
         pass
     if not path or not numbers:
-        raise no_such_key(parts, verb.json_of(result, options, ()), VERBS)
-    origin = verb.origin(result, options, path, document)
-    here = {
-        name: now for name, now in provenance().items() if result.dataset.attrs.get(name) != now
-    }
-    names = ("code", *provenance())
+        raise no_such_key(parts, verb.facts(result, options, ()).json, VERBS)
+    rows = result if place.rows is None else place.rows
+    again = (
+        verb.again(rows, options, path)
+        if verb.again
+        else verb.facts(rows, options, path).at(*path).json
+    )
+    attrs = result.dataset.attrs
     return Trace(
         key_of(*path, verb=parts.verb, options=parts.options),
         numbers,
-        numbers_in(verb.again(verb, origin, options, path)),
-        origin.estimators,
-        len(origin.rows),
+        numbers_in(again),
+        tuple(dict.fromkeys(map(cited, place.by))),
+        len(rows),
         len(result),
-        runs_of(origin.rows),
-        origin.states,
-        origin.notes,
-        {
-            name: _plain(result.dataset.attrs[name])
-            for name in RECORDED
-            if name in result.dataset.attrs
-        },
-        {name: str(result.dataset.attrs[name]) for name in names if name in result.dataset.attrs},
-        here,
+        runs_of(rows),
+        {} if place.rows is None else verb.states(rows, facts, path),
+        place.notes,
+        {name: _plain(attrs[name]) for name in RECORDED if name in attrs},
+        {name: str(attrs[name]) for name in ("code", *provenance()) if name in attrs},
+        {name: now for name, now in provenance().items() if attrs.get(name) != now},
     )
 
 

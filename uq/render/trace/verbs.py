@@ -1,28 +1,154 @@
-"""The verbs whose numbers have keys. To add one, write its JSON and origins."""
+"""The verbs whose numbers have keys. To add one, write the function that returns its facts."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
-from uq.render.trace import (
-    answer,
-    convergence,
-    fleet,
-    indices,
-    inputs,
-    learning,
-    levels,
-    summary,
-    two_fidelities,
-    what_if,
-)
-from uq.render.trace.origin import Origin
+import numpy as np
+
+from uq.assess.chosen_targets import chosen, output_in
+from uq.assess.convergence import enough, estimates_from
+from uq.assess.design_sample import sample_of
+from uq.assess.fact import Fact
+from uq.assess.fleet import fleet_of, the_life
+from uq.assess.fleet_json import fleet_facts
+from uq.assess.level_shares import by_level
+from uq.assess.regime_boundary import BOUNDARY, boundary, boundary_facts
+from uq.assess.running_estimates import convergence_facts, converging, errors_facts, running_fact
+from uq.assess.sampled_inputs import inputs_facts
+from uq.assess.sensitivities import sensitivities
+from uq.assess.sensitivity_json import sensitivity_facts
+from uq.assess.summary import summarise
+from uq.assess.summary_json import levels_facts, summary_facts
+from uq.assess.targets import split_name
+from uq.assess.two_fidelities import twin_facts, with_twin
+from uq.assess.what_if import answer as answer_what_if
+from uq.assess.what_if import read_changes, what_if_facts
+from uq.errors import InputError
+from uq.learning.answer import learnt, learnt_facts
+from uq.learning.remaining_life import read_times
+from uq.render.trace import answer
 from uq.result.result import Result
-from uq.text.keys import SUMMARY, Json, Options, Path, value_at
+from uq.text.keys import SUMMARY, Options, Path
+from uq.text.quantities import read_threshold
+
+COUNTED = ("failed", "undefined", "censored", "never")
 
 
-def from_the_rows(verb: "Verb", number_origin: Origin, options: Options, path: Path) -> Any:
-    """Return the number at a path, computed from the rows of its origin alone."""
-    return value_at(verb.json_of(number_origin.rows, options, path), path)
+def _named(path: Path, *within: str) -> str:
+    """Return the output, element or target that a path names in some parts of JSON, or ""."""
+    return path[1] if path[1:] and path[0] in within else ""
+
+
+def _summary(result: Result, options: Options, path: Path) -> Fact:
+    """Return a summary; of the output alone that a path names, with fits if it asks for them."""
+    if path[:1] == (BOUNDARY,):
+        return boundary_facts(result, boundary(result))
+    names = result.output_names
+    output = _named(path, "outputs", "categories").partition("[")[0]
+    if path and path[0] not in ("outputs", "categories"):
+        output = next(iter(names))  # counts and regimes need no output
+    analysis = result.analysis_of(output if output in names else None)
+    regime, fits = options.get("regime"), "fits" in path
+    return summary_facts(summarise(result, analysis, regime=regime, fits=fits), of_reports=True)
+
+
+def _inside(path: Path) -> str:
+    """Return the output or element that a path names, alone or inside of a target, or ""."""
+    name = _named(path, "outputs", "quantities")
+    return split_name(name)[1] if name else ""
+
+
+def _inputs(result: Result, options: Options, path: Path) -> Fact:
+    return replace(inputs_facts(result, *path[:1]), rows=result.independent)
+
+
+def _sensitivity(result: Result, options: Options, path: Path) -> Fact:
+    name, regime = _named(path, "outputs"), options.get("regime")
+    names = [name] if name else None
+    return sensitivity_facts(sensitivities(result, options.get("method"), names, regime))
+
+
+def _levels(result: Result, options: Options, path: Path) -> Fact:
+    name = output_in(_inside(path))
+    return replace(levels_facts(by_level(result, name or None)), rows=result.independent)
+
+
+def _fleet(result: Result, options: Options, path: Path) -> Fact:
+    try:
+        size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
+    except ValueError:
+        raise InputError(
+            "a key of a fleet begins with fleet[size=N], or with by=T, allow=K, output=LIFE as well"
+        ) from None
+    output, by = options.get("output"), list[float]()
+    if "by" in options:
+        units = the_life(result.independent, output).declared.unit
+        by = [read_threshold("by", options["by"], "a life", units)]
+    return replace(fleet_facts(fleet_of(result, size, by, allow, output)), rows=result.independent)
+
+
+def _update(result: Result, options: Options, path: Path) -> Fact:
+    times = read_times("by", [options["by"]] if "by" in options else [], result)
+    return replace(learnt_facts(learnt(result, times)), rows=result.independent)
+
+
+def _convergence(result: Result, options: Options, path: Path) -> Fact:
+    """Return running estimates; only the errors if the path names one: every design has them."""
+    name = _inside(path) or None
+    if path[2:] and path[2] != "estimates":
+        errors = enough(result, name).to_dict("index")
+        facts = Fact({"outputs": {name: errors_facts(line) for name, line in errors.items()}})
+    else:
+        facts = convergence_facts(converging(result, name))
+    return replace(facts, rows=result.independent)
+
+
+def _convergence_again(rows: Result, options: Options, path: Path) -> Any:
+    """Return what stands at a path: of running estimates the last one of the rows."""
+    if path[2] != "estimates":
+        return _convergence(rows, options, path).at(*path).json
+    lines = estimates_from(rows, [path[1]])
+    line = next(line for line in lines if (line.output, line.label) == (path[1], path[3]))
+    return running_fact(int(rows.dataset["group"].max()) + 1, line).at(*path[5:]).json
+
+
+def _twin(result: Result, options: Options, path: Path) -> Fact:
+    return replace(twin_facts(with_twin(result, options.get("model"))), rows=result.independent)
+
+
+def _what_if(result: Result, options: Options, path: Path) -> Fact:
+    changes = read_changes([f"{name}={value}" for name, value in options.items()])
+    return what_if_facts(answer_what_if(result, changes))
+
+
+def states_of_element(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
+    """Return how many rows of the element of a path have a value, failed, are censored and so on.
+
+    Of the element that all facts are about, if the path names none; empty without any.
+    """
+    name = _inside(path) or facts.members.get("output", "")
+    if not name or output_in(name) != name:  # of a category
+        return {}
+    (element,) = rows.named_elements(name)
+    counts = {name: int(getattr(element, name).sum()) for name in COUNTED}
+    nonzero = {name: count for name, count in counts.items() if count}
+    return {"with a value": int(element.present.sum())} | nonzero
+
+
+def _states_of_groups(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
+    """Return how many groups of rows have a value in each row, and how many are dropped."""
+    if path[0] != "outputs":
+        return {}
+    (target,) = chosen(rows, facts.members["method"], [path[1]])
+    sample = replace(sample_of(rows), values=target.values)
+    states = {"in groups with a value in each row": len(np.unique(sample.groups[sample.whole]))}
+    dropped = len(np.unique(sample.groups[~sample.whole]))
+    return states | ({"in groups that lack one, dropped": dropped} if dropped else {})
+
+
+def _no_states(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
+    return {}
 
 
 class Verb(NamedTuple):
@@ -30,32 +156,33 @@ class Verb(NamedTuple):
 
     Attributes
     ----------
-    json_of : callable
-        Result, options, path -> its JSON, as far as the path needs it.
-    origin : callable
-        Result, options, path of a number, and the JSON it is in -> `Origin`.
+    facts : callable
+        Result, options, path -> its facts, as far as the path needs them.
     options : tuple of str
         Options of the command that change its numbers; names that end with a dot are prefixes.
-    again : callable
-        Verb, origin, options, path -> the entry at the path, from the rows of the origin.
+    states : callable
+        Rows, facts, path -> how many of the rows behind a number have a value, failed and so on.
+    again : callable, optional
+        Rows, options, path -> the JSON at the path from these rows, where it does not stand at the
+        same path of their facts.
     """
 
-    json_of: Callable[[Result, Options, Path], dict[str, Any]]
-    origin: Callable[[Result, Options, Path, Json], Origin]
+    facts: Callable[[Result, Options, Path], Fact]
     options: tuple[str, ...] = ()
-    again: Callable[["Verb", Origin, Options, Path], Any] = from_the_rows
+    states: Callable[[Result, Fact, Path], dict[str, int]] = states_of_element
+    again: Callable[[Result, Options, Path], Any] | None = None
 
 
 VERBS: dict[str, Verb] = {
-    SUMMARY: Verb(summary.json_of, summary.origin, ("regime",)),
-    "answer": Verb(answer.json_of, answer.origin),
-    "inputs": Verb(inputs.json_of, inputs.origin),
-    "sensitivity": Verb(indices.json_of, indices.origin, ("method", "regime")),
-    "levels": Verb(levels.json_of, levels.origin),
-    "fleet": Verb(fleet.json_of, fleet.origin, ("size", "by", "allow", "output")),
-    "update": Verb(learning.json_of, learning.origin, ("by",)),
-    "convergence": Verb(convergence.json_of, convergence.origin, (), convergence.again),
-    "twin": Verb(two_fidelities.json_of, two_fidelities.origin),
-    "what-if": Verb(what_if.json_of, what_if.origin, ("uncertain.", "dependence.")),
+    SUMMARY: Verb(_summary, ("regime",)),
+    "answer": Verb(answer.facts),
+    "inputs": Verb(_inputs, (), _no_states),
+    "sensitivity": Verb(_sensitivity, ("method", "regime"), _states_of_groups),
+    "levels": Verb(_levels),
+    "fleet": Verb(_fleet, ("size", "by", "allow", "output")),
+    "update": Verb(_update, ("by",), _no_states),
+    "convergence": Verb(_convergence, (), _no_states, _convergence_again),
+    "twin": Verb(_twin),
+    "what-if": Verb(_what_if, ("uncertain.", "dependence.")),
 }
 """By name; the answer is a part of the summary, and a report shows the inputs."""

@@ -11,7 +11,7 @@ from explored import cells
 
 import uq as api
 from uq.assess.findings import Findings
-from uq.assess.what_if import answer, read_changes, what_if_json
+from uq.assess.what_if import answer, read_changes, what_if_facts
 from uq.contract import Status
 from uq.errors import RunError
 from uq.render.html.embedded_rows import rows_inside
@@ -95,7 +95,7 @@ def test_a_slider_shows_what_python_finds(shown, case):
         move(browser, name, track, place)
         changes, reweighted = asked_of_python(browser, ds)
         assert changes
-        outputs = what_if_json(reweighted)["outputs"]
+        outputs = what_if_facts(reweighted).json["outputs"]
         displayed = cells(browser, "#tolerances")
         for output, at, side in (("life", "0.8", "below"), ("y", "0.5", "above")):
             estimate = outputs[output]["thresholds"][at][side]
@@ -132,7 +132,7 @@ def test_several_changes_are_counted_by_the_product_of_their_weights(shown, desi
     displayed = cells(browser, "#tolerances")
     rows = Result(ds).independent.dataset
     hits = {"life/0.8": rows["life"].values < 0.8, "y/0.5": rows["y"].values > 0.5}
-    outputs = what_if_json(asked_of_python(browser, ds)[1])["outputs"]
+    outputs = what_if_facts(asked_of_python(browser, ds)[1]).json["outputs"]
     for key, side in (("life/0.8", "below"), ("y/0.5", "above")):
         (share, *ends), (studied, *_) = displayed[key]
         assert share == pytest.approx(np.average(hits[key], weights=weights), rel=1e-12)
@@ -230,7 +230,7 @@ def test_the_page_says_what_could_then_be_promised(shown):
     assert promised(browser) == now.sentence
     move(browser, "z", "width", 2)
     _, reweighted = asked_of_python(browser, ds)
-    low = what_if_json(reweighted)["outputs"]["life"]["quantiles"]["0.05"]["low"]
+    low = what_if_facts(reweighted).json["outputs"]["life"]["quantiles"]["0.05"]["low"]
     text = promised(browser)
     assert text.startswith("The lower end of the interval of the 5 % quantile would then be")
     displayed = float(text.split("would then be ")[1].split()[0])
@@ -248,7 +248,7 @@ def test_failed_rows_lie_beyond_what_could_then_be_promised(shown, case):
     browser = shown(ds)
     move(browser, name, "width", 2)
     _, reweighted = asked_of_python(browser, ds)
-    quantile = what_if_json(reweighted)["outputs"]["life"]["quantiles"]["0.05"]
+    quantile = what_if_facts(reweighted).json["outputs"]["life"]["quantiles"]["0.05"]
     assert quantile["failed_low"] < quantile["low"]
     displayed = float(promised(browser).split("would then be ")[1].split()[0])
     assert displayed <= quantile["failed_low"] < displayed * 1.01

@@ -55,7 +55,7 @@ def slow(*case):
 def check(ds, verb, options=None, every=1):
     """Trace the numbers of a verb, all of them or one of so many."""
     options = options or {}
-    whole = VERBS[verb].json_of(Result(ds), options, ())
+    whole = VERBS[verb].facts(Result(ds), options, ()).json
     paths = list(paths_of_numbers(whole))[::every]
     assert paths
     for path in paths:

@@ -9,7 +9,6 @@ from uq.assess.answer.tolerance_bound import Range
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.assess.statistic import Reader
-from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import REGIME
 from uq.indices.methods import METHODS
 from uq.render.html.answer import fragment
@@ -179,15 +178,12 @@ def _interval(findings: Findings, quantity: Quantity, likely: Range) -> tuple[Ce
 
 def _estimators(findings: Findings) -> list[HtmlTable]:
     """Return what computes the statistics of the tables, and whom each of these cites."""
-    shown = (
-        (name, statistic)
-        for described in findings.summary.outputs.values()
-        for name, several in described.parts.items()
-        for statistic in several
-        if statistic.is_read_by(Reader.REPORT)
-    )
     functions = dict.fromkeys(
-        function for name, statistic in shown for function in statistic.by or (STATISTICS[name],)
+        function
+        for described in findings.summary.outputs.values()
+        for statistic in described.statistics
+        if statistic.is_read_by(Reader.REPORT)
+        for function in statistic.by
     )
     rows = [
         (
