@@ -95,8 +95,8 @@ def _described(described: Described, of_reports: bool) -> Fact:
     for name in dict.fromkeys((*JSON_ORDER, *described.parts)):
         statistics = [s for s in described.parts[name] if of_reports or s.is_read_by(Reader.JSON)]
         if name in EMPTY:
-            empty = Fact(None, (STATISTICS[name],)) if EMPTY[name] is None else {}
-            members[name] = {} if statistics else empty
+            missing = not statistics and EMPTY[name] is None
+            members[name] = Fact(None, (STATISTICS[name],)) if missing else {}
         for (parent, form), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.form)):
             _put(members, parent, _FORMS[form](list(group)))
     fits = {law: _fit(fit) for law, fit in described.fits.items()}

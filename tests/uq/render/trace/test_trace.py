@@ -133,6 +133,14 @@ def test_weighted_rows_are_traced_to_estimators_of_weighted_rows(make, path, est
     assert not {function.code for function in others} & {*plain}
 
 
+def test_the_quality_of_weights_is_traced_to_its_estimators():
+    ds = Result(update(wear(150), measured(5e5)))
+    for key in ("levels/", "update/", "fleet[size=1]/", ""):
+        for name, function in (("effective_rows", "effective_rows"), ("pareto_k", "tail_shape")):
+            estimators = traced(ds, f"{key}{name}").estimators
+            assert estimators[-1].code == f"uq.stats.importance_weights.{function}"
+
+
 def test_numbers_of_a_design_without_statistics_are_traced():
     check(linear("morris", 8), "summary")
     traced_number = traced(Result(linear("morris", 8)), "outputs/y/mean")
