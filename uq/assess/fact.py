@@ -31,23 +31,29 @@ class Fact:
         Name of a member -> the functions that compute it, where they differ.
     rows : Result, optional
         The rows that suffice to compute its numbers again; by default those of its parent.
+    words : str
+        Its numbers in words, where no member holds them.
     mentions : tuple of tuple of str
         Paths from here to the numbers in the sentence; by default the fact itself.
     notes : tuple of str
-        Sentences on how it was computed.
+        Sentences on how its functions compute it.
+    more : dict
+        Further members, which the JSON omits.
     """
 
     members: Mapping[str, Any]
     by: Functions = ()
     by_member: Mapping[str, Functions] = field(default_factory=dict)
     rows: Result | None = None
+    words: str = ""
     mentions: tuple[Path, ...] = ((),)
     notes: tuple[str, ...] = ()
+    more: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def sentence(self) -> str:
         """Its numbers in words; "" where it has none."""
-        return str(self.members.get("sentence") or self.members.get("text") or "")
+        return str(self.members.get("sentence") or self.members.get("text") or self.words)
 
     @property
     def json(self) -> dict[str, Any]:
@@ -62,18 +68,18 @@ class Fact:
         KeyError
             When the path leads nowhere.
         """
-        fact, place = self, Place(self, self.by, self.rows, self.notes)
-        for depth, name in enumerate(path):
-            member = _member(fact.members, name)
-            by = fact.by_member.get(name, place.by)
-            if isinstance(member, Fact):
-                fact = member
-                notes = place.notes + fact.notes
-                place = Place(fact, fact.by or by, fact.rows or place.rows, notes)
-                continue
-            for inner in path[depth + 1 :]:  # inside of plain data
-                member = _member(member, inner)
-            return Place(member, by, place.rows, place.notes)
+        place = Place(self, self.by, self.rows, self.notes)
+        for name in path:
+            content, by = place.content, place.by
+            if isinstance(content, Fact):
+                by = content.by_member.get(name, by)
+                content = content.members if name in content.members else content.more
+            place = place._replace(content=_member(content, name), by=by)
+            if isinstance(fact := place.content, Fact):
+                # Functions of its own have notes of their own.
+                notes = fact.notes if fact.by else place.notes + fact.notes
+                rows = place.rows if fact.rows is None else fact.rows
+                place = Place(fact, fact.by or by, rows, notes)
         return place
 
     def walk(self, path: Path = ()) -> Iterator[tuple[Path, "Fact"]]:
@@ -82,6 +88,9 @@ class Fact:
         for name, member in self.members.items():
             if isinstance(member, Fact):
                 yield from member.walk((*path, name))
+            for i, element in enumerate(member if isinstance(member, list) else ()):
+                if isinstance(element, Fact):
+                    yield from element.walk((*path, name, str(i)))
 
 
 class Place(NamedTuple):

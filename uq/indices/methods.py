@@ -4,6 +4,7 @@ To add one: a file with the function that estimates, and an entry here. Study fi
 where a design feeds it; tables, JSON, figures, reports and documentation show what it gives.
 """
 
+from collections.abc import Mapping
 from functools import partial
 
 from uq.indices.fast import fast_indices
@@ -16,11 +17,13 @@ from uq.indices.measures import delta, first_order, ks_distances, pawn
 from uq.indices.method import SensitivityMethod
 from uq.indices.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
 from uq.indices.quantile_oriented import quantile_indices, without_optimism
+from uq.indices.sample import DesignSample
 from uq.indices.shapley import MIN_PATHS, shapley_indices
 from uq.indices.sobol import MIN_GROUPS, pilot, sobol_indices
 from uq.sampling.design import Design
 from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
+from uq.stats.estimate import Estimate
 
 DELTA = IndexKind("delta", "Borgonovo's delta")
 PAWN = IndexKind("pawn", "PAWN, median")
@@ -160,6 +163,21 @@ METHODS = {
     ),
 }
 """In the order in which they are listed; the first of those that a design feeds is its default."""
+
+
+def indices_of(method: str, kind: str, sample: DesignSample) -> Mapping[str, Estimate]:
+    """Estimate the indices of one kind: input -> index.
+
+    Parameters
+    ----------
+    method : str
+    kind : str
+        Its key.
+    sample : DesignSample
+        Its rows laid out as the method needs them.
+    """
+    by_kind = METHODS[method].indices(sample).values.items()
+    return next(indices for index_kind, indices in by_kind if index_kind.key == kind)
 
 
 def fed_by(design: Design, dependent: bool = False) -> tuple[str, ...]:

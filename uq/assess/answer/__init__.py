@@ -26,7 +26,6 @@ Reading order; each part imports only those above it:
     sufficiency         sufficiency of the rows for the subject of a study
     facts               the answer as a whole: its parts in the order in which they are read
     advice              advice by rules: mend, add rows, measure, tighten, or nothing
-    answer_json         the answer as the command line prints it with ``--json``
     answer              the answer of a study, computed once from what is known of its result
     verdict             verdict on the number of rows, in sentences
 """

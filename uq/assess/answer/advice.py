@@ -54,7 +54,8 @@ def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
         advice = [entry for entry in advice if entry.rule != "known"]  # `settled` states it
         nothing = "Nothing else" if advice else "Nothing"
         noisy = any(
-            quantity.own_error is not None and quantity.own_error.share >= 1
+            (error := quantity.own_error) is not None
+            and (error.members["share_of_variance"] or 0.0) >= 1
             for quantity in answered
         )
         settled = f"what the study {'is about' if enough.besides or noisy else 'asks'} is settled"
@@ -80,11 +81,7 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     lost, rows = int(result.failed.sum()), len(result)
     most = result.analysis.max_failed
     why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
-    why += [
-        shortfall.clause
-        for shortfall in bounds_unsettled(findings, answered)
-        if isinf(shortfall.factor)
-    ]
+    why += [clause for clause, factor in bounds_unsettled(findings, answered) if isinf(factor)]
     if why:
         yield Advice(
             "failed",
@@ -199,20 +196,16 @@ def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
     if enough.unknown:
         wanted = "know what can be promised" if result.why_no_statistics else "have intervals"
         yield Advice("rows", f"To {wanted}: {enough.unknown}.")
-    shortfalls = [shortfall for shortfall in enough.question if isfinite(shortfall.factor)]
+    shortfalls = [shortfall for shortfall in enough.question if isfinite(shortfall[1])]
     if not shortfalls or not rows or enough.errors is not None:
         return
-    worst, less = (
-        shortfalls[0],
-        [shortfall for shortfall in enough.every if shortfall is not shortfalls[0]],
-    )
-    more = ""
-    if less:
-        are, them = ("is", "it") if len(less) == 1 else ("are", "them")
+    (clause, factor), others, more = shortfalls[0], len(enough.every) - 1, ""
+    if others:
+        are, them = ("is", "it") if others == 1 else ("are", "them")
         listed = f"'uq convergence {result.file}' lists {them}"
-        more = f"; {len(less)} more {are} not settled ({listed})"
+        more = f"; {others} more {are} not settled ({listed})"
     yield Advice(
         "rows",
-        f"Compute {needed(worst, result)} instead of {grouped(rows)}: {worst.clause}{more}.",
-        rows=ceil(min(worst.factor, MOST) * rows),
+        f"Compute {needed(factor, result)} instead of {grouped(rows)}: {clause}{more}.",
+        rows=ceil(min(factor, MOST) * rows),
     )
