@@ -5,7 +5,7 @@ terminal and HTML the sentences with their keys, ``uq trace`` functions and rows
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from uq.result.result import Result
@@ -23,14 +23,16 @@ class Fact:
     Attributes
     ----------
     members : dict
-        Name -> number, words, list of these, or `Fact`, in the order of the JSON. A member called
-        ``sentence`` (``text`` of advice) says in words what the numbers are.
+        Name -> number, words, `Fact`, list or dict of these, in the order of the JSON. A member
+        called ``sentence`` (``text`` of advice) says in words what the numbers are. A number alone
+        stands for itself.
     by : tuple of callable
         The functions that compute its numbers, and those of its facts without functions.
     by_member : dict of str to tuple of callable
         Name of a member -> the functions that compute it, where they differ.
     rows : Result, optional
-        The rows that suffice to compute its numbers again; by default those of its parent.
+        The rows that suffice to compute its numbers again; by default those of its parent, of the
+        whole tree all rows.
     words : str
         Its numbers in words, where no member holds them.
     mentions : tuple of tuple of str
@@ -41,7 +43,7 @@ class Fact:
         Further members, which the JSON omits.
     """
 
-    members: Mapping[str, Any]
+    members: Any
     by: Functions = ()
     by_member: Mapping[str, Functions] = field(default_factory=dict)
     rows: Result | None = None
@@ -53,12 +55,17 @@ class Fact:
     @property
     def sentence(self) -> str:
         """Its numbers in words; "" where it has none."""
-        return str(self.members.get("sentence") or self.members.get("text") or self.words)
+        members = self.members if isinstance(self.members, Mapping) else {}
+        return str(members.get("sentence") or members.get("text") or self.words)
 
     @property
-    def json(self) -> dict[str, Any]:
+    def json(self) -> Any:
         """The numbers and sentences of it and its facts in plain data."""
-        return {name: _plain(member) for name, member in self.members.items()}
+        return _plain(self.members)
+
+    def each(self, change: Callable[["Fact"], "Fact"]) -> "Fact":
+        """Return the tree with a change of it and of every fact in it."""
+        return change(replace(self, members=_mapped(self.members, lambda fact: fact.each(change))))
 
     def at(self, *path: str) -> "Place":
         """Return what stands at a path, with its functions and rows.
@@ -73,7 +80,7 @@ class Fact:
             content, by = place.content, place.by
             if isinstance(content, Fact):
                 by = content.by_member.get(name, by)
-                content = content.members if name in content.members else content.more
+                content = content.more if name in content.more else content.members
             place = place._replace(content=_member(content, name), by=by)
             if isinstance(fact := place.content, Fact):
                 # Functions of its own have notes of their own.
@@ -85,12 +92,7 @@ class Fact:
     def walk(self, path: Path = ()) -> Iterator[tuple[Path, "Fact"]]:
         """Yield every fact of the tree with its path, parents first."""
         yield path, self
-        for name, member in self.members.items():
-            if isinstance(member, Fact):
-                yield from member.walk((*path, name))
-            for i, element in enumerate(member if isinstance(member, list) else ()):
-                if isinstance(element, Fact):
-                    yield from element.walk((*path, name, str(i)))
+        yield from _walk(self.members, path)
 
 
 class Place(NamedTuple):
@@ -112,13 +114,33 @@ class Place(NamedTuple):
     rows: Result | None
     notes: tuple[str, ...]
 
+    @property
+    def json(self) -> Any:
+        """The content in plain data."""
+        return _plain(self.content)
+
 
 def _plain(member: Any) -> Any:
+    return _mapped(member, lambda fact: fact.json)
+
+
+def _mapped(member: Any, change: Callable[[Fact], Any]) -> Any:
+    """Return plain data with a change of the facts in it."""
     if isinstance(member, Fact):
-        return member.json
+        return change(member)
+    if isinstance(member, Mapping):
+        return {name: _mapped(element, change) for name, element in member.items()}
     if isinstance(member, list):
-        return [_plain(element) for element in member]
+        return [_mapped(element, change) for element in member]
     return member
+
+
+def _walk(member: Any, path: Path) -> Iterator[tuple[Path, Fact]]:
+    """Yield the facts in plain data."""
+    numbered = enumerate(member) if isinstance(member, list) else ()
+    for name, element in member.items() if isinstance(member, Mapping) else numbered:
+        place = (*path, str(name))
+        yield from element.walk(place) if isinstance(element, Fact) else _walk(element, place)
 
 
 def _member(members: Any, name: str) -> Any:

@@ -236,7 +236,8 @@ class Ranking:
         if not isnan(self.unexplained.value):
             members["unexplained"] = estimate_json.numbers(self.unexplained)
             members["totals"] = dict(self.totals)
-        leader, mentions = self.leader, [("rows_factor",)]
+        mentions: list[tuple[str, ...]] = [("rows_factor",)]
+        leader = self.leader
         if leader is not None:
             mentions = [("contributions", "0", "inputs", name) for name in leader.inputs]
             mentions += [("unexplained",)] * bool(self.beyond_single)

@@ -327,9 +327,9 @@ class Range:
             members[name] = estimate_json.number(estimate.value)
             members |= estimate_json.flag(f"{name}_", estimate, "value")
         if not isnan(self.never.value):
-            never = {"never": self.never.value}
-            never |= {f"never_{end}": at for end, at in estimate_json.ends(self.never).items()}
-            members |= never
+            members["never"] = self.never.value
+            for end, at in estimate_json.ends(self.never).items():
+                members[f"never_{end}"] = at
         by_member = {
             member: self.by[name]
             for name in self.by
