@@ -10,7 +10,8 @@ from uq.assess.answer.parts import Quantity
 from uq.assess.answer.remedies import Advice
 from uq.assess.answer.wording import called, sentence, share_text
 from uq.errors import choices
-from uq.render.html import bars, folded
+from uq.render.html import bars
+from uq.render.html.folded import below, folded, items
 from uq.render.html.keyed_sentences import joined, keyed, shown, with_keys
 from uq.text.literals import plain
 from uq.text.numbers import capitalized
@@ -116,7 +117,7 @@ def sayings(answer: Answer, quantities: Sequence[Quantity]) -> Markup:
 def regimes(answer: Answer) -> Markup:
     """Return the shares of the regimes, and what decides them."""
     events = [_event(answer, "regimes", regime.predicate) for regime in answer.regimes]
-    return folded.items(events)
+    return items(events)
 
 
 def _place(quantity: Quantity) -> tuple[str, str]:
@@ -168,11 +169,11 @@ def _verdict(answer: Answer) -> Markup:
     if lead is not None and not answer.regimes_first:  # the same number stands with the quantity
         again = keyed(facts, *_place(lead), "another_seed", text=answer.enough.sentence)
     levels = joined(keyed(facts, "levels"), keyed(facts, "levels", "another_regime"))
-    unsettled = folded.items(answer.enough.others)
+    unsettled = items(answer.enough.others)
     sentences = [
         _line(levels),
         _small(again),
-        folded.folded("What is not settled besides", unsettled),
+        folded("What is not settled besides", unsettled),
     ]
     causes = [
         keyed(facts, "regimes", regime.predicate, text=regime.named_cause)
@@ -184,9 +185,9 @@ def _verdict(answer: Answer) -> Markup:
         parts = [_large(shares), _line(mixing), *sentences, *map(_line, causes), *parts]
     else:
         parts += [*sentences, _line(shares)]
-        decided = folded.items([*causes, answer.starts_alike])
-        parts.append(folded.folded("What decides the regime", decided))
-    parts.append(folded.folded("What it assumes", folded.items(answer.assumptions)))
+        decided = items([*causes, answer.starts_alike])
+        parts.append(folded("What decides the regime", decided))
+    parts.append(folded("What it assumes", items(answer.assumptions)))
     if answer.failed or lead is None:
         parts.insert(0, _line(keyed(facts)))
     return _block("verdict", parts)
@@ -288,11 +289,10 @@ def _bar(answer: Answer, lead: Quantity, number: int, level: Contribution) -> Ma
 def _to_do(answer: Answer) -> Markup:
     if not answer.advice:
         return Markup()
-    items = [
-        Markup("{}{}").format(_advice(answer, advice), folded.below(advice))
-        for advice in answer.advice
-    ]
-    return _block("todo", [Markup("<h3>What to do</h3>"), folded.items(items)])
+    entries = (
+        Markup("{}{}").format(_advice(answer, advice), below(advice)) for advice in answer.advice
+    )
+    return _block("todo", [Markup("<h3>What to do</h3>"), items(entries)])
 
 
 def _advice(answer: Answer, advice: Advice) -> Markup:
