@@ -177,15 +177,16 @@ class Checker:
 
     def repeated(self, quantity):
         """Compare the scatter among seeds with that of the rows drawn again, with replacement."""
-        prediction = quantity.repeated
-        if not prediction.subject:
+        prediction, is_share = quantity.repeated, quantity.first is not None
+        if "expected" not in prediction.members:
             return
-        if prediction.is_share:
+        shown = numbers_in(prediction.sentence.removeprefix("With another seed, "))
+        if is_share:
             numbers, per = np.nan_to_num(self.hits(quantity, quantity.first)).astype(float), 100
             estimate = np.mean
         else:
-            numbers, per = self.values(quantity), 1 / prediction.unit.per
-            p = numbers_in(prediction.subject)[0] / 100
+            numbers, per = self.values(quantity), 1 / quantity.promise.unit.per
+            p = shown.pop(0) / 100
             if round(p, 6) not in (0.05, 0.95):
                 yield prediction.sentence
                 return
@@ -196,9 +197,6 @@ class Checker:
         drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
         again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]
         wide = 2 * 1.96 * 2**0.5 * np.std(again) * per
-        shown = numbers_in(
-            prediction.sentence.split(prediction.subject)[0 if prediction.is_share else 1]
-        )
         if "would again be" in prediction.sentence:
             if wide > 0.02 * abs(shown[0]):
                 yield f"{prediction.sentence} {wide}"
@@ -221,7 +219,7 @@ class Checker:
         for each in quantity.ranking.contributions:
             values = [fresh[kind][name].value for name in each.inputs]
             per = 100 if each.share_of_variance else 1
-            shown = [numbers_in(text)[0] for text in map(each._size, each.indices)]
+            shown = [numbers_in(text)[0] for text in map(each.size_of, each.indices)]
             if not np.allclose(shown, np.multiply(values, per), atol=0.6 * per / 100, rtol=0.01):
                 yield f"{each.words}: {each.size}"
             seen = 0.001 if each.share_of_variance else 0.0  # shares are shown in whole per cent

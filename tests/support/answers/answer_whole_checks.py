@@ -51,11 +51,10 @@ def denied_enough(ds, conclusions):
     sufficiency, lead = conclusions.enough, conclusions.lead
     if conclusions.regimes_first:
         low, high = found_again(conclusions.regimes[0].share, False)
-        if sufficiency.again.subject and not np.allclose(
-            (sufficiency.again.low, sufficiency.again.high), (low, high)
-        ):
+        expected = sufficiency.again.members.get("expected")
+        if expected and not np.allclose((expected["low"], expected["high"]), (low, high)):
             yield sufficiency.sentence
-    elif lead is not None and sufficiency.again != lead.repeated:
+    elif lead is not None and sufficiency.again.members != lead.repeated.members:
         yield sufficiency.sentence
     if sufficiency.errors is not None:
         errors = uq.enough(ds, lead.name).loc[lead.name]

@@ -10,7 +10,7 @@ from uq.assess.answer.answer import answer
 
 DAY = 86400.0
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
-_IN_TEXT = re.compile(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?")
+IN_TEXT = re.compile(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?")
 
 
 def numbers(pattern, text):
@@ -21,7 +21,7 @@ def numbers(pattern, text):
 
 def numbers_in(text):
     """Return the numbers of a sentence, without those of names such as x1."""
-    return [float(number.rstrip(".")) for number in _IN_TEXT.findall(text)]
+    return [float(number.rstrip(".")) for number in IN_TEXT.findall(text)]
 
 
 @cache

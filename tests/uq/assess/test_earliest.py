@@ -7,7 +7,6 @@ import pytest
 from computed import asking, kinds, linear, with_output
 
 from uq.assess.answer.answer import answer, conclude
-from uq.assess.answer.answer_json import answer_json
 from uq.assess.earliest import earliest_rows, ranks
 from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
@@ -178,7 +177,7 @@ def test_page_terminal_and_json_say_the_same():
     html = str(fragment(conclusions))
     assert "What ends first" in html and lead_rows.command in html
     assert lead_rows.sentence in repr(conclusions) and lead_rows.first in repr(conclusions)
-    plain = answer_json(conclude(Findings(Result(ds))))["quantities"]["life"]["earliest"]
+    plain = conclude(Findings(Result(ds))).fact.json["quantities"]["life"]["earliest"]
     assert (
         plain["lives"] == dict(zip(map(str, lead_rows.rows), lead_rows.lives, strict=True))
         and plain["sentence"] == lead_rows.sentence

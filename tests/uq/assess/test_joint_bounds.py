@@ -9,7 +9,6 @@ from scipy import stats
 
 import uq
 from uq.assess.answer.answer import conclude
-from uq.assess.answer.answer_json import answer_json
 from uq.assess.answer.quantities import quantities
 from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
@@ -173,9 +172,7 @@ def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     assert " and stay below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
     assert not promises["life[side=left,depth=0.5]"].joint
-    promise = answer_json(conclude(Findings(Result(ds))))["quantities"]["work[side=left]"][
-        "promise"
-    ]
+    promise = conclude(Findings(Result(ds))).fact.json["quantities"]["work[side=left]"]["promise"]
     assert promise["joint"] == ["work", "angle"] and promise["upper"] == work.upper
 
 

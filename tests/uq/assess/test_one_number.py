@@ -8,7 +8,6 @@ from answered import lifetime
 from computed import asking, kinds, summarised
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.answer_json import answer_json
 from uq.assess.sensitivities import sensitivities
 from uq.assess.sensitivity_json import sensitivity_facts
 from uq.render.html.page import page
@@ -24,7 +23,7 @@ def life(monkeypatch):
 
 def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
     table = sensitivity_facts(sensitivities(Result(life))).json["outputs"]["log(life)"]["S1"]
-    ranking = answer_json(answer(life))["quantities"]["life"]["ranking"]
+    ranking = answer(life).fact.json["quantities"]["life"]["ranking"]
     shares = {
         k: v for contribution in ranking["contributions"] for k, v in contribution["inputs"].items()
     }
@@ -39,7 +38,7 @@ def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
 
 
 def test_a_bound_is_the_same_in_table_and_answer(life):
-    promise = answer_json(answer(life))["quantities"]["life"]["promise"]
+    promise = answer(life).fact.json["quantities"]["life"]["promise"]
     assert promise["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
     quantile = summarised(life)["outputs"]["life"]["quantiles"]["0.05"]
     for advice in answer(life).advice:
@@ -53,5 +52,5 @@ def test_the_bound_of_an_angle_is_that_of_its_magnitude_in_the_table_too():
     ds = kinds(samples=400, analysis={"outputs": ["angle"]})
     ds = asking(ds, tolerance={"coverage": 0.95, "confidence": 0.95}, thresholds={"angle": 0.5})
     bounds = summarised(ds)["outputs"]["angle"]["tolerance"]
-    promise = answer_json(answer(ds))["quantities"]["angle"]["promise"]
+    promise = answer(ds).fact.json["quantities"]["angle"]["promise"]
     assert np.isfinite(promise["upper"]) and promise["upper"] == bounds["magnitude"]

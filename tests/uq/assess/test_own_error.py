@@ -7,7 +7,6 @@ from computed import asking, linear, with_output
 
 import uq
 from uq.assess.answer.answer import answer
-from uq.assess.answer.answer_json import answer_json
 
 
 def values_that_err(size, design="monte-carlo", samples=1000, replicates=1, **asked):
@@ -17,15 +16,15 @@ def values_that_err(size, design="monte-carlo", samples=1000, replicates=1, **as
 
 def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error():
     above = answer(values_that_err(0.2, wanted={"y": "above"})).lead
-    assert np.isclose(above.own_error.worse[0], above.promise.lower - 0.2, rtol=1e-12)
-    assert np.isnan(above.own_error.worse[1])
+    assert np.isclose(above.own_error.members["lower"], above.promise.lower - 0.2, rtol=1e-12)
+    assert above.own_error.members["upper"] is None
     assert above.own_error.sentence.startswith(
         "The bound does not allow for the rows' own numerical error: if every value were"
         " overestimated by as much, it would be"
-        f" {above.promise.unit.text(above.own_error.worse[0], -np.inf)}."
+        f" {above.promise.unit.text(above.own_error.members['lower'], -np.inf)}."
     )
     below = answer(values_that_err(-0.2, wanted={"y": "below"})).lead
-    assert np.isclose(below.own_error.worse[1], below.promise.upper + 0.2, rtol=1e-12)
+    assert np.isclose(below.own_error.members["upper"], below.promise.upper + 0.2, rtol=1e-12)
     assert "underestimated" in below.own_error.sentence
     both = answer(values_that_err(0.2)).lead.own_error.sentence
     assert (
@@ -36,8 +35,9 @@ def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error(
 def test_the_error_is_held_against_the_scatter():
     ds = values_that_err(0.5)
     solver_error = answer(ds).lead.own_error
-    assert np.isclose(solver_error.share, 0.25 / np.var(ds["y"].values))
-    assert f"is {100 * solver_error.share:.1f} % of the variance" in solver_error.sentence
+    share = solver_error.members["share_of_variance"]
+    assert np.isclose(share, 0.25 / np.var(ds["y"].values))
+    assert f"is {100 * share:.1f} % of the variance" in solver_error.sentence
     assert "all scatter may be numerical" in answer(values_that_err(2.0)).lead.own_error.sentence
 
 
@@ -65,7 +65,9 @@ def test_without_stated_errors_there_is_nothing_to_say():
 def test_rows_that_are_not_independent_move_their_quantile():
     ds = values_that_err(0.2, "saltelli", 64, 8, wanted={"y": "above"})
     lead = answer(ds).lead
-    assert np.isclose(lead.own_error.worse[0], lead.promise.quantiles[0].value - 0.2, rtol=1e-9)
+    assert np.isclose(
+        lead.own_error.members["lower"], lead.promise.quantiles[0].value - 0.2, rtol=1e-9
+    )
     assert lead.own_error.sentence.startswith("The quantile does not allow for")
 
 
@@ -79,8 +81,10 @@ def a_life_that_errs(relative):
 def test_errors_of_lives_are_relative_and_a_missed_accuracy_is_said():
     ds = a_life_that_errs(0.1)
     lead = answer(ds).lead
-    assert np.isclose(lead.own_error.worse[0], 0.9 * lead.promise.lower)
-    assert np.isclose(lead.own_error.share, 0.01 / np.var(np.log(ds["life"].values)))
+    assert np.isclose(lead.own_error.members["lower"], 0.9 * lead.promise.lower)
+    assert np.isclose(
+        lead.own_error.members["share_of_variance"], 0.01 / np.var(np.log(ds["life"].values))
+    )
     assert "if every life were overestimated by as much" in lead.own_error.sentence
     assert lead.own_error.sentence.endswith("100 % of the rows miss the accuracy asked for, 5 %.")
     assert "miss" not in answer(a_life_that_errs(0.04)).lead.own_error.sentence
@@ -93,14 +97,15 @@ def test_lives_without_an_end_and_rows_that_state_no_error_stay_as_they_are():
     error[first[:50]], life[first[50:]] = np.nan, np.inf
     error[first[50:]] = np.nan
     ds = ds.assign(life=ds["life"].copy(data=life), life_error=ds["life_error"].copy(data=error))
-    solver_error = answer(ds).lead.own_error
-    assert solver_error.unstated == 50 and "50 rows state no error" in solver_error.sentence
-    assert solver_error.worse[0] == solver_error.bounds[0]
+    lead = answer(ds).lead
+    assert lead.own_error.members["rows_stating_none"] == 50
+    assert "50 rows state no error" in lead.own_error.sentence
+    assert lead.own_error.members["lower"] == lead.promise.lower
 
 
 def test_its_numbers_are_in_the_json_and_are_traced():
     ds = a_life_that_errs(0.1)
-    solver_error = answer_json(answer(ds))["quantities"]["life"]["own_error"]
+    solver_error = answer(ds).fact.json["quantities"]["life"]["own_error"]
     assert solver_error["rows_missing_it"] == 1.0 and solver_error["accuracy"] == 0.05
     for name in ("lower", "share_of_variance", "rows_missing_it", "rows_stating_none"):
         traced = uq.trace(ds, f"answer/quantities/life/own_error/{name}")

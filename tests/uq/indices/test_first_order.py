@@ -8,7 +8,6 @@ from scipy import special
 from scipy.stats import qmc
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.answer_json import answer_json
 from uq.assess.answer.rankings import unexplained
 from uq.assess.sensitivities import methods
 from uq.indices.index import S1, RefusedError
@@ -175,7 +174,7 @@ def test_what_leads_alone_is_called_so_and_what_is_beyond_single_inputs_stated(o
     ranking = conclusions.lead.ranking
     assert ranking.sentence.startswith("x3 alone contributes most: ")
     assert ranking.contributions[0].inputs == ("x3",) and ranking.may_be_overturned
-    ranking_json = answer_json(conclusions)["quantities"]["life"]["ranking"]
+    ranking_json = conclusions.fact.json["quantities"]["life"]["ranking"]
     assert ranking_json["unexplained"]["value"] == pytest.approx(0.91, abs=0.06)
     *_, text = ranking.sentence.split("No single input explains ")
     assert numbers_in(text)[0] == round(100 * ranking_json["unexplained"]["value"])

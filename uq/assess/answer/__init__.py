@@ -15,18 +15,17 @@ Reading order; each part imports only those above it:
     tolerance_bound     tolerance bound that can be promised of an output, and its likely range
     levels              variance components
     promised_bounds     the promised bounds of an output
-    remedies            remedies: effects of a tighter tolerance, and each piece of advice
     repeat_interval     prediction interval
     solver_error        effect of the numerical error of rows on a promise, in words
     rankings            ranking of inputs for a target; indistinguishable inputs are grouped
     parts               events and quantities of an answer, with their sentences
     quantities          quantities of an answer: promises, likely ranges, and probabilities
     sample_size         sample size that settles an answer: intervals narrow as one over root n
+    remedies            remedies: effects of a tighter tolerance, and each piece of advice
     tighter_tolerances  tighter tolerances
     sufficiency         sufficiency of the rows for the subject of a study
-    facts               the answer as a whole: its parts in the order in which they are read
     advice              advice by rules: mend, add rows, measure, tighten, or nothing
-    answer_json         the answer as the command line prints it with ``--json``
+    facts               the answer as a whole: its parts in the order in which they are read
     answer              the answer of a study, computed once from what is known of its result
     verdict             verdict on the number of rows, in sentences
 """

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 from math import ceil, isfinite, isinf, isnan
+from typing import TYPE_CHECKING
 
 from uq.assess.answer.contributions import Contribution
-from uq.assess.answer.facts import Answer
 from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.remedies import Advice
@@ -19,11 +19,14 @@ from uq.sampling.levels import CHANCE
 from uq.text.keys import key_of
 from uq.text.numbers import counted, grouped
 
+if TYPE_CHECKING:
+    from uq.assess.answer.facts import Answer
+
 _AS_SETTLED = ("known", "source", "tighten", "keep", "chance")
 """Rules of advice that is given even if everything is settled."""
 
 
-def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
+def advise(findings: Findings, answer: "Answer") -> Iterator[Advice]:
     """Yield advice, the most urgent first; none where inspections have weighted the rows.
 
     Parameters
@@ -54,7 +57,8 @@ def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
         advice = [entry for entry in advice if entry.rule != "known"]  # `settled` states it
         nothing = "Nothing else" if advice else "Nothing"
         noisy = any(
-            quantity.own_error is not None and quantity.own_error.share >= 1
+            (error := quantity.own_error) is not None
+            and (error.members["share_of_variance"] or 0.0) >= 1
             for quantity in answered
         )
         settled = f"what the study {'is about' if enough.besides or noisy else 'asks'} is settled"
@@ -80,11 +84,7 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     lost, rows = int(result.failed.sum()), len(result)
     most = result.analysis.max_failed
     why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
-    why += [
-        shortfall.clause
-        for shortfall in bounds_unsettled(findings, answered)
-        if isinf(shortfall.factor)
-    ]
+    why += [clause for clause, factor in bounds_unsettled(findings, answered) if isinf(factor)]
     if why:
         yield Advice(
             "failed",
@@ -94,14 +94,14 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
         )
 
 
-def _unknown(answer: Answer) -> Iterator[Advice]:
+def _unknown(answer: "Answer") -> Iterator[Advice]:
     """Yield the advice that no sample size settles an event without an estimate."""
     unknown = [event.sentence for event in answer.asked_events if isnan(event.share.value)]
     for text in [text for text in unknown if text][:1]:
         yield Advice("unknown", f"More rows would not help: {text[:1].lower()}{text[1:]}")
 
 
-def _leading(answer: Answer) -> tuple[Contribution | None, Event | None]:
+def _leading(answer: "Answer") -> tuple[Contribution | None, Event | None]:
     """Return the leading contribution to the subject of the study, and the event that it drives."""
     about = [(event.ranking, event) for event in answer.asked_events]
     lead_ranking = None if answer.lead is None or answer.regimes_first else answer.lead.ranking
@@ -111,7 +111,7 @@ def _leading(answer: Answer) -> tuple[Contribution | None, Event | None]:
     return None, None
 
 
-def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
+def _measure(findings: Findings, answer: "Answer") -> Iterator[Advice]:
     leader, event = _leading(answer)
     if leader is None:
         return
@@ -161,7 +161,7 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
     )
 
 
-def _tighten(findings: Findings, answer: Answer) -> Iterator[Advice]:
+def _tighten(findings: Findings, answer: "Answer") -> Iterator[Advice]:
     leader, _ = _leading(answer)
     if leader is not None and any(
         mark_of(findings.result, name) != CHOSEN for name in leader.inputs
@@ -169,7 +169,7 @@ def _tighten(findings: Findings, answer: Answer) -> Iterator[Advice]:
         yield from tighten(findings.result, answer.quantities[0], leader)
 
 
-def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
+def _keep(result: Result, answer: "Answer") -> Iterator[Advice]:
     """Yield the range to keep the leading input in, if the event differs significantly there."""
     _, event = _leading(answer)
     lead = answer.lead
@@ -199,20 +199,16 @@ def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
     if enough.unknown:
         wanted = "know what can be promised" if result.why_no_statistics else "have intervals"
         yield Advice("rows", f"To {wanted}: {enough.unknown}.")
-    shortfalls = [shortfall for shortfall in enough.question if isfinite(shortfall.factor)]
+    shortfalls = [shortfall for shortfall in enough.question if isfinite(shortfall[1])]
     if not shortfalls or not rows or enough.errors is not None:
         return
-    worst, less = (
-        shortfalls[0],
-        [shortfall for shortfall in enough.every if shortfall is not shortfalls[0]],
-    )
-    more = ""
-    if less:
-        are, them = ("is", "it") if len(less) == 1 else ("are", "them")
+    (clause, factor), others, more = shortfalls[0], len(enough.every) - 1, ""
+    if others:
+        are, them = ("is", "it") if others == 1 else ("are", "them")
         listed = f"'uq convergence {result.file}' lists {them}"
-        more = f"; {len(less)} more {are} not settled ({listed})"
+        more = f"; {others} more {are} not settled ({listed})"
     yield Advice(
         "rows",
-        f"Compute {needed(worst, result)} instead of {grouped(rows)}: {worst.clause}{more}.",
-        rows=ceil(min(worst.factor, MOST) * rows),
+        f"Compute {needed(factor, result)} instead of {grouped(rows)}: {clause}{more}.",
+        rows=ceil(min(factor, MOST) * rows),
     )

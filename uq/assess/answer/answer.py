@@ -10,7 +10,7 @@ from uq.assess.answer.facts import Answer
 from uq.assess.answer.levels import VarianceComponents, levels_of, starts_alike
 from uq.assess.answer.parts import Event
 from uq.assess.answer.quantities import event, only_ranked, quantities
-from uq.assess.answer.regime_mixing import intermingled
+from uq.assess.answer.regime_mixing import mixing
 from uq.assess.answer.sufficiency import enough_of
 from uq.assess.answer.wording import called
 from uq.assess.findings import Findings
@@ -68,6 +68,7 @@ def without_advice(findings: Findings) -> Answer:
         (),
         tuple(findings.summary.notes),
         regimes_first=bool(regimes) and result.analysis.outputs[:1] == (REGIME,),
+        result=result,
         starts_alike=starts_alike(result) if regimes else "",
         assumptions=assumptions(result),
     )
@@ -77,7 +78,7 @@ def without_advice(findings: Findings) -> Answer:
         with_levels,
         enough=enough_of(findings, with_levels.quantities, about),
         ties=ties_of(result, with_levels),
-        mixing=intermingled(findings) if with_levels.regimes_first else with_levels.mixing,
+        mixing=mixing(findings) if with_levels.regimes_first else with_levels.mixing,
     )
 
 

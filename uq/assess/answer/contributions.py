@@ -2,14 +2,25 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from math import isnan
+from typing import Any
 
 from uq.assess.answer.wording import DisplayUnit, called, called_together, joined, sentence
+from uq.assess.effects import effects
+from uq.assess.fact import Fact
+from uq.indices.index import ST
+from uq.indices.methods import indices_of
+from uq.result.result import Result
+from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
-from uq.text.numbers import capitalized
+from uq.text.numbers import capitalized, grouped
 
 SMALL = 0.05
 """A smaller share of the variance does not lead."""
+
+EXPANSION = "hdmr"
+"""The method that finds total indices in a plain sample."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +50,16 @@ class AverageEffect:
     verbs: tuple[str, str] = ("lowers it", "raises it")
     amount: str = ""
 
+    def fact(self, name: str) -> Fact:
+        """Return the change with its sentence, of an input with this name."""
+        members = {
+            "sentence": self.sentence(name),
+            "direction": self.direction,
+            "step": self.step,
+            "unit": self.unit.name if self.step and self.unit.per == 1.0 else "",
+        }
+        return Fact(members | estimate_json.numbers(self.by))
+
     def sentence(self, name: str = "") -> str:
         """Return direction and size in words, of an input with this name."""
         if self.direction == 0:
@@ -52,6 +73,12 @@ class AverageEffect:
         if self.unit.number(low) == self.unit.number(high):  # exact to the digits shown
             return text
         return f"{text} ({self.unit.bare_between(low, high)})"
+
+
+def whole_percent(share: Estimate) -> str:
+    """Return a share of the variance with its interval, in whole per cent, within 0 and 100."""
+    value, low, high = (100 * min(max(end, 0.0), 1.0) for end in share.numbers)
+    return f"{value:.0f} %" + (f" ({low:.0f} to {high:.0f} %)" if share.has_interval else "")
 
 
 @dataclass(frozen=True)
@@ -82,6 +109,22 @@ class Contribution:
     doubtful: tuple[str, ...] = ()
 
     @property
+    def fact(self) -> Fact:
+        """Indices and effects of the inputs."""
+        pairs = zip(self.inputs, self.indices, strict=True)
+        indices = {name: estimate_json.numbers(index) for name, index in pairs}
+        changes = zip(self.inputs, self.changes, strict=False)
+        moved = {name: change.fact(name) for name, change in changes}
+        each = tuple((name,) for name in self.inputs)
+        return Fact(
+            {
+                "inputs": Fact(indices, words=self.size, mentions=each),
+                "effects": Fact(moved, (effects,), words=self.effect, mentions=each),
+            },
+            more={"share_of_variance": self.share_of_variance, "doubtful": list(self.doubtful)},
+        )
+
+    @property
     def words(self) -> str:
         """The inputs by their names."""
         if not self.doubtful:
@@ -101,18 +144,16 @@ class Contribution:
     @property
     def size(self) -> str:
         """The indices with their intervals; shares in per cent, not beyond 0 and 100."""
-        texts = [self._size(index) for index in self.indices]
+        texts = [self.size_of(index) for index in self.indices]
         return " and ".join(texts) if len(texts) < 3 else f"at most {texts[0]} each"
 
-    def _size(self, index: Estimate) -> str:
+    def size_of(self, index: Estimate) -> str:
+        """Return an index with its interval."""
         if self.share_of_variance:
-            value, low, high = (min(max(end, 0.0), 1.0) for end in index.numbers)
-            text = f"{100 * value:.0f} %"
-            ends = f"{100 * low:.0f} to {100 * high:.0f} %"
-        elif self.unit.name:
+            return whole_percent(index)
+        text, ends = f"{index.value:.2f}", f"{index.low:.2f} to {index.high:.2f}"
+        if self.unit.name:
             text, ends = self.unit.text(index.value), self.unit.bare_between(index.low, index.high)
-        else:
-            text, ends = f"{index.value:.2f}", f"{index.low:.2f} to {index.high:.2f}"
         return text + (f" ({ends})" if index.has_interval else "")
 
     @property
@@ -177,6 +218,37 @@ class Ranking:
     totals: Mapping[str, float] = field(default_factory=dict)
     remedy: str = ""
 
+    def fact(self, result: Result | None = None) -> Fact:
+        """Return the ranking with its sentence; `result` is the ranked one."""
+        notes: tuple[str, ...] = ()
+        if result is not None and result.is_nested:
+            used = grouped(len(result.first_rows))
+            notes = (f"the index rests on {used} of these rows, the first of each sample",)
+        members: dict[str, Any] = {
+            "sentence": self.sentence,
+            "target": self.target,
+            "method": self.method,
+            "index": self.kind,
+            "reason": self.reason,
+            "rows_factor": estimate_json.number(self.rows_factor),
+            "contributions": [contribution.fact for contribution in self.contributions],
+        }
+        if not isnan(self.unexplained.value):
+            members["unexplained"] = estimate_json.numbers(self.unexplained)
+            members["totals"] = dict(self.totals)
+        mentions: list[tuple[str, ...]] = [("rows_factor",)]
+        leader = self.leader
+        if leader is not None:
+            mentions = [("contributions", "0", "inputs", name) for name in leader.inputs]
+            mentions += [("unexplained",)] * bool(self.beyond_single)
+        return Fact(
+            members,
+            (partial(indices_of, self.method, self.kind),),
+            {"totals": (partial(indices_of, EXPANSION, ST.key),)},
+            mentions=tuple(mentions),
+            notes=notes,
+        )
+
     @property
     def leader(self) -> Contribution | None:
         """The largest contribution, if settled."""
@@ -236,8 +308,7 @@ class Ranking:
         """Share that no single input explains, if it could change the order; else ""."""
         if not self.may_be_overturned or self.of_event:
             return ""
-        share = Contribution(("",), (self.unexplained,), True).size
-        text = f"No single input explains {share}"
+        text = f"No single input explains {whole_percent(self.unexplained)}"
         if not self.totals:
             return f"{text}: interactions could change the order; {self.remedy}."
         first = [(name, total) for name, total in self.totals.items()][:2]

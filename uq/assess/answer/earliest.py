@@ -21,11 +21,13 @@ from uq.assess.earliest import (
     inputs_apart,
     regimes_of_first,
 )
+from uq.assess.fact import Fact
 from uq.assess.findings import Findings
 from uq.errors import InputError
 from uq.result.elements import Element
 from uq.result.row_choice import lowest_rows
-from uq.stats.intervals import Replicates
+from uq.stats import estimate_json
+from uq.stats.intervals import Replicates, share_interval
 from uq.text.numbers import grouped, percent
 
 _MOST_ROWS = 3
@@ -67,6 +69,46 @@ class Earliest:
     inputs: tuple[Apart, ...] | None = None
     units: tuple[DisplayUnit, ...] = ()
     regimes: tuple[RegimeOfFirst, ...] = ()
+
+    @property
+    def fact(self) -> Fact:
+        """Rows, inputs and regimes with their sentence."""
+        lives = {str(row): life for row, life in zip(self.rows, self.lives, strict=True)}
+        inputs = {
+            difference.name: {
+                "direction": difference.direction,
+                "outwards": difference.outwards,
+                "median": difference.median,
+                "median_of_others": difference.others,
+                "rank": difference.rank.value,
+                "rank_low": estimate_json.number(difference.rank.low),
+                "rank_high": estimate_json.number(difference.rank.high),
+            }
+            for difference in self.inputs or ()
+        }
+        regimes = {
+            regime.label: estimate_json.numbers(regime.share)
+            | {"overall": regime.overall, "is_more_frequent": regime.is_more_frequent}
+            for regime in self.regimes
+        }
+        return Fact(
+            {
+                "sentence": self.sentence,
+                "first": self.first,
+                "command": self.command,
+                "lives": Fact(lives, (lowest_rows,), words=self.first),
+                "size": self.size,
+                "of": self.total,
+                "inputs": Fact(inputs, (inputs_apart,)),
+                "regimes": Fact(regimes, (regimes_of_first, share_interval)),
+            },
+            (earliest_rows,),
+            mentions=(
+                ("size",),
+                *(("inputs", name) for name in inputs),
+                *(("regimes", label) for label in regimes),
+            ),
+        )
 
     @property
     def first(self) -> str:

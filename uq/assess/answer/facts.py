@@ -1,13 +1,17 @@
 """The answer as a whole: its parts in the order in which they are read."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.regime_mixing import Intermingled
 from uq.assess.answer.remedies import Advice
 from uq.assess.answer.sufficiency import Enough
 from uq.assess.answer.wording import share_text
+from uq.assess.fact import Fact
+from uq.assess.summary import status_counts
+from uq.result.result import Result
 from uq.text.numbers import grouped
 
 RARE = 0.01
@@ -42,8 +46,10 @@ class Answer:
         Sentences on assumed laws and fixed values.
     ties : str
         Sentence on inputs tied to a leading input, or "".
-    mixing : Intermingled
-        Intermingling of the regimes, of a study about them.
+    mixing : Fact
+        Intermingling of the regimes, of a study about them; without members where not known.
+    result : Result or None
+        The result that it describes.
     """
 
     title: str
@@ -59,7 +65,57 @@ class Answer:
     enough: Enough = field(default_factory=Enough)
     assumptions: tuple[str, ...] = ()
     ties: str = ""
-    mixing: Intermingled = field(default_factory=Intermingled)
+    mixing: Fact = field(default_factory=lambda: Fact({}))
+    result: Result | None = None
+
+    @cached_property
+    def fact(self) -> Fact:
+        """The answer as a tree, in the units of the outputs.
+
+        Returns
+        -------
+        Fact
+            ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
+            ``range``, ``own_error`` (the promise if every value were wrong by the error that it
+            states), ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
+            ``ranking``; ``regimes``: label -> event; ``assumptions``, in sentences; ``enough``,
+            whether the rows are: what is not settled besides (``others``), what another seed would
+            find of a share (``expected``), and the errors of what the study is about where that of
+            the rows is the larger; ``intermingled``, where the regimes are: the
+            ``uncertainty_exponent`` of their boundary, and how many uncertain outcomes are ``left``
+            with inputs known twice as well; ``levels``: the ``shares`` of the variance, and the
+            probability of ``another_regime``; ``advice``: rule -> ``text``, ``inputs``, ``rows``,
+            and the ``tolerances`` that were compared: what half the scatter of their ``inputs``
+            would make ``after`` of the number ``what``. The numbers of a sentence stand side by
+            side, with the sentence, under a key of their own. A promise has the places of its
+            bounds among the rows in order (``lower_is_row``), and the share of rows that have the
+            last value, where that bounds nothing (``share_at_largest``). An event has its
+            ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
+            input ``over``, and the ``limit`` of this input: from ``at`` to ``end`` its unwanted
+            side is rare on average, with the probability in the part next to ``at``. A ranking has
+            ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the
+            input, in a ``unit`` or, where that is "", in that of the output; and, of shares that
+            inputs explain alone, what is ``unexplained`` by any single one, with the ``totals`` of
+            an expansion where interactions could change the order. The earliest rows have ``lives``
+            (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of
+            them. Beyond the JSON: ``b_lives`` of a quantity, the assumed quantities that it is
+            ``scaled_by``, the ``unit`` of a promise, and whether the rows ``settled`` the question.
+        """
+        result = self.result
+        members: dict[str, Any] = {
+            "rows": self.rows,
+            "failed": self.failed,
+            "quantities": Fact({entry.name: entry.fact(result) for entry in self.quantities}),
+            "regimes": Fact({regime.predicate: regime.fact(result) for regime in self.regimes}),
+            "assumptions": list(self.assumptions),
+            "enough": self.enough.fact(result),
+        }
+        if self.mixing.members:
+            members["intermingled"] = self.mixing
+        members["levels"] = self.levels and self.levels.fact
+        members["advice"] = Fact({advice.rule: advice.fact for advice in self.advice})
+        counts = (("rows",), ("failed",))
+        return Fact(members, (status_counts,), words=self.rows_sentence, mentions=counts)
 
     @property
     def rows_sentence(self) -> str:

@@ -6,11 +6,15 @@ from math import isnan
 
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.wording import called, joined, sentence, share_text
+from uq.assess.fact import Fact
 from uq.assess.findings import Findings
+from uq.assess.regime_switching import switching
 from uq.assess.targets import FORMS, split_name
 from uq.result.result import Result
 from uq.sampling.levels import CHANCE, LEVELS, OWN, SHARED
+from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
+from uq.stats.variance_components import nested_shares
 
 _MOST_NAMED = 4
 
@@ -70,6 +74,28 @@ class VarianceComponents:
     variance: str
     levels: tuple[VarianceComponent, ...]
     another: Estimate | None = None
+
+    @property
+    def fact(self) -> Fact:
+        """The shares with their sentence."""
+        shares = {
+            component.name: estimate_json.numbers(component.share) for component in self.levels
+        }
+        another = None
+        if self.another is not None:
+            numbers = estimate_json.numbers(self.another)
+            another = Fact(numbers, (switching,), words=self.switching, mentions=(("value",),))
+        return Fact(
+            {
+                "sentence": self.sentence,
+                "target": self.target,
+                "shares": Fact(shares),
+                "another_regime": another,
+            },
+            (nested_shares,),
+            mentions=tuple(("shares", name, "value") for name in shares),
+            more={"inputs": {level.name: list(level.inputs) for level in self.levels}},
+        )
 
     @property
     def leader(self) -> VarianceComponent | None:

@@ -4,12 +4,18 @@ from dataclasses import dataclass, field, replace
 from math import inf, nan
 
 from uq.assess.answer.wording import DisplayUnit, called, sentence
-from uq.assess.event_curve import EventCurve
+from uq.assess.event_curve import EventCurve, event_curve
+from uq.assess.fact import Fact
+from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
+from uq.stats.intervals import share_interval
 from uq.text.numbers import percent_range
 
 RARE = 0.05
 """The unwanted side of an event is rare below this probability."""
+
+CURVE_FUNCTIONS = (event_curve, share_interval)
+"""Functions that compute the probability of an event over an input."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,21 @@ class Limit:
     share: Estimate = field(default_factory=lambda: Estimate(nan))
     unit: DisplayUnit = field(default_factory=DisplayUnit)
     why: str = ""
+
+    @property
+    def fact(self) -> Fact:
+        """The range with its sentence."""
+        return Fact(
+            {
+                "sentence": self.sentence,
+                "is_lower": self.is_lower,
+                "at": estimate_json.number(self.at),
+                "end": estimate_json.number(self.end),
+            }
+            | estimate_json.numbers(self.share),
+            (limit_of, *CURVE_FUNCTIONS),
+            mentions=(("value",),) if self.why else (("at",),),
+        )
 
     @property
     def sentence(self) -> str:

@@ -1,16 +1,21 @@
 """Events and quantities of an answer, with their sentences."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from math import isnan
+from typing import Any
 
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.earliest import Earliest
-from uq.assess.answer.limits import Limit, limit_of
-from uq.assess.answer.repeat_interval import PredictionInterval, repeated_quantile, repeated_share
-from uq.assess.answer.solver_error import OwnError
+from uq.assess.answer.limits import CURVE_FUNCTIONS, Limit, limit_of
+from uq.assess.answer.repeat_interval import repeated_quantile, repeated_share
 from uq.assess.answer.tolerance_bound import Range, ToleranceBound
 from uq.assess.answer.wording import DisplayUnit, called_together, sentence, share_text
 from uq.assess.event_curve import EventCurve
+from uq.assess.fact import Fact, Functions
+from uq.assess.statistic import Statistic
+from uq.result.result import Result
+from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.numbers import capitalized, percent, percent_range
 
@@ -45,6 +50,8 @@ class Event:
         Whether a level without the leading input decides more than it.
     limit : Limit or None
         Of that input, where its unwanted side is rare on average; None where no side is unwanted.
+    by : tuple of callable
+        The functions that compute its probability.
     """
 
     name: str
@@ -58,6 +65,32 @@ class Event:
     undefined: float = 0.0
     is_of_single: bool = False
     limit: Limit | None = None
+    by: Functions = ()
+
+    def fact(self, result: Result | None = None) -> Fact:
+        """Return the event with its numbers; its words say what decides it."""
+        share = {"sentence": self.sentence} | estimate_json.whole(self.share)
+        share |= estimate_json.failed(self.failed) | {"undefined": self.undefined}
+        rows = None if result is None else result.independent
+        decided_by: dict[str, Any] = {"sentence": self.decided_by}
+        members: dict[str, Any] = {
+            "said": self.predicate,
+            "share": Fact(share, self.by, rows=rows),
+            "decided_by": Fact(decided_by),
+        }
+        if self.curve is not None:
+            parts = [*_parts(self.curve)]
+            for name, place in (("least", self.curve.least), ("most", self.curve.most)):
+                low, high = self.curve.around(place)
+                ends = {f"{name}_above": low, f"{name}_below": high}
+                decided_by |= {name: parts[place]["value"]} | ends
+            members |= {"over": self.over, "parts": parts}
+        if self.limit is not None:
+            members["limit"] = self.limit.fact
+        if self.ranking is not None:
+            members["ranking"] = self.ranking.fact(result)
+        mention = ("ranking", "rows_factor") if self.curve is None else ("decided_by",)
+        return Fact(members, CURVE_FUNCTIONS, words=self.decided_by, mentions=(mention,))
 
     @property
     def sentence(self) -> str:
@@ -135,6 +168,13 @@ class Event:
         return f"between {self.over_unit.between(low, high, ' and ')}"
 
 
+def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
+    """Yield the parts of an input, each with the probability of the event there."""
+    edges = [float(edge) for edge in curve.edges]
+    for low, high, share in zip(edges[:-1], edges[1:], curve.shares, strict=True):
+        yield {"above": low, "below": high} | estimate_json.numbers(share)
+
+
 @dataclass(frozen=True)
 class Quantity:
     """The answer for one element of an output.
@@ -153,8 +193,10 @@ class Quantity:
         Of a life that does not end with a success: which rows end first, and why.
     scaled_by : tuple of str
         Quantities whose values are assumed and to which all its lives are proportional.
-    own_error : OwnError or None
+    own_error : Fact or None
         Effect of the stated errors of the rows on the promise.
+    b_lives : tuple of Statistic
+        Of a life.
     """
 
     name: str
@@ -167,7 +209,31 @@ class Quantity:
     wanted: str = ""
     earliest: Earliest | None = None
     scaled_by: tuple[str, ...] = ()
-    own_error: OwnError | None = None
+    own_error: Fact | None = None
+    b_lives: tuple[Statistic, ...] = ()
+
+    def fact(self, result: Result | None = None) -> Fact:
+        """Return everything about the quantity."""
+        rows = None if result is None else result.independent
+        parts = {
+            "promise": self.promise and self.promise.fact,
+            "range": self.range and self.range.fact,
+            "own_error": self.own_error,
+        }
+        of_rows = {name: replace(part, rows=rows) for name, part in parts.items() if part}
+        events = Fact({event.name: event.fact(result) for event in self.events})
+        members = {"words": self.words} | of_rows | {"events": events}
+        if self.earliest is not None:
+            members["earliest"] = self.earliest.fact
+        if self.repeated.sentence:
+            members["another_seed"] = replace(self.repeated, rows=rows)
+        if self.ranking is not None:
+            members["ranking"] = self.ranking.fact(result)
+        lives = {
+            life.key[-1]: Fact(estimate_json.whole(life.estimate), life.by) for life in self.b_lives
+        }
+        more = {"b_lives": Fact(lives, rows=rows), "scaled_by": list(self.scaled_by)}
+        return Fact(members, more=more)
 
     @property
     def subject(self) -> str:
@@ -230,11 +296,12 @@ class Quantity:
         return next((event for event in self.events if event.sentence), None)
 
     @property
-    def repeated(self) -> PredictionInterval:
+    def repeated(self) -> Fact:
         """Prediction interval for another seed."""
         if self.first is None:
             return repeated_quantile(self.promise, self.range, self.ranking)
-        return repeated_share(self.first.predicate, self.first.share, self.ranking)
+        first = self.first
+        return repeated_share(first.predicate, first.share, self.ranking, first.by)
 
     @property
     def others(self) -> list[Event]:

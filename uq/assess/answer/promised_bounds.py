@@ -1,14 +1,16 @@
 """The promised bounds of an output: joint ones where a study asks for them, else its own."""
 
-from collections.abc import Iterator
 from math import inf, isfinite, isnan, nan
+from typing import Any
 
 import numpy as np
 
-from uq.assess.answer.tolerance_bound import BoundaryAtom, SampleSupport, ToleranceBound
+from uq.assess.answer.tolerance_bound import ToleranceBound, piles
 from uq.assess.answer.wording import DisplayUnit
+from uq.assess.fact import Functions
 from uq.assess.joint_bounds import SIDES
 from uq.assess.statistic import Statistic
+from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import Described
 from uq.result.elements import Element
 from uq.result.result import Result
@@ -60,18 +62,18 @@ def promise_of(
         statistic.estimate.value if matters and statistic else nan
         for statistic, matters in zip(both, sides, strict=True)
     ]
-    piled = () if joint else tuple(piles(element, sides, coverage))
-    upper_piled = {atom.upper for atom in piled}
-    sides = sides[0] and False not in upper_piled, sides[1] and True not in upper_piled
+    piled = {} if joint else piles(element, sides, coverage)
+    sides = sides[0] and 0 not in piled, sides[1] and 1 not in piled
     bounds = [bound if matters else nan for bound, matters in zip(bounds, sides, strict=True)]
     # Quantiles of an angle refer to its magnitude, its joint bounds have a sign.
     signed = bool(joint) and element.is_angle
+    estimated = [best_quantile(described, p) for p in (round(1 - coverage, 12), coverage)]
     quantiles = [
-        described.find("quantiles", repr(p)) if matters and not signed else None
-        for p, matters in zip((round(1 - coverage, 12), coverage), sides, strict=True)
+        statistic if matters and not signed else None
+        for statistic, matters in zip(estimated, sides, strict=True)
     ]
-    ends = [statistic.best.estimate if statistic else NOTHING for statistic in quantiles]
-    with_failed = [statistic.best.failed if statistic else None for statistic in quantiles]
+    ends = [statistic.estimate if statistic else NOTHING for statistic in quantiles]
+    with_failed = [statistic.failed if statistic else None for statistic in quantiles]
     reason = ""
     if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(result, element, both, bounds)
@@ -91,11 +93,13 @@ def promise_of(
         element.is_angle and not joint,
         end_verb(element),
         tuple(analysis.joint_bounds) if joint else (),
-        support_of(element),
-        _recurs(element),
-        (0, 0) if joint else _ranks(element, bounds),
-        int((element.present | element.failed).sum()),
-        piled,
+        **without_value(element),
+        recurs=_recurs(element),
+        ranks=(0, 0) if joint else _ranks(element, bounds),
+        rows=int((element.present | element.failed).sum()),
+        piled=piled,
+        by=next((statistic.by for statistic in both if statistic), (STATISTICS[part],)),
+        by_quantile=(functions_of(estimated[0]), functions_of(estimated[1])),
     )
 
 
@@ -106,23 +110,11 @@ def _ranks(element: Element, bounds: list[float]) -> tuple[int, int]:
     return first, int((values <= upper).sum()) if isfinite(upper) else 0
 
 
-def piles(element: Element, sides: tuple[bool, bool], coverage: float) -> Iterator[BoundaryAtom]:
-    """Yield the sides on which more rows have the last value than a bound would leave out."""
-    values = element.for_thresholds[element.present]
-    if element.is_lifetime or not len(values) or values.min() == values.max():
-        return
-    for upper, matters in enumerate(sides):
-        last = values.max() if upper else values.min()
-        count = int((values == last).sum())
-        if matters and count > 1 and count >= (1 - coverage) * len(values):
-            yield BoundaryAtom(bool(upper), float(last), count / len(values))
-
-
-def support_of(element: Element) -> SampleSupport:
-    """Return the support of the sample: defined values of rows that did not fail."""
+def without_value(element: Element) -> dict[str, Any]:
+    """Return which rows have no value: whether any failed, and the share of undefined ones."""
     sound = ~element.failed
-    share = float(element.undefined[sound].mean()) if sound.any() else 0.0
-    return SampleSupport(bool(element.failed.any()), share)
+    undefined = float(element.undefined[sound].mean()) if sound.any() else 0.0
+    return {"rows_failed": bool(element.failed.any()), "undefined": undefined}
 
 
 def _recurs(element: Element) -> bool:
@@ -134,10 +126,21 @@ def _recurs(element: Element) -> bool:
     return len(np.unique(values)) < len(values)
 
 
+def best_quantile(described: Described, p: float) -> Statistic | None:
+    """Return a requested quantile, by Kaplan-Meier where the rows alone do not decide it."""
+    statistic = described.find("quantiles", repr(p))
+    return statistic and statistic.best
+
+
 def quantile_of(described: Described, p: float) -> Estimate:
     """Return a requested quantile, else an estimate without a number."""
-    statistic = described.find("quantiles", repr(p))
-    return statistic.best.estimate if statistic else NOTHING
+    statistic = best_quantile(described, p)
+    return statistic.estimate if statistic else NOTHING
+
+
+def functions_of(statistic: Statistic | None) -> Functions:
+    """Return the functions that compute a quantile."""
+    return statistic.by if statistic else (STATISTICS["quantiles"],)
 
 
 def end_verb(element: Element) -> str:

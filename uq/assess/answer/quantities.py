@@ -14,10 +14,12 @@ from uq.assess.answer.promised_bounds import (
     CONFIDENCE,
     COVERAGE,
     MIDDLE,
+    best_quantile,
     end_verb,
+    functions_of,
     promise_of,
     quantile_of,
-    support_of,
+    without_value,
 )
 from uq.assess.answer.rankings import ranking_of
 from uq.assess.answer.solver_error import own_error_of
@@ -28,9 +30,10 @@ from uq.assess.chosen_targets import chosen
 from uq.assess.event_curve import EventCurve, event_curve
 from uq.assess.findings import Findings
 from uq.assess.independent_inputs import independent_inputs
+from uq.assess.population import Population
 from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.counts import never_ending
-from uq.assess.statistics.quantiles import quantiles
+from uq.assess.statistics.quantiles import B_LIVES, quantiles
 from uq.assess.statistics.tolerance import tolerance
 from uq.assess.summary import Described, resolution_of, summarise
 from uq.assess.targets import lightened, number_of, split_name
@@ -39,12 +42,15 @@ from uq.indices.methods import METHODS
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats.estimate import NOTHING
+from uq.stats.intervals import share_interval
 from uq.study.file import AnalysisTable
 from uq.text.numbers import threshold
 from uq.text.symbols import readable
 
 LOW, HIGH = 0.05, 0.95
 """Probabilities of the ends of the likely range."""
+
+_RANGE = {"low": LOW, "median": MIDDLE, "high": HIGH}
 
 _NARROW = 0.003  # range over values below which three digits show few steps
 
@@ -140,14 +146,11 @@ def _quantity(
     folded = element
     if element.is_angle:  # its sign is only a direction
         folded = replace(element, values=element.for_thresholds)
-        described = Described(
-            described.units,
-            {
-                **described.parts,
-                "quantiles": tuple(quantiles(folded, context)),
-                "tolerance": tuple(tolerance(folded, context)),
-            },
-        )
+        of_magnitude = {
+            "quantiles": tuple(quantiles(folded, context)),
+            "tolerance": tuple(tolerance(folded, context)),
+        }
+        described = Described(described.units, {**described.parts, **of_magnitude})
     middle = quantile_of(described, MIDDLE)
     wanted = context.analysis.wanted.get(element.output, "below" if element.is_angle else "")
     others = (quantile_of(described, p).value for p in (LOW, HIGH))
@@ -157,6 +160,8 @@ def _quantity(
     unit = unit_for(element.units, abs(typical))
     fine = unit._replace(resolution=resolution_of(folded, _NARROW))
     promise = promise_of(findings.result, described, element, context.analysis, wanted, fine)
+    by = {name: functions_of(best_quantile(described, p)) for name, p in _RANGE.items()}
+    by["never"] = (never_ending, share_interval if element.weights is None else Population)
     return Quantity(
         element.name,
         element_called(findings.result, element),
@@ -170,8 +175,9 @@ def _quantity(
             element.is_angle,
             end_verb(element),
             never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
-            support_of(element),
-            element.is_lifetime,
+            **without_value(element),
+            is_life=element.is_lifetime,
+            by=by,
         ),
         tuple(_events(findings, described, element)),
         _as_computed(_ranking(findings, element, unit), described),
@@ -181,6 +187,7 @@ def _quantity(
         else None,
         assumed_scales(findings.result, element),
         own_error_of(promise, described, folded, context),
+        tuple(life for life in described.parts["b_lives"] if life.key[-1] in B_LIVES),
     ).with_limits()
 
 
@@ -266,9 +273,10 @@ def event(findings: Findings, target: str, predicate: str, statistic: Statistic)
     statistic : Statistic
         Its probability.
     """
-    outcome = Event(target, predicate, statistic.best.estimate, statistic.failed)
+    best = statistic.best
+    outcome = Event(target, predicate, best.estimate, statistic.failed, by=best.by)
     method = method_for(findings.result, event=True)
-    if method is None or statistic.best.estimate.value in (0.0, 1.0):
+    if method is None or best.estimate.value in (0.0, 1.0):
         return outcome
     verb = ("lowers the probability", "raises the probability")
     try:

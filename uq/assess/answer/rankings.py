@@ -4,7 +4,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import expm1, isfinite, log1p, nan
 
-from uq.assess.answer.contributions import SMALL, AverageEffect, Contribution, Ranking
+from uq.assess.answer.contributions import (
+    EXPANSION,
+    SMALL,
+    AverageEffect,
+    Contribution,
+    Ranking,
+)
 from uq.assess.answer.measured_indices import Measured, measured_inputs
 from uq.assess.answer.repeat_interval import AGAIN
 from uq.assess.answer.wording import DisplayUnit, called, twin_of, unit_of_input
@@ -31,8 +37,6 @@ ALIKE = 0.5
 
 LEAST = 0.01
 """A smaller index is not listed."""
-
-_EXPANSION = "hdmr"  # the method that finds total indices in a plain sample
 
 _STEPS = (0.1, 0.01, 0.001)
 _WITHIN = 4.0  # standard deviations that a step may span
@@ -140,9 +144,9 @@ def unexplained(indices: Indices) -> Estimate:
 def _totals(findings: Findings, name: str) -> dict[str, float]:
     """Return the total indices, the largest first, of an expansion that represents the rows."""
     dependent = bool(why_dependent(findings.result))
-    if _EXPANSION not in fed_by(findings.result.design, dependent):
+    if EXPANSION not in fed_by(findings.result.design, dependent):
         return {}
-    expansion = findings.indices(_EXPANSION, name)
+    expansion = findings.indices(EXPANSION, name)
     values = {} if expansion.refused else expansion.indices.values[ST]
     return {label: values[label].value for label in sorted(values, key=lambda x: -values[x].value)}
 

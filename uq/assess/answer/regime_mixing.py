@@ -1,44 +1,50 @@
 """Intermingled regimes: more accurate inputs hardly reduce the uncertainty of the outcome."""
 
-from dataclasses import dataclass
-
 from uq.assess.answer.wording import rounded, share_text
+from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.regime_boundary import still_uncertain
-from uq.stats.estimate import NOTHING, Estimate
+from uq.assess.regime_boundary import compared_rows, still_uncertain
+from uq.result.result import Result
+from uq.stats.estimate import Estimate
+from uq.stats.uncertainty_exponent import uncertainty_exponent
 
 
-@dataclass(frozen=True)
-class Intermingled:
-    """How intermingled the regimes are.
+def intermingled(exponent: Estimate, rows: Result | None = None) -> Fact:
+    """Return how intermingled the regimes are; without members if their boundary may be smooth.
 
-    Attributes
+    Parameters
     ----------
     exponent : Estimate
-        The uncertainty exponent of the boundary between them; without a number if unknown.
+        The uncertainty exponent of the boundary between them.
+    rows : Result, optional
+        The rows that it is computed from.
+
+    Returns
+    -------
+    Fact
+        ``uncertainty_exponent``, and ``left``: the share of uncertain outcomes that remain so if
+        all inputs are known twice as well; both with ends.
     """
-
-    exponent: Estimate = NOTHING
-
-    @property
-    def left(self) -> Estimate:
-        """Share of uncertain outcomes that remain so if all inputs are known twice as well."""
-        return still_uncertain(self.exponent)
-
-    @property
-    def sentence(self) -> str:
-        """Sentence on intermingled regimes; "" if the boundary may be smooth."""
-        if not (self.exponent.has_interval and self.exponent.high < 1):
-            return ""
-        left = share_text(self.left)
-        return (
-            f"The regimes are intermingled: with all inputs known twice as well, {left} of the"
-            " uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
-            f" (uncertainty exponent {rounded(self.exponent.value)})."
-        )
+    if not (exponent.has_interval and exponent.high < 1):
+        return Fact({})
+    left = still_uncertain(exponent)
+    text = (
+        f"The regimes are intermingled: with all inputs known twice as well, {share_text(left)} of"
+        " the uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
+        f" (uncertainty exponent {rounded(exponent.value)})."
+    )
+    numbers = {
+        f"{name}{end}": value
+        for name, estimate in (("uncertainty_exponent", exponent), ("left", left))
+        for end, value in zip(("", "_low", "_high"), estimate.numbers, strict=True)
+    }
+    mentions = (("left",),)
+    return Fact({"sentence": text} | numbers, (uncertainty_exponent,), rows=rows, mentions=mentions)
 
 
-def intermingled(findings: Findings) -> Intermingled:
+def mixing(findings: Findings) -> Fact:
     """Return how intermingled the regimes of a result are."""
     boundary = findings.boundary
-    return Intermingled() if boundary is None else Intermingled(boundary.estimate)
+    if boundary is None:
+        return Fact({})
+    return intermingled(boundary.estimate, compared_rows(findings.result))

@@ -2,9 +2,14 @@
 
 from dataclasses import dataclass, field
 from math import isfinite
+from typing import Any
 
+from uq.assess.answer.sample_size import unsettled
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import DisplayUnit, called_together, joined
+from uq.assess.fact import Fact
+from uq.assess.what_if import what_if
+from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
 from uq.text.numbers import capitalized, percent, percent_interval
 
@@ -53,6 +58,25 @@ class TighterTolerance:
     law: str = ""
     promise: ToleranceBound | None = None
     failed: Estimate | None = None
+
+    @property
+    def fact(self) -> Fact:
+        """The number before and after, and how the scatter is halved."""
+        return Fact(
+            {
+                "inputs": list(self.inputs),
+                "law": self.law,
+                "what": self.statistic,
+                "before": estimate_json.numbers(self.before),
+                "after": estimate_json.numbers(self.after),
+                "promised": self.promised,
+                "key": self.key,
+            },
+            (what_if,),
+            words=self.sentence,
+            mentions=(("before",), ("after",)),
+            more={"is_share": self.is_share, "unit": self.unit.name, "per": self.unit.per},
+        )
 
     @property
     def is_seen(self) -> bool:
@@ -180,6 +204,17 @@ class Advice:
     key: str = ""
     alike: tuple[TighterTolerance, ...] = ()
     tolerances: tuple[TighterTolerance, ...] = ()
+
+    @property
+    def fact(self) -> Fact:
+        """The advice with its numbers."""
+        members: dict[str, Any] = {"text": self.text, "inputs": list(self.inputs)}
+        if self.rows is not None:
+            members["rows"] = self.rows
+        if self.tolerances:
+            members["tolerances"] = [tolerance.fact for tolerance in self.tolerances]
+        mentions = (("rows",),) if self.rows is not None else ()
+        return Fact(members, by_member={"rows": (unsettled,)}, mentions=mentions)
 
     @property
     def also(self) -> str:

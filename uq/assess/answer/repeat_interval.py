@@ -1,11 +1,13 @@
 """Prediction interval: where the same study with another seed would most likely end."""
 
-from dataclasses import dataclass, field
 from math import isfinite, nan, sqrt
+from typing import Any
 
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.tolerance_bound import Range, ToleranceBound
-from uq.assess.answer.wording import DisplayUnit, called, joined
+from uq.assess.answer.wording import called, joined
+from uq.assess.fact import Fact, Functions
+from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.numbers import percent_interval
 
@@ -13,48 +15,6 @@ AGAIN = sqrt(2)
 """An estimate from other rows differs from this one so many times as much as the truth does."""
 
 MOST_NAMED = 3
-
-
-@dataclass(frozen=True)
-class PredictionInterval:
-    """Prediction interval of a repetition of the study with another seed.
-
-    Attributes
-    ----------
-    subject : str
-        ``the 5 % quantile``, or the event of a share: ``end within 24 hours``; "" for none.
-    low, high : float
-        Ends of the 95 % prediction interval.
-    is_share : bool
-    unit : DisplayUnit
-    ranking : str
-        The leading input of the repetition, in words; "" if unknown.
-    """
-
-    subject: str = ""
-    low: float = nan
-    high: float = nan
-    is_share: bool = False
-    unit: DisplayUnit = field(default_factory=DisplayUnit)
-    ranking: str = ""
-
-    @property
-    def sentence(self) -> str:
-        """The prediction in words; "" if unknown."""
-        number = ""
-        if self.subject and self.is_share:
-            number = f"{percent_interval(self.low, self.high)} would {self.subject} (95 %)"
-        elif self.subject:
-            number = f"{self.subject} would {self._verb_phrase} (95 %)"
-        text = "; ".join(filter(None, (number, self.ranking)))
-        return f"With another seed, {text}." if text else ""
-
-    @property
-    def _verb_phrase(self) -> str:
-        first, last = self.unit.text(self.low), self.unit.text(self.high)
-        if first == last:  # to the digits shown
-            return f"again be {first}"
-        return f"lie between {self.unit.between(self.low, self.high, ' and ')}"
 
 
 def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
@@ -87,15 +47,20 @@ def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
 
 def repeated_quantile(
     promise: ToleranceBound | None, likely: Range | None, ranking: Ranking | None
-) -> PredictionInterval:
+) -> Fact:
     """Return the prediction interval of the quantile that a promise bounds, and of the ranking.
 
     A low quantile is no larger than the upper end of the likely range, which matters where values
     jump, and a high one no smaller than its lower end.
+
+    Returns
+    -------
+    Fact
+        With the ends as ``expected`` if they are known, and the leading input in its sentence.
     """
-    order = _ranked_again(ranking)
     if promise is not None:
-        for p, quantile in zip(promise.probabilities, promise.quantiles, strict=True):
+        quantiles = zip(promise.probabilities, promise.quantiles, promise.by_quantile, strict=True)
+        for p, quantile, by in quantiles:
             low, high = found_again(quantile, promise.is_life)
             if isfinite(low):
                 if likely is not None and p < 0.5:
@@ -104,17 +69,49 @@ def repeated_quantile(
                     low = max(low, min(likely.low.value, quantile.low))
                 of_magnitudes = " of the magnitudes" if promise.of_magnitude else ""
                 subject = f"the {100 * p:.3g} % quantile{of_magnitudes}"
-                return PredictionInterval(subject, low, high, False, promise.unit, order)
-    return PredictionInterval(ranking=order)
+                first, last = promise.unit.text(low), promise.unit.text(high)
+                between = f"lie between {promise.unit.between(low, high, ' and ')}"
+                # to the digits shown
+                verb_phrase = f"again be {first}" if first == last else between
+                return _repeated(f"{subject} would {verb_phrase}", (low, high), ranking, by)
+    return _repeated("", (nan, nan), ranking)
 
 
-def repeated_share(predicate: str, share: Estimate, ranking: Ranking | None) -> PredictionInterval:
-    """Return the prediction interval of the probability of an event, and of the ranking."""
+def repeated_share(
+    predicate: str, share: Estimate, ranking: Ranking | None, by: Functions = ()
+) -> Fact:
+    """Return the prediction interval of the probability of an event, and of the ranking.
+
+    Parameters
+    ----------
+    predicate : str
+        The event, in words.
+    share : Estimate
+    ranking : Ranking or None
+    by : tuple of callable
+        The functions that compute the share.
+
+    Returns
+    -------
+    Fact
+        As of `repeated_quantile`.
+    """
     low, high = found_again(share, False)
-    subject = predicate if isfinite(low) else ""
-    return PredictionInterval(
-        subject, max(low, 0.0), min(high, 1.0), True, ranking=_ranked_again(ranking)
-    )
+    low, high = max(low, 0.0), min(high, 1.0)
+    number = f"{percent_interval(low, high)} would {predicate}" if isfinite(low) else ""
+    return _repeated(number, (low, high), ranking, by)
+
+
+def _repeated(
+    number: str, ends: tuple[float, float], ranking: Ranking | None, by: Functions = ()
+) -> Fact:
+    clauses = (f"{number} (95 %)" if number else "", _ranked_again(ranking))
+    text = "; ".join(filter(None, clauses))
+    members: dict[str, Any] = {"sentence": f"With another seed, {text}." if text else ""}
+    if not number:
+        return Fact(members, mentions=())
+    members["expected"] = dict(zip(("low", "high"), map(estimate_json.number, ends), strict=True))
+    return Fact(members, (found_again, *by), mentions=(("expected",),))
 
 
 def _ranked_again(ranking: Ranking | None) -> str:

@@ -1,7 +1,6 @@
 """Sample size that settles an answer: intervals narrow as one over root n."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import inf, isfinite, isnan
 
 from uq.assess.answer.parts import Event, Quantity
@@ -26,23 +25,14 @@ MOST = 100.0
 _BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
 
 
-@dataclass(frozen=True)
-class Unsettled:
-    """A result that the sample size does not settle.
+Shortfall = tuple[str, float]
+"""What the sample size does not settle, in a clause, and the factor on it that would settle it.
 
-    Attributes
-    ----------
-    clause : str
-        The uncertainty in words, without its remedy.
-    factor : float
-        Factor on the sample size that would settle it; infinite if no number would.
-    """
-
-    clause: str
-    factor: float
+The factor is infinite if no number of rows would.
+"""
 
 
-def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
+def unsettled(quantity: Quantity) -> Iterator[Shortfall]:
     """Yield what is not settled about a quantity, and how many times the rows would settle it.
 
     References
@@ -56,14 +46,14 @@ def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
         yield from _of_promise(quantity.promise, quantity)
     ranking = quantity.ranking
     if ranking is not None and isfinite(ranking.rows_factor):
-        yield Unsettled(ranking.reason, ranking.rows_factor)
+        yield ranking.reason, ranking.rows_factor
     for event in quantity.events:
         if event.ranking is not None and isfinite(event.ranking.rows_factor):
             clause = f"what decides how many {event.clause} is not settled"
-            yield Unsettled(clause, event.ranking.rows_factor)
+            yield clause, event.ranking.rows_factor
 
 
-def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Unsettled]:
+def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Shortfall]:
     """Yield the requested bounds that the sample size does not support."""
     rows = len(findings.rows)
     for key, words in _BOUNDS.items():
@@ -73,24 +63,24 @@ def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterat
         if needed:
             asked = f"the {words} that the study asks for"
             clause = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
-            yield Unsettled(clause or f"too many rows failed for {asked}", needed / max(rows, 1))
+            yield clause or f"too many rows failed for {asked}", needed / max(rows, 1)
 
 
-def unsettled_share(event: Event) -> Iterator[Unsettled]:
+def unsettled_share(event: Event) -> Iterator[Shortfall]:
     """Yield the probability of an event, if not settled."""
     share = event.share
     if isnan(share.value) and event.sentence:
-        yield Unsettled(f"{event.sentence[:1].lower()}{event.sentence[1:-1]}", inf)
+        yield f"{event.sentence[:1].lower()}{event.sentence[1:-1]}", inf
     if not share.has_interval:
         return
     half = (share.high - share.low) / 2
     goal = max(SHARE * min(share.value, 1 - share.value), POINT)
     if half > goal:
         clause = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
-        yield Unsettled(clause, (half / goal) ** 2)
+        yield clause, (half / goal) ** 2
 
 
-def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Unsettled]:
+def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Shortfall]:
     likely = quantity.range
     if likely is None:
         return
@@ -110,4 +100,4 @@ def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Unsettl
             text = promise.unit.text(reached, outwards)
             best = promise.unit.text(estimate.value)
             clause = f"the cautious bound, {text}, is far from the estimate, {best}"
-            yield Unsettled(clause, (away / (BOUND * scale)) ** 2)
+            yield clause, (away / (BOUND * scale)) ** 2

@@ -1,20 +1,22 @@
 """Effect of the numerical error of rows on a promise, in words."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from math import inf, isfinite, nan
 
 from uq.assess.answer.tolerance_bound import ToleranceBound
-from uq.assess.answer.wording import DisplayUnit, joined
+from uq.assess.answer.wording import DisplayUnit, joined, sentence
+from uq.assess.fact import Fact
 from uq.assess.scaling import population
 from uq.assess.solver_error import error_share, off_by_error, stating_none
 from uq.assess.statistic import Context
-from uq.assess.statistics.counts import stated_error
+from uq.assess.statistics.counts import accuracy, stated_error
 from uq.assess.statistics.quantiles import quantiles
 from uq.assess.statistics.tolerance import tolerance
 from uq.assess.summary import Described
 from uq.result.elements import Element
-from uq.text.numbers import capitalized, counted, percent
+from uq.stats import estimate_json
+from uq.text.numbers import counted, percent
 
 NOTABLE = 0.01
 """A smaller share of the variance is negligible."""
@@ -22,97 +24,9 @@ NOTABLE = 0.01
 Sides = tuple[float, float]
 
 
-@dataclass(frozen=True)
-class OwnError:
-    """Effect of the numerical error of the rows on a promise.
-
-    Attributes
-    ----------
-    bounds : tuple of float
-        Lower and upper, as promised; NaN without one.
-    worse : tuple of float
-        The bounds if every value were wrong by its error, to the unsafe side.
-    are_quantiles : bool
-        Whether quantiles are promised, for want of tolerance bounds.
-    share : float
-        Mean square of the errors as a share of the variance; NaN if unknown.
-    unit : DisplayUnit
-        Of the bounds.
-    is_life : bool
-        Whether it is of lives; the share is then of their logarithms.
-    asked, missed : float
-        The accuracy that the settings ask for, and the share of the rows that miss it; NaN without.
-    unstated : int
-        Number of rows without a stated error.
-    """
-
-    bounds: Sides = (nan, nan)
-    worse: Sides = (nan, nan)
-    are_quantiles: bool = False
-    share: float = nan
-    unit: DisplayUnit = field(default_factory=DisplayUnit)
-    is_life: bool = False
-    asked: float = nan
-    missed: float = nan
-    unstated: int = 0
-
-    @property
-    def sentence(self) -> str:
-        """The effect of the error in words; "" if negligible."""
-        if not (self._moved or self.share >= NOTABLE or self.unstated):
-            return ""
-        about = (self._moved, self._of_variance, self._missing)
-        return " ".join(f"{capitalized(clause)}." for clause in about if clause)
-
-    @property
-    def _moved(self) -> str:
-        """The new bounds, of those that change in a shown digit."""
-        noun, ways = "life" if self.is_life else "value", ("overestimated", "underestimated")
-        now, then = ([*self._texts(ends)] for ends in (self.bounds, self.worse))
-        moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
-        if not moved:
-            return ""
-        how = joined([ways[i] for i in moved], "or")
-        bound_noun = "quantile" if self.are_quantiles else "bound"
-        does, it = (
-            (f"{bound_noun} does", "it") if len(moved) == 1 else (f"{bound_noun}s do", "they")
-        )
-        return (
-            f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
-            f" by as much, {it} would be {joined([then[i] for i in moved])}"
-        )
-
-    def _texts(self, ends: Sides) -> Iterator[str]:
-        for end, towards in zip(ends, (-inf, inf), strict=True):
-            yield self.unit.text(end, towards) if isfinite(end) else ""
-
-    @property
-    def _of_variance(self) -> str:
-        if not self.share >= NOTABLE:
-            return ""
-        variance = "variance of the logarithm" if self.is_life else "variance"
-        which = "this error" if self._moved else "the rows' own numerical error"
-        if self.share >= 1:
-            return (
-                f"the mean square of {which} exceeds the {variance}: all scatter may be numerical"
-            )
-        return f"the mean square of {which} is {percent(self.share)} of the {variance}"
-
-    @property
-    def _missing(self) -> str:
-        parts = []
-        if self.missed > 0:
-            asked = f"{100 * self.asked:g} %"
-            parts.append(f"{percent(self.missed)} of the rows miss the accuracy asked for, {asked}")
-        if self.unstated:
-            verb = "states" if self.unstated == 1 else "state"
-            parts.append(f"{counted(self.unstated, 'row')} {verb} no error")
-        return "; ".join(parts)
-
-
 def own_error_of(
     promise: ToleranceBound, described: Described, element: Element, context: Context
-) -> OwnError | None:
+) -> Fact | None:
     """Return the effect of the stated errors of rows on a promise; None if none is stated.
 
     Parameters
@@ -123,6 +37,14 @@ def own_error_of(
     element : Element
         Of an angle, its magnitude.
     context : Context
+
+    Returns
+    -------
+    Fact or None
+        ``lower`` and ``upper``: the bounds if every value were wrong by its error, to the unsafe
+        side; ``share_of_variance``: the mean square of the errors as a share of the variance;
+        ``accuracy``: requested by the settings, and ``rows_missing_it``: the share of rows that
+        miss it; ``rows_stating_none``: their number. The sentence is "" if all is negligible.
     """
     error = stated_error(context.rows, element)
     if error is None:
@@ -136,21 +58,83 @@ def own_error_of(
         if isfinite(bounds[side]) and not promise.joint:
             moved = off_by_error(element, error, (-1, 1)[side])
             worse[side] = _bounds(promise, are_quantiles, moved, context)[side]
-    accuracies = [statistic.facts["accuracy"] for statistic in described.parts.get("accuracy", ())]
-    asked, missed = next(
-        ((accuracy["asked"], accuracy["share"] or 0.0) for accuracy in accuracies), (nan, 0.0)
+    asked, missed = nan, 0.0
+    for statistic in described.parts.get("accuracy", ()):
+        facts = statistic.facts["accuracy"]
+        asked, missed = facts["asked"], facts["share"] or 0.0
+    share, unstated = error_share(element, error), stating_none(element, error)
+    moved_bounds = _moved(promise, bounds, (worse[0], worse[1]), are_quantiles)
+    text = ""
+    if moved_bounds or share >= NOTABLE or unstated:
+        variance = _of_variance(share, element.is_lifetime, bool(moved_bounds))
+        clauses = (moved_bounds, variance, _missing(asked, missed, unstated))
+        text = " ".join(sentence(clause) for clause in clauses if clause)
+    numbers = {
+        "lower": worse[0],
+        "upper": worse[1],
+        "share_of_variance": share,
+        "accuracy": asked,
+        "rows_missing_it": missed,
+    }
+    by_bound = promise.by_quantile if are_quantiles else (promise.by, promise.by)
+    return Fact(
+        {"sentence": text}
+        | {name: estimate_json.number(value) for name, value in numbers.items()}
+        | {"rows_stating_none": unstated},
+        (off_by_error, error_share, accuracy),
+        {
+            "lower": (off_by_error, *by_bound[0]),
+            "upper": (off_by_error, *by_bound[1]),
+            "share_of_variance": (error_share,),
+            "accuracy": (accuracy,),
+            "rows_missing_it": (accuracy,),
+            "rows_stating_none": (stating_none,),
+        },
     )
-    return OwnError(
-        bounds,
-        (worse[0], worse[1]),
-        are_quantiles,
-        error_share(element, error),
-        promise.unit,
-        element.is_lifetime,
-        asked,
-        missed,
-        stating_none(element, error),
+
+
+def _moved(promise: ToleranceBound, bounds: Sides, worse: Sides, are_quantiles: bool) -> str:
+    """Return a clause on the new bounds, of those that change in a shown digit."""
+    noun, ways = "life" if promise.is_life else "value", ("overestimated", "underestimated")
+    now, then = ([*_texts(promise.unit, ends)] for ends in (bounds, worse))
+    moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
+    if not moved:
+        return ""
+    how = joined([ways[i] for i in moved], "or")
+    bound_noun = "quantile" if are_quantiles else "bound"
+    does, it = (f"{bound_noun} does", "it") if len(moved) == 1 else (f"{bound_noun}s do", "they")
+    return (
+        f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
+        f" by as much, {it} would be {joined([then[i] for i in moved])}"
     )
+
+
+def _texts(unit: DisplayUnit, ends: Sides) -> Iterator[str]:
+    for end, towards in zip(ends, (-inf, inf), strict=True):
+        yield unit.text(end, towards) if isfinite(end) else ""
+
+
+def _of_variance(share: float, is_life: bool, is_named: bool) -> str:
+    """Return a clause on the mean square of an error, which may have been named; "" if small."""
+    if not share >= NOTABLE:
+        return ""
+    variance = "variance of the logarithm" if is_life else "variance"
+    which = "this error" if is_named else "the rows' own numerical error"
+    if share >= 1:
+        return f"the mean square of {which} exceeds the {variance}: all scatter may be numerical"
+    return f"the mean square of {which} is {percent(share)} of the {variance}"
+
+
+def _missing(asked: float, missed: float, unstated: int) -> str:
+    """Return a clause on rows that miss the accuracy or state no error; "" if there are none."""
+    parts = []
+    if missed > 0:
+        share = f"{100 * asked:g} %"
+        parts.append(f"{percent(missed)} of the rows miss the accuracy asked for, {share}")
+    if unstated:
+        verb = "states" if unstated == 1 else "state"
+        parts.append(f"{counted(unstated, 'row')} {verb} no error")
+    return "; ".join(parts)
 
 
 def _bounds(

@@ -1,20 +1,23 @@
 """Sufficiency of the rows for the subject of a study, and predictions for another seed."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from math import isfinite
+from typing import Any
 
 from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.repeat_interval import PredictionInterval, repeated_share
+from uq.assess.answer.repeat_interval import repeated_share
 from uq.assess.answer.sample_size import (
     MOST,
-    Unsettled,
+    Shortfall,
     bounds_unsettled,
     unsettled,
     unsettled_share,
 )
 from uq.assess.answer.wording import DisplayUnit
 from uq.assess.convergence import Errors, compared
+from uq.assess.fact import Fact
 from uq.assess.findings import Findings
 from uq.assess.summary import why_no_intervals
 from uq.result.result import Result
@@ -30,32 +33,49 @@ class Enough:
     ----------
     unknown : str
         Reason why it is unknown, or "".
-    question : tuple of Unsettled
+    question : tuple of Shortfall
         Unsettled results on the subject of the study, the least settled first.
-    besides : tuple of Unsettled
+    besides : tuple of Shortfall
         Unsettled results on everything else, the least settled first.
     errors : Errors or None
         Errors of the subject, if the numerical error exceeds the sampling error.
     unit : DisplayUnit
         Unit of these errors.
-    again : PredictionInterval
+    again : Fact
         Prediction interval for another seed.
+    of_share : bool
+        Whether that is one of a probability.
     others : tuple of str
         Sentences on all unsettled results but the first of the question.
     """
 
     unknown: str = ""
-    question: tuple[Unsettled, ...] = ()
-    besides: tuple[Unsettled, ...] = ()
+    question: tuple[Shortfall, ...] = ()
+    besides: tuple[Shortfall, ...] = ()
     errors: Errors | None = None
     unit: DisplayUnit = field(default_factory=DisplayUnit)
-    again: PredictionInterval = field(default_factory=PredictionInterval)
+    again: Fact = field(default_factory=lambda: Fact({}))
+    of_share: bool = False
     others: tuple[str, ...] = ()
 
+    def fact(self, result: Result | None = None) -> Fact:
+        """Return sufficiency, predictions and errors."""
+        members: dict[str, Any] = {"sentence": self.sentence, "others": list(self.others)}
+        mentions: tuple[tuple[str], ...] = ()
+        if self.of_share and "expected" in self.again.members:
+            ends, mentions = self.again.members["expected"], (("expected",),)
+            members["expected"] = Fact(ends, self.again.by, rows=result)
+        if self.errors is not None:
+            errors = {"own_error": self.errors.numerical, "sampling_error": self.errors.sampling}
+            members |= errors
+        settled = not (self.question or self.unknown or self.errors)
+        rows = None if result is None else result.independent
+        return Fact(members, (compared,), rows=rows, mentions=mentions, more={"settled": settled})
+
     @property
-    def every(self) -> tuple[Unsettled, ...]:
+    def every(self) -> tuple[Shortfall, ...]:
         """All unsettled results, the least settled first."""
-        return tuple(sorted(self.question + self.besides, key=lambda shortfall: -shortfall.factor))
+        return least_settled_first(self.question + self.besides)
 
     @property
     def sentence(self) -> str:
@@ -63,7 +83,7 @@ class Enough:
         again = self.again.sentence
         if self.unknown:
             return again
-        if any(isfinite(shortfall.factor) for shortfall in self.question):
+        if any(isfinite(factor) for _, factor in self.question):
             opening = "The rows are not enough to settle all of this. "
         elif self.errors is not None:
             opening = "More rows alone would not help, more accurate ones would. "
@@ -110,44 +130,46 @@ def enough_of(
         *answered
     ]
     about, rest = ([], primary) if regimes else (primary[:1], primary[1:])
-    question = [unsettled_number for quantity in about for unsettled_number in unsettled(quantity)]
-    question += [
-        unsettled_number for regime in regimes for unsettled_number in unsettled_share(regime)
+    question = [
+        *chain.from_iterable(map(unsettled, about)),
+        *chain.from_iterable(map(unsettled_share, regimes)),
+        *bounds_unsettled(findings, primary),
     ]
-    question += bounds_unsettled(findings, primary)
     besides = [
-        replace(other, clause=f"{other.clause} ({quantity.words})")
+        (f"{clause} ({quantity.words})", factor)
         for quantity in rest
-        for other in unsettled(quantity)
+        for clause, factor in unsettled(quantity)
     ]
     errors = None if not about or result.has_weights else _errors(findings, about[0])
     enough = Enough(
         unknown,
-        tuple(sorted(question, key=lambda shortfall: -shortfall.factor)),
-        tuple(sorted(besides, key=lambda shortfall: -shortfall.factor)),
+        least_settled_first(question),
+        least_settled_first(besides),
         errors,
         about[0].range.unit if about and about[0].range is not None else DisplayUnit(),
         _prediction(about, regimes),
+        bool(regimes) or any(quantity.first is not None for quantity in about),
     )
-    others = [
-        shortfall
-        for shortfall in enough.every
-        if shortfall is not next(iter(enough.question), None)
-    ]
+    first = next(iter(enough.question), None)
     sentences = (
-        capitalized(settled(shortfall, result))
-        for shortfall in others
-        if isfinite(shortfall.factor)
+        capitalized(settled(*shortfall, result))
+        for shortfall in enough.every
+        if shortfall is not first and isfinite(shortfall[1])
     )
     return replace(enough, others=tuple(sentences))
 
 
-def _prediction(about: Sequence[Quantity], regimes: Sequence[Event]) -> PredictionInterval:
+def least_settled_first(shortfalls: Iterable[Shortfall]) -> tuple[Shortfall, ...]:
+    """Return shortfalls, the one that needs most rows first."""
+    return tuple(sorted(shortfalls, key=lambda shortfall: -shortfall[1]))
+
+
+def _prediction(about: Sequence[Quantity], regimes: Sequence[Event]) -> Fact:
     if regimes:
         first = regimes[0]
         ranking = None if first.is_of_single else first.ranking
-        return repeated_share(f"be {first.predicate}", first.share, ranking)
-    return about[0].repeated if about else PredictionInterval()
+        return repeated_share(f"be {first.predicate}", first.share, ranking, first.by)
+    return about[0].repeated if about else Fact({})
 
 
 def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
@@ -157,15 +179,15 @@ def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
     return errors if errors.warning else None
 
 
-def settled(shortfall: Unsettled, result: Result) -> str:
+def settled(clause: str, factor: float, result: Result) -> str:
     """Return an unsettled result and the sample size that would settle it."""
-    return f"{shortfall.clause}; {needed(shortfall, result)} in all would settle it."
+    return f"{clause}; {needed(factor, result)} in all would settle it."
 
 
-def needed(shortfall: Unsettled, result: Result) -> str:
-    """Return the number of rows that would settle it, with samples if these have several rows."""
-    many = "more than" if shortfall.factor > MOST else "about"
-    factor = min(shortfall.factor, MOST)
+def needed(factor: float, result: Result) -> str:
+    """Return so many times the rows in words, with samples if these have several rows."""
+    many = "more than" if factor > MOST else "about"
+    factor = min(factor, MOST)
     rows = f"{many} {rows_in_words(factor * result.dataset.sizes['row'])} rows"
     samples = rows_in_words(factor * int(result.dataset.attrs["samples"]))
     return f"{rows} ({samples} samples)" if result.is_nested else rows

@@ -1,9 +1,15 @@
 """Tolerance bound that can be promised of an output, and its likely range."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import inf, isfinite, nan
+from itertools import chain
+from math import inf, isfinite, isnan, nan
+from typing import Any
 
 from uq.assess.answer.wording import DisplayUnit, rounded, sentence, share_text
+from uq.assess.fact import Fact, Functions
+from uq.result.elements import Element
+from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import CONFIDENCE
 from uq.text.numbers import grouped, listed, percent
@@ -11,50 +17,51 @@ from uq.text.numbers import grouped, listed, percent
 _ONE_END = (1 + CONFIDENCE) / 2
 """Confidence in one end of an interval."""
 
+_LAST = ("smallest", "largest")
 
-@dataclass(frozen=True)
-class SampleSupport:
-    """Values that a statistic describes.
 
-    Attributes
+def described_values(noun: str, undefined: float, rows_failed: bool = False) -> str:
+    """Return which values a statistic describes: ``of the computed lives``; "" for all.
+
+    Parameters
     ----------
-    rows_failed : bool
-        Whether there are rows without a value because they failed.
+    noun : str
     undefined : float
         Share of the rows without a defined value.
+    rows_failed : bool
+        Whether there are rows without a value because they failed.
     """
-
-    rows_failed: bool = False
-    undefined: float = 0.0
-
-    def phrase(self, noun: str) -> str:
-        """Return them in words: ``of the computed lives``; "" for all."""
-        if self.undefined > 0:
-            return f"of the defined {noun}"
-        return f"of the computed {noun}" if self.rows_failed else ""
+    if undefined > 0:
+        return f"of the defined {noun}"
+    return f"of the computed {noun}" if rows_failed else ""
 
 
-@dataclass(frozen=True)
-class BoundaryAtom:
-    """Rows that share the smallest or the largest value of all, so that no bound leaves them out.
+def piles(
+    element: Element, sides: tuple[bool, bool], coverage: float
+) -> dict[int, tuple[float, float]]:
+    """Return the sides on which more rows have the last value than a bound would leave out.
 
-    Attributes
+    Parameters
     ----------
-    upper : bool
-        Whether it is the largest.
-    value, share : float
-        The value, and how many rows have it.
+    element : Element
+    sides : tuple of bool
+        Whether a lower and an upper bound matter.
+    coverage : float
+
+    Returns
+    -------
+    dict of int to (float, float)
+        Side, 0 or 1 -> the last value, and the share of the rows that have it.
     """
-
-    upper: bool
-    value: float
-    share: float
-
-    def sentence(self, unit: DisplayUnit) -> str:
-        """Return their share in words."""
-        which = "largest" if self.upper else "smallest"
-        text = f"{percent(self.share)} of the rows share the {which} value, {unit.text(self.value)}"
-        return f"{text}, at which values may be cut off"
+    values = element.for_thresholds[element.present]
+    if element.is_lifetime or not len(values) or values.min() == values.max():
+        return {}
+    shares = {}
+    for side, last in enumerate((values.min(), values.max())):
+        count = int((values == last).sum())
+        if sides[side] and count > 1 and count >= (1 - coverage) * len(values):
+            shares[side] = (float(last), count / len(values))
+    return shares
 
 
 @dataclass(frozen=True)
@@ -81,16 +88,23 @@ class ToleranceBound:
         Verb for the end of a life.
     joint : tuple of str
         Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
-    support : SampleSupport
-        Values that it describes.
+    rows_failed : bool
+        Whether there are rows without a value because they failed.
+    undefined : float
+        Share of the rows without a defined value.
     recurs : bool
         Whether rows have equal values, so that many may equal a bound.
     ranks : tuple of int
         Places of the bounds among all rows, the smallest first; 0 without one.
     rows : int
         Number of all rows.
-    piled : tuple of BoundaryAtom
-        Instead of bounds: sides on which too many rows have the last value for one.
+    piled : dict of int to (float, float)
+        Instead of a bound, where too many rows share the smallest or the largest value: its side,
+        0 or 1 -> this value, and the share of the rows that have it.
+    by : tuple of callable
+        The functions that compute the bounds.
+    by_quantile : tuple of tuple of callable
+        Those that compute each quantile.
     """
 
     coverage: float
@@ -105,17 +119,54 @@ class ToleranceBound:
     of_magnitude: bool = False
     ends: str = "end"
     joint: tuple[str, ...] = ()
-    support: SampleSupport = field(default_factory=SampleSupport)
+    rows_failed: bool = False
+    undefined: float = 0.0
     recurs: bool = False
     ranks: tuple[int, int] = (0, 0)
     rows: int = 0
-    piled: tuple[BoundaryAtom, ...] = ()
+    piled: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    by: Functions = ()
+    by_quantile: tuple[Functions, Functions] = ((), ())
 
     @property
     def sentence(self) -> str:
-        """The promise, and boundary atoms; "" if there is none."""
-        piles = (f"{atom.sentence(self.unit)}." for atom in self.piled)
+        """The promise, and the values at which rows pile up; "" if there is none."""
+        piles = (
+            f"{percent(share)} of the rows share the {_LAST[side]} value, {self.unit.text(value)},"
+            " at which values may be cut off."
+            for side, (value, share) in self.piled.items()
+        )
         return " ".join(filter(None, (self._promised, *piles)))
+
+    @property
+    def fact(self) -> Fact:
+        """The promise with its numbers."""
+        low, high = self.quantiles
+        numbers = {
+            "coverage": self.coverage,
+            "confidence": self.confidence,
+            "lower": self.lower,
+            "upper": self.upper,
+            "lower_quantile": low.value,
+            "lower_quantile_low": low.low,
+            "upper_quantile": high.value,
+            "upper_quantile_high": high.high,
+        }
+        ranks = zip(("lower_is_row", "upper_is_row"), self.ranks, strict=True)
+        shares = {f"share_at_{_LAST[side]}": share for side, (_, share) in self.piled.items()}
+        by_low, by_high = self.by_quantile
+        return Fact(
+            {"sentence": self.sentence, "reason": self.reason}
+            | {name: estimate_json.number(value) for name, value in numbers.items()}
+            | {name: rank for name, rank in ranks if rank}
+            | shares
+            | ({"joint": list(self.joint)} if self.joint else {}),
+            tuple(dict.fromkeys((*self.by, *by_low, *by_high))),
+            dict.fromkeys(("lower_quantile", "lower_quantile_low"), by_low)
+            | dict.fromkeys(("upper_quantile", "upper_quantile_high"), by_high)
+            | dict.fromkeys(shares, (piles,)),
+            more={"unit": self.unit.name, "per": self.unit.per},
+        )
 
     @property
     def probabilities(self) -> tuple[float, float]:
@@ -139,7 +190,9 @@ class ToleranceBound:
                 f", and at least {covered} ".join(bounds),
             )
             return f"{self._confidence}{separately}, at least {covered} {joined}."
-        share = " ".join(filter(None, (share, self.support.phrase(self._noun))))
+        share = " ".join(
+            filter(None, (share, described_values(self._noun, self.undefined, self.rows_failed)))
+        )
         cautious: list[str] = []
         for i, quantile in enumerate(self.quantiles):
             end = (quantile.low, quantile.high)[i]
@@ -226,7 +279,7 @@ class ToleranceBound:
     @property
     def _of_bounded(self) -> str:
         """Values that a tolerance bound describes: failed rows count as beyond it."""
-        return replace(self.support, rows_failed=False).phrase(self._noun)
+        return described_values(self._noun, self.undefined)
 
     @property
     def _is_cautious(self) -> bool:
@@ -249,7 +302,8 @@ class ToleranceBound:
 class Range:
     """The likely range: quantiles of 5, 50 and 95 %, and the share of lives that never end.
 
-    ``ends`` is the verb for the end of a life, ``support`` which values they describe.
+    ``ends`` is the verb for the end of a life; see `ToleranceBound` for the other attributes.
+    ``by`` has the functions that compute ``low``, ``median``, ``high`` and ``never``.
     """
 
     low: Estimate
@@ -259,15 +313,40 @@ class Range:
     of_magnitude: bool = False
     ends: str = "end"
     never: Estimate = NOTHING
-    support: SampleSupport = field(default_factory=SampleSupport)
+    rows_failed: bool = False
+    undefined: float = 0.0
     is_life: bool = False
+    by: Mapping[str, Functions] = field(default_factory=dict)
+
+    @property
+    def fact(self) -> Fact:
+        """The range with its numbers."""
+        members: dict[str, Any] = {"sentence": self.sentence}
+        for name in ("low", "median", "high"):
+            estimate = getattr(self, name)
+            members[name] = estimate_json.number(estimate.value)
+            members |= estimate_json.flag(f"{name}_", estimate, "value")
+        if not isnan(self.never.value):
+            members["never"] = self.never.value
+            for end, at in estimate_json.ends(self.never).items():
+                members[f"never_{end}"] = at
+        by_member = {
+            member: self.by[name]
+            for name in self.by
+            for member in members
+            if member.partition("_")[0] == name
+        }
+        quantiles = (self.by.get(name, ()) for name in ("low", "median", "high"))
+        by = tuple(dict.fromkeys(chain.from_iterable(quantiles)))
+        return Fact(members, by, by_member, more={"unit": self.unit.name, "per": self.unit.per})
 
     @property
     def sentence(self) -> str:
         """Range, median, and share that never ends, as far as known."""
         parts = []
         noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
-        of_values = self.support.phrase(noun) or "of the magnitudes" * self.of_magnitude
+        of_values = described_values(noun, self.undefined, self.rows_failed)
+        of_values = of_values or "of the magnitudes" * self.of_magnitude
         subject = f"{of_values} " if of_values else ""
         if isfinite(self.low.value) and isfinite(self.high.value):
             ends = self.unit.between(self.low.value, self.high.value, " and ")
@@ -279,8 +358,8 @@ class Range:
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
         parts.append(self._never)
-        if self.support.undefined > 0:
-            parts.append(f"{percent(self.support.undefined)} of the rows have none")
+        if self.undefined > 0:
+            parts.append(f"{percent(self.undefined)} of the rows have none")
         return sentence("; ".join(filter(None, parts))) if any(parts) else ""
 
     @property

@@ -36,9 +36,9 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     if not enough.every:
         return ["Enough rows: what the study asks is settled."] if asked else []
     lines = [
-        f"Not enough rows: {settled(shortfall, result)}"
-        if isfinite(shortfall.factor)
-        else f"{sentence(shortfall.clause)} More rows would not help."
-        for shortfall in enough.every
+        f"Not enough rows: {settled(clause, factor, result)}"
+        if isfinite(factor)
+        else f"{sentence(clause)} More rows would not help."
+        for clause, factor in enough.every
     ]
     return lines if enough.question else ["Enough rows for what the study is about.", *lines]

@@ -105,7 +105,6 @@ def summary(
 ) -> None:
     """Show the answer, and statistics of each output."""
     from uq.assess.answer.answer import conclude
-    from uq.assess.answer.answer_json import answer_json
     from uq.assess.findings import Findings
     from uq.assess.regime_boundary import boundary_facts
     from uq.assess.summary import summarise
@@ -130,7 +129,7 @@ def summary(
         summary_tables.show_summary(opened, statistics)
         warn_if_altered(result)
         return
-    answer = {"answer": answer_json(conclude(findings))} if answered else {}
+    answer = {"answer": conclude(findings).fact.json} if answered else {}
     between = boundary_facts(opened, findings.boundary).json if answered else {}
     print_json(summary_facts(statistics).json | between | answer)
     warn_if_altered(result)

@@ -4,14 +4,17 @@ from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
-from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.contributions import Contribution, whole_percent
 from uq.assess.answer.facts import Answer
 from uq.assess.answer.parts import Quantity
-from uq.assess.answer.wording import called, sentence
+from uq.assess.answer.remedies import Advice
+from uq.assess.answer.wording import called, sentence, share_text
 from uq.errors import choices
-from uq.render.html import bars, folded, keyed_sentences
+from uq.render.html import bars
+from uq.render.html.folded import below, folded, items
+from uq.render.html.keyed_sentences import joined, keyed, shown, with_keys
 from uq.text.literals import plain
-from uq.text.numbers import capitalized, printed
+from uq.text.numbers import capitalized
 
 _STYLE = """
 .answer, .answer-words, .answer-side { display: grid; gap: .3rem 2rem;
@@ -84,96 +87,147 @@ def notebook(answer: Answer) -> str:
     return str(Markup("<style>{}</style>{}").format(STYLE, fragment(answer)))
 
 
-def sayings(quantities: Sequence[Quantity]) -> Markup:
-    """Return what is known of some quantities, in sentences."""
+def sayings(answer: Answer, quantities: Sequence[Quantity]) -> Markup:
+    """Return some quantities of an answer in sentences."""
     sentences = []
     for quantity in quantities:
+        place, of_error = _place(quantity), keyed(answer.fact, *_place(quantity), "own_error")
         lines = [
-            keyed_sentences.promise(quantity),
-            keyed_sentences.basis(quantity),
-            keyed_sentences.likely(quantity),
+            keyed(answer.fact, *place, "promise"),
+            joined(_basis(quantity), of_error),
+            keyed(answer.fact, *place, "range"),
+            *(
+                _event(answer, *place, "events", event.name)
+                for event in quantity.events
+                if event.sentence
+            ),
+            _leader(answer, quantity),
+            keyed(answer.fact, *place, "another_seed"),
+            *_earliest(answer, quantity),
         ]
-        lines += [
-            *keyed_sentences.events(quantity),
-            keyed_sentences.leader(quantity),
-            keyed_sentences.repeated(quantity),
-        ]
-        lines += keyed_sentences.earliest(quantity)
-        items = Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
-        title = capitalized(quantity.words)
-        sentences.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(printed(title)), items))
+        title = shown(capitalized(quantity.words))
+        sentences.append(
+            Markup("<h3>{}</h3><ul>{}</ul>").format(
+                title, Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
+            )
+        )
     return Markup("").join(sentences)
 
 
 def regimes(answer: Answer) -> Markup:
     """Return the shares of the regimes, and what decides them."""
-    items = (
-        Markup("<li>{}</li>").format(keyed_sentences.regime(regime)) for regime in answer.regimes
-    )
-    return Markup("<ul>{}</ul>").format(Markup("").join(items)) if answer.regimes else Markup()
+    events = [_event(answer, "regimes", regime.predicate) for regime in answer.regimes]
+    return items(events)
+
+
+def _place(quantity: Quantity) -> tuple[str, str]:
+    return "quantities", quantity.name
+
+
+def _basis(quantity: Quantity) -> Markup:
+    """Return the kind of bound that is promised, or why there is none."""
+    return shown("" if quantity.promise is None else quantity.promise.basis)
+
+
+def _event(answer: Answer, *place: str) -> Markup:
+    """Return the probability of an event, its main driver, and where it is rare."""
+    share = keyed(answer.fact, *place, "share")
+    return joined(share, _cause(answer, *place))
+
+
+def _cause(answer: Answer, *place: str) -> Markup:
+    return joined(keyed(answer.fact, *place), keyed(answer.fact, *place, "limit"))
+
+
+def _leader(answer: Answer, quantity: Quantity) -> Markup:
+    """Return the leading contribution with its effect, or why it is unknown."""
+    place, ranking = (*_place(quantity), "ranking"), quantity.ranking
+    sentence_of_leader = keyed(answer.fact, *place)
+    if ranking is None or ranking.leader is None or not (ranking.leads and ranking.leader.effect):
+        return sentence_of_leader
+    text = sentence(ranking.leader.effect)
+    effect = keyed(answer.fact, *place, "contributions", "0", "effects", text=text)
+    return joined(sentence_of_leader, effect)
+
+
+def _earliest(answer: Answer, quantity: Quantity) -> Iterator[Markup]:
+    """Yield what distinguishes the rows that end first, and which these are."""
+    if quantity.earliest is None:
+        return
+    place = (*_place(quantity), "earliest")
+    if apart := keyed(answer.fact, *place):
+        yield apart
+    command = Markup("<code>{}</code>").format(plain(quantity.earliest.command))
+    first = keyed(answer.fact, *place, "lives")
+    yield Markup("{} To see the first: {}").format(first, command)
 
 
 def _verdict(answer: Answer) -> Markup:
-    lead = answer.lead
+    lead, facts = answer.lead, answer.fact
     parts = [] if lead is None else list(_of_lead(lead, answer))
+    again = keyed(facts, "enough")
+    if lead is not None and not answer.regimes_first:  # the same number stands with the quantity
+        again = keyed(facts, *_place(lead), "another_seed", text=answer.enough.sentence)
+    levels = joined(keyed(facts, "levels"), keyed(facts, "levels", "another_regime"))
+    unsettled = items(answer.enough.others)
     sentences = [
-        keyed_sentences.enough(answer),
-        keyed_sentences.levels(answer),
-        folded.unsettled(answer),
+        _line(levels),
+        _small(again),
+        folded("What is not settled besides", unsettled),
     ]
-    causes = [keyed_sentences.cause_of(cause) for cause in answer.regime_causes]
-    shares = keyed_sentences.shares(answer.main_regimes)
-    mixing = keyed_sentences.mixing(answer)
+    causes = [
+        keyed(facts, "regimes", regime.predicate, text=regime.named_cause)
+        for regime in answer.regime_causes
+    ]
+    shares = _shares(answer)
     if answer.regimes_first:
-        parts = [
-            _large(shares),
-            _line(mixing) if mixing else mixing,
-            *_under(sentences),
-            *map(_line, causes),
-            *parts,
-        ]
+        mixing = keyed(facts, "intermingled")
+        parts = [_large(shares), _line(mixing), *sentences, *map(_line, causes), *parts]
     else:
-        parts += [*_under(sentences), _line(shares) if shares else shares]
-        decided = folded.items([*causes, answer.starts_alike])
-        parts.append(folded.folded("What decides the regime", decided))
-    parts.append(folded.folded("What it assumes", folded.items(answer.assumptions)))
+        parts += [*sentences, _line(shares)]
+        decided = items([*causes, answer.starts_alike])
+        parts.append(folded("What decides the regime", decided))
+    parts.append(folded("What it assumes", items(answer.assumptions)))
     if answer.failed or lead is None:
-        parts.insert(0, _line(keyed_sentences.rows(answer)))
+        parts.insert(0, _line(keyed(facts)))
     return _block("verdict", parts)
 
 
-def _under(sentences: Sequence[Markup]) -> Iterator[Markup]:
-    """Yield whether the rows are enough, which level decides, and what is to be unfolded."""
-    again, levels, unsettled = sentences
-    yield _line(levels) if levels else levels
-    yield _small(again) if again else again
-    yield unsettled
+def _shares(answer: Answer) -> Markup:
+    """Return the shares of the main regimes in one sentence; "" without any."""
+    phrases = []
+    for regime in answer.main_regimes:
+        text = f"{share_text(regime.share)} {regime.predicate}"
+        phrases.append(keyed(answer.fact, "regimes", regime.predicate, "share", text=text))
+    return Markup("{}.").format(Markup(", ").join(phrases)) if phrases else Markup()
 
 
 def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
-    share, cause = keyed_sentences.first(lead)
-    if verdict := keyed_sentences.promise(lead) or share:
-        yield _line(verdict) if answer.regimes_first else _large(verdict)
-    if cause:
-        yield _line(cause)
+    facts, place = answer.fact, _place(lead)
+    verdict, cause = keyed(facts, *place, "promise"), Markup()
+    if lead.first is not None:
+        first = (*place, "events", lead.first.name)
+        verdict, cause = keyed(facts, *first, "share"), _cause(answer, *first)
+    yield _line(verdict) if answer.regimes_first else _large(verdict)
+    yield _line(cause)
     yield _small(lead.subject)
-    if basis := keyed_sentences.basis(lead):
-        yield _small(basis)
-    if likely := keyed_sentences.likely(lead):
-        yield _line(likely)
-    yield from map(_line, keyed_sentences.others(lead))
+    yield _small(joined(_basis(lead), keyed(facts, *place, "own_error")))
+    yield _line(keyed(facts, *place, "range"))
+    for event in lead.others:
+        if event.sentence:
+            yield _line(_event(answer, *place, "events", event.name))
     if answer.regimes_first:
         return
-    elements = [element for element in answer.quantities[1:] if element.output == lead.output]
     promised = [
         quantity
-        for quantity in elements
-        if quantity.promise is not None and quantity.promise.sentence
+        for quantity in answer.quantities[1:]
+        if quantity.output == lead.output
+        and quantity.promise is not None
+        and quantity.promise.sentence
     ]
     for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:
-        yield _small(
-            Markup("{}: {}").format(plain(printed(other.place)), keyed_sentences.promise(other))
-        )
+        promise = keyed(facts, *_place(other), "promise")
+        yield _small(Markup("{}: {}").format(shown(other.place), promise))
 
 
 def _ranking(answer: Answer) -> Markup:
@@ -183,10 +237,10 @@ def _ranking(answer: Answer) -> Markup:
     ranking = lead.ranking
     title = Markup("<h3>What it depends on</h3>{}").format(_levels(answer))
     if ranking.leader is None:
-        why = keyed_sentences.leader(lead)
+        why = _leader(answer, lead)
         if answer.regimes_first:
-            why = Markup("{} {}").format(plain(printed(sentence(lead.words))), why)
-        return _block("ranking", [title, _line(why)])
+            why = Markup("{} {}").format(shown(sentence(lead.words)), why)
+        return _block("ranking", [title, Markup("<p>{}</p>").format(why)])
     note = _small(" ".join(filter(None, (sentence(ranking.index_meaning), answer.ties))))
     largest = ranking.contributions[0].value
     seen = [
@@ -194,8 +248,8 @@ def _ranking(answer: Answer) -> Markup:
         for contribution in ranking.contributions
         if contribution.value >= _SEEN * largest
     ]
-    shown = enumerate(seen[:_MOST_BARS])
-    return _block("ranking", [title, *(_bar(lead, *bar) for bar in shown), note])
+    shown_bars = enumerate(seen[:_MOST_BARS])
+    return _block("ranking", [title, *(_bar(answer, lead, *bar) for bar in shown_bars), note])
 
 
 def _levels(answer: Answer) -> Markup:
@@ -205,46 +259,51 @@ def _levels(answer: Answer) -> Markup:
     blocks = []
     for level in answer.levels.levels:
         track = bars.bar(level.share.value, level.share.low, level.share.high, (0.0, 1.0))
-        size = Contribution(level.inputs, (level.share,), share_of_variance=True).size
-        texts = capitalized(level.words), track, size, level.inputs_named
-        blocks.append(_BAR.format(*map(_shown, texts)))
+        texts = capitalized(level.words), track, whole_percent(level.share), level.inputs_named
+        blocks.append(_BAR.format(*map(shown, texts)))
     return Markup("").join([*blocks, _small(f"Share of the variance of {answer.levels.subject}.")])
 
 
 def _first(answer: Answer) -> Markup:
     """Return which rows of a life end first, and why."""
-    lines = [] if answer.lead is None else [*map(_line, keyed_sentences.earliest(answer.lead))]
+    lines = [] if answer.lead is None else [*map(_line, _earliest(answer, answer.lead))]
     title = Markup("<h3>What ends first</h3>")
     return _block("first", [title, *lines]) if lines else Markup()
 
 
-def _bar(lead: Quantity, number: int, level: Contribution) -> Markup:
+def _bar(answer: Answer, lead: Quantity, number: int, level: Contribution) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
     assert lead.ranking is not None
     largest = lead.ranking.contributions[0].value
     most = largest if level.unit.name else max(1.0, largest)
     first = level.indices[0]
     track = bars.bar(level.value, first.low, first.high, (0.0, most))
-    words, told = level.words, bool(level.effect)
+    place = (*_place(lead), "ranking", "contributions", str(number))
+    words, effect = level.words, keyed(answer.fact, *place, "effects")
     if len(level.inputs) > _MOST_NAMED:
-        words, told = choices(map(called, level.inputs), _MOST_NAMED - 1), False
-    return _BAR.format(
-        plain(capitalized(words)),
-        track,
-        keyed_sentences.size(lead, number, level),
-        keyed_sentences.effect(lead, number, level) if told else "",
-    )
+        words, effect = choices(map(called, level.inputs), _MOST_NAMED - 1), Markup()
+    size = keyed(answer.fact, *place, "inputs")
+    return _BAR.format(plain(capitalized(words)), track, size, effect)
 
 
 def _to_do(answer: Answer) -> Markup:
     if not answer.advice:
         return Markup()
-    items = (
-        Markup("<li>{}{}</li>").format(keyed_sentences.advice(advice), folded.below(advice))
-        for advice in answer.advice
+    entries = (
+        Markup("{}{}").format(_advice(answer, advice), below(advice)) for advice in answer.advice
     )
-    title = Markup("<h3>What to do</h3>")
-    return _block("todo", [title, Markup("<ul>{}</ul>").format(Markup("").join(items))])
+    return _block("todo", [Markup("<h3>What to do</h3>"), items(entries)])
+
+
+def _advice(answer: Answer, advice: Advice) -> Markup:
+    """Return one thing to do, with its alternatives."""
+    if not advice.key:
+        has_number = advice.rows is not None
+        return keyed(answer.fact, "advice", advice.rule) if has_number else shown(advice.sentence)
+    sure = [] if advice.sure is None else [with_keys(advice.sure.promised, advice.sure.key)]
+    worse = (with_keys(harm.besides, harm.key) for harm in advice.harmed)
+    also = with_keys(advice.also, *(tolerance.key for tolerance in advice.alike))
+    return joined(with_keys(advice.sentence, advice.key), *sure, *worse, also)
 
 
 def _block(name: str, parts: list[Markup]) -> Markup:
@@ -252,16 +311,12 @@ def _block(name: str, parts: list[Markup]) -> Markup:
 
 
 def _large(text: str) -> Markup:
-    return Markup('<p class="answer-promise">{}</p>').format(_shown(text)) if text else Markup()
+    return Markup('<p class="answer-promise">{}</p>').format(shown(text)) if text else Markup()
 
 
 def _line(text: str) -> Markup:
-    return Markup("<p>{}</p>").format(_shown(text))
+    return Markup("<p>{}</p>").format(shown(text)) if text else Markup()
 
 
 def _small(text: str) -> Markup:
-    return Markup('<p class="answer-why">{}</p>').format(_shown(text))
-
-
-def _shown(text: str) -> str:
-    return text if isinstance(text, Markup) else plain(printed(text))
+    return Markup('<p class="answer-why">{}</p>').format(shown(text)) if text else Markup()

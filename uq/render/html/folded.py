@@ -4,12 +4,10 @@ from collections.abc import Collection, Iterable
 
 from markupsafe import Markup
 
-from uq.assess.answer.facts import Answer
 from uq.assess.answer.remedies import Advice, TighterTolerance
 from uq.assess.answer.wording import called_together
-from uq.render.html import keyed_sentences
-from uq.text.literals import plain
-from uq.text.numbers import capitalized, printed
+from uq.render.html.keyed_sentences import shown, with_keys
+from uq.text.numbers import capitalized
 
 
 def folded(title: str, content: Markup) -> Markup:
@@ -20,13 +18,8 @@ def folded(title: str, content: Markup) -> Markup:
 
 def items(lines: Iterable[str]) -> Markup:
     """Return lines as a list; "" without any."""
-    entries = Markup("").join(Markup("<li>{}</li>").format(_shown(line)) for line in lines if line)
+    entries = Markup("").join(Markup("<li>{}</li>").format(shown(line)) for line in lines if line)
     return Markup("<ul>{}</ul>").format(entries) if entries else entries
-
-
-def unsettled(answer: Answer) -> Markup:
-    """Return what is not settled besides what is advised; "" where there is nothing."""
-    return folded("What is not settled besides", items(answer.enough.others))
 
 
 def below(advice: Advice) -> Markup:
@@ -54,16 +47,16 @@ def _tolerances(advice: Advice) -> Markup:
             _cell(by_statistic[what], above) if what in by_statistic else Markup("<td></td>")
             for what in numbers
         )
-        law = Markup("<small>{}</small>").format(_shown(next(iter(by_statistic.values())).law))
-        lines.append([_shown(capitalized(called_together(inputs))) + law, *cells])
+        law = Markup("<small>{}</small>").format(shown(next(iter(by_statistic.values())).law))
+        lines.append([shown(capitalized(called_together(inputs))) + law, *cells])
     head = Markup("").join(
         Markup('<th scope="col" class="number">{}</th>').format(
-            _shown(capitalized(what.removeprefix("the ")))
+            shown(capitalized(what.removeprefix("the ")))
         )
         for what in numbers
     )
     body = Markup("").join(
-        Markup('<tr><th scope="row">{}</th>{}</tr>').format(_shown(first), Markup("").join(cells))
+        Markup('<tr><th scope="row">{}</th>{}</tr>').format(shown(first), Markup("").join(cells))
         for first, *cells in lines
     )
     table = Markup("<table><thead><tr><td></td>{}</tr></thead><tbody>{}</tbody></table>")
@@ -71,17 +64,13 @@ def _tolerances(advice: Advice) -> Markup:
 
 
 def _number(text: str) -> Markup:
-    return Markup('<td class="number">{}</td>').format(_shown(text))
+    return Markup('<td class="number">{}</td>').format(shown(text))
 
 
 def _cell(tolerance: TighterTolerance, above: Collection[str]) -> Markup:
     """Return a number with its interval, and with its key where no sentence above has it."""
     text = tolerance.text(tolerance.after)
-    number = _shown(text) if tolerance.key in above else keyed_sentences.keyed(text, tolerance.key)
+    number = shown(text) if tolerance.key in above else with_keys(text, tolerance.key)
     return Markup('<td class="number">{}<small>{}</small></td>').format(
-        number, _shown(tolerance.interval)
+        number, shown(tolerance.interval)
     )
-
-
-def _shown(text: str) -> str:
-    return text if isinstance(text, Markup) else plain(printed(text))

@@ -68,7 +68,7 @@ def groups(
         group = Group(
             name,
             readable(str(result.dataset[name].attrs["long_name"])),
-            sayings([quantity for quantity in answer.quantities[1:] if quantity.output == name]),
+            sayings(answer, [entry for entry in answer.quantities[1:] if entry.output == name]),
             [*_shares(findings, name), *result_tables(matching)],
             words_used(matching),
             [figure for figure in drawn if name in (figure.of.name, output_of(figure.of.name))],

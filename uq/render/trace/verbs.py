@@ -6,10 +6,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from uq.assess.answer.answer import conclude, regimes_of, without_advice
+from uq.assess.answer.facts import Answer
+from uq.assess.answer.quantities import quantities
 from uq.assess.chosen_targets import chosen, output_in
 from uq.assess.convergence import enough, estimates_from
 from uq.assess.design_sample import sample_of
 from uq.assess.fact import Fact
+from uq.assess.findings import Findings
 from uq.assess.fleet import fleet_of, the_life
 from uq.assess.fleet_json import fleet_facts
 from uq.assess.level_shares import by_level
@@ -27,7 +31,6 @@ from uq.assess.what_if import read_changes, what_if_facts
 from uq.errors import InputError
 from uq.learning.answer import learnt, learnt_facts
 from uq.learning.remaining_life import read_times
-from uq.render.trace import answer
 from uq.result.result import Result
 from uq.text.keys import SUMMARY, Options, Path
 from uq.text.quantities import read_threshold
@@ -57,6 +60,22 @@ def _inside(path: Path) -> str:
     """Return the output or element that a path names, alone or inside of a target, or ""."""
     name = _named(path, "outputs", "quantities")
     return split_name(name)[1] if name else ""
+
+
+def _answer(result: Result, options: Options, path: Path) -> Fact:
+    """Return the answer; of the quantity or the part alone that a path names."""
+    findings = Findings(result)
+    part, *names = path or ("",)
+    alone = not result.is_nested  # variance components change the sentences on regimes
+    if part == "quantities" and names and alone:
+        answered = tuple(quantities(findings, names[0]))
+        return Answer("", 0, 0, answered, (), (), result=result).fact
+    if part == "regimes" and alone:
+        occurring = tuple(regimes_of(findings))
+        return Answer("", 0, 0, (), occurring, (), result=result).fact
+    if part in ("rows", "failed"):
+        return Answer("", len(result), int(result.failed.sum()), (), (), ()).fact
+    return (conclude if part in ("", "advice") else without_advice)(findings).fact
 
 
 def _inputs(result: Result, options: Options, path: Path) -> Fact:
@@ -175,7 +194,7 @@ class Verb(NamedTuple):
 
 VERBS: dict[str, Verb] = {
     SUMMARY: Verb(_summary, ("regime",)),
-    "answer": Verb(answer.facts),
+    "answer": Verb(_answer),
     "inputs": Verb(_inputs, (), _no_states),
     "sensitivity": Verb(_sensitivity, ("method", "regime"), _states_of_groups),
     "levels": Verb(_levels),

@@ -15,6 +15,7 @@ from nested_studies import nested_result
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Ranking
 from uq.assess.answer.facts import Answer
+from uq.assess.fact import Fact
 
 MOVED = 1.9
 """By what a number is multiplied: no interval is as wide."""
@@ -125,9 +126,20 @@ def mutants(record, path=()):
             yield replace(record, **{field.name: changed}), where
 
 
+def changed_sentences(fact, path):
+    """Yield copies of a fact, each with one number of its sentence changed, and where."""
+    text = fact.sentence
+    for match in answered.IN_TEXT.finditer(text):
+        if number := float(match[0].rstrip(".")):
+            moved = f"{text[: match.start()]}{number * MOVED:.4g}{text[match.end() :]}"
+            yield replace(fact, members={**fact.members, "sentence": moved}), (*path, match[0])
+
+
 def changes(value, path):
     if isinstance(value, float) and isfinite(value) and value:
         yield value * MOVED, path
+    elif isinstance(value, Fact):  # its sentence was written with its numbers
+        yield from changed_sentences(value, path)
     elif is_dataclass(value) and not isinstance(value, type):
         yield from mutants(value, path)
     elif type(value) is tuple:

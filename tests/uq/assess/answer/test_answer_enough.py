@@ -119,7 +119,7 @@ def test_numbers_of_the_errors_and_the_shares_can_be_traced():
     regimes = kinds(samples=400, analysis={"outputs": ["regime", "work"]})
     document = trace(regimes, "answer/enough/expected/low")
     assert document["equal"] and document["value"] == pytest.approx(
-        answer(regimes).enough.again.low
+        answer(regimes).enough.again.members["expected"]["low"]
     )
 
 

@@ -7,7 +7,6 @@ import pytest
 from computed import asking, linear, with_output, with_status
 
 from uq import answer
-from uq.assess.answer.answer_json import answer_json
 from uq.contract import Status
 from uq.render.html.answer import fragment
 
@@ -64,7 +63,7 @@ def test_every_reader_gets_an_answer(case):
     text = repr(conclusions)
     assert not {"nan", "inf", "None"} & {*text.replace("(", " ").replace("%", " ").split()}
     assert fragment(conclusions).startswith('<div class="answer">')
-    json.dumps(answer_json(conclusions), allow_nan=False)
+    json.dumps(conclusions.fact.json, allow_nan=False)
 
 
 def test_where_all_rows_fail_nothing_else_is_advised():

@@ -9,13 +9,13 @@ from computed import UNIFORM, asking, computed, linear, study_of, with_output
 import uq
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Contribution, Ranking
-from uq.assess.answer.regime_mixing import Intermingled
+from uq.assess.answer.regime_mixing import intermingled
 from uq.render.html.answer import fragment
 from uq.stats.estimate import Estimate
 
 
 def test_intermingled_regimes_say_how_little_better_known_inputs_tell():
-    assert Intermingled(Estimate(0.5, 0.4, 0.6)).sentence == (
+    assert intermingled(Estimate(0.5, 0.4, 0.6)).sentence == (
         "The regimes are intermingled: with all inputs known twice as well, 70.7 % (66.0 to 75.8 %)"
         " of the uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
         " (uncertainty exponent 0.5)."
@@ -24,7 +24,7 @@ def test_intermingled_regimes_say_how_little_better_known_inputs_tell():
 
 @pytest.mark.parametrize("exponent", [Estimate(0.9, 0.8, 1.0), Estimate(0.5), Estimate(reason="")])
 def test_a_boundary_that_may_be_smooth_is_not_called_intermingled(exponent):
-    assert Intermingled(exponent).sentence == ""
+    assert intermingled(exponent).members == {}
 
 
 def tied():

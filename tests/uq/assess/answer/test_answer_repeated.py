@@ -7,7 +7,8 @@ from computed import asking, kinds, linear, with_output
 
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Contribution, Ranking
-from uq.assess.answer.repeat_interval import PredictionInterval, found_again, repeated_quantile
+from uq.assess.answer.repeat_interval import found_again, repeated_quantile
+from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import DisplayUnit
 from uq.stats import order_statistics
 from uq.stats.estimate import Estimate
@@ -41,7 +42,7 @@ def test_other_seeds_find_a_share_where_the_answer_says():
 def test_an_estimate_without_an_interval_says_nothing_of_other_seeds():
     assert all(map(np.isnan, found_again(Estimate(1.0), True)))
     (quantity,) = answer(asking(linear(samples=5), outputs=["y"])).quantities
-    assert quantity.repeated.subject == ""
+    assert "expected" not in quantity.repeated.members and quantity.repeated.mentions == ()
 
 
 def test_the_quantile_and_the_input_that_contributes_most_are_said():
@@ -88,10 +89,10 @@ def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
 
 def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
     unit = DisplayUnit("rad s⁻¹")
-    prediction = PredictionInterval("the 5 % quantile", 153.8, 154.2, unit=unit)
-    assert (
-        prediction.sentence
-        == "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
+    quantiles = Estimate(154.0, 153.9, 154.1), Estimate()
+    promise = ToleranceBound(0.95, 0.95, np.nan, np.nan, unit, quantiles)
+    assert repeated_quantile(promise, None, None).sentence == (
+        "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
     )
     index = Estimate(0.5, 0.4, 0.6)
     leader = Contribution(("a",), (index,), True)

@@ -15,7 +15,6 @@ from nested_studies import nested
 
 import uq as api
 from uq.assess.answer.answer import answer
-from uq.assess.answer.answer_json import answer_json
 from uq.errors import InputError
 from uq.explore.row_again import row
 from uq.explore.updating import update
@@ -35,7 +34,10 @@ ASKED = {
     "thresholds": {"life": [0.9, 1.2], "angle": 0.5},
     "tolerance": {"coverage": 0.8, "confidence": 0.8},
 }
-COUNTS = ("counts", "status_counts", "independent_rows", "b_lives", "nesting_of", "switching")
+COUNTS = (
+    *("counts", "status_counts", "independent_rows", "b_lives", "nesting_of", "switching"),
+    *("earliest_rows", "lowest_rows"),
+)
 COMPARED = (*COUNTS, "enough")
 """Functions that estimate nothing, or compare estimates: they cite nobody."""
 
@@ -167,7 +169,7 @@ def test_the_error_of_the_rows_is_that_of_the_rows_used():
 
 def test_a_ranking_of_samples_with_several_rows_says_which_it_rests_on():
     ds = computed(nested(samples=200))
-    quantities = answer_json(answer(ds))["quantities"]
+    quantities = answer(ds).fact.json["quantities"]
     name, first = next(
         (name, quantity["ranking"]["contributions"][0]["inputs"])
         for name, quantity in quantities.items()
