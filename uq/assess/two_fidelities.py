@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from uq.assess.counted_rows import share_of
 from uq.assess.failed_rows import failed_share_bounds
+from uq.assess.sample import share_of
 from uq.assess.statistics.thresholds import SIDES
 from uq.contract import Floats
 from uq.errors import InputError, first_fault_alone

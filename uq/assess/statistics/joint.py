@@ -25,7 +25,7 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 def joint(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the bounds of an element, of all that hold at once, and the rows that these need."""
     asked = context.analysis
-    if context.replicate is not None or context.weights is not None:
+    if not context.sample(element).is_simple_random:
         return
     bounds = [limit for limit in context.joint_bounds if limit.element == element.name]
     if not bounds:

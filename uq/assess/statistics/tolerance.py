@@ -5,9 +5,6 @@ from dataclasses import replace
 from math import isnan
 from typing import Any
 
-import numpy as np
-
-from uq.assess.counted_rows import whenever_censored_rows_end
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
@@ -30,13 +27,9 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     Of an angle, whose sign is only a direction, also the upper bound of the magnitude.
     """
     asked = context.analysis.tolerance
-    if asked is None or context.replicate is not None or context.weights is not None:
+    if not asked or not (bounds := context.sample(element).tolerance_bounds(*asked)):
         return
     failed = int(element.failed.sum())
-    early = tolerance_bounds(element.at_least, failed, *asked)
-    late = tolerance_bounds(element.at_most, failed, *asked)
-    lower = whenever_censored_rows_end((early[0], early[0]))
-    upper = whenever_censored_rows_end((early[1], late[1]))
     needed = rows_still_needed(int((element.present | element.failed).sum()), failed, *asked)
     coverage, confidence = (f"{100 * share:g}" for share in asked)
     listing = Listing(
@@ -45,10 +38,6 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         keeps_empty=True,
     )
     bound = StatisticKind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
-    bounds = {"lower": lower, "upper": upper}
-    if element.is_angle:
-        largest = tolerance_bounds(np.abs(element.at_most), failed, *asked)[1]
-        bounds["magnitude"] = Estimate(largest)
     for name, estimate in bounds.items():
         yield Statistic(
             ("tolerance", name),
