@@ -208,9 +208,9 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
     if scales and element.censored.any():
         why = why_not_integrated(rows, element)
     elif scales:
-        inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
-        outside = integrated(rows, element.declared, inputs, {SHARED})
-        inner, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
+        inner, kept = integrated(rows, element.declared, inputs, {OWN, CHANCE})
+        shared, kept_outside = integrated(rows, element.declared, inputs, {SHARED})
+        kept |= kept_outside
         if inner and shared and shared.spread >= _WIDEST * inner.spread:
             kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(inner.inputs)))
             shared = None

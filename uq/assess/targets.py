@@ -209,8 +209,8 @@ def _heaviness(target: IndexTarget) -> str:
 
 
 def _lighter_form(element: Element) -> str:
-    logarithms = logarithm(element)
-    return "rank" if logarithms.refused or heaviness(logarithms.values) else "log"
+    logarithms, refused = logarithm(element)
+    return "rank" if refused or heaviness(logarithms) else "log"
 
 
 def _event(element: Element, threshold: float) -> IndexTarget:

@@ -178,8 +178,8 @@ class Result:
     def notes_on_places(self) -> list[str]:
         """A sentence on each output of which only some elements are shown."""
         return [
-            f"{name}: shown at evenly spread places, as it has {size} elements; name it in [analysis]"
-            " outputs for all of them"
+            f"{name}: shown at evenly spread places, as it has {size} elements; name it in"
+            " [analysis] outputs for all of them"
             for name, size in thinned_outputs(self.dataset).items()
         ]
 
