@@ -9,7 +9,6 @@ Reading order; each part imports only those above it:
     joint_bounds          tolerance bounds that hold for several outputs at once
     solver_error          effect of stated errors of rows on their values and scatter
     input_changes         differences between two studies of one model: inputs, settings, design
-    counted_rows          rows that count alike
     row_inputs            the uncertain inputs of some rows
     random_effects        distribution of the failure probability over shared inputs
     scale_laws            the law of a life in each row
@@ -22,19 +21,20 @@ Reading order; each part imports only those above it:
     sampled_inputs        the laws and rank correlations of the inputs
     densities             ratio of the densities of inputs under two studies
     posterior_scale       the law of a life in each row
-    targets               targets of sensitivity indices: one number per row
     conditional_survival  the law of a life in each row
     scaling               inputs of a result that only scale a life
+    reweighting           the rows of a result as those of another study
+    scaling_by_level      exactly known variance of lives from inputs that only scale them
+    estimators            estimators: the rows that take part, and the influence of each
+    sample                a sample
+    targets               targets of sensitivity indices: one number per row
     expected_widths       the expected width of the intervals of a study, from a few of its rows
     few_events            events that happen, or do not, in few rows
     joint_targets         all elements of an output as one target
-    population            probabilities and quantiles of a population
-    reweighting           the rows of a result as those of another study
-    scaling_by_level      exactly known variance of lives from inputs that only scale them
     chosen_targets        targets that a user names, or that suit a method
-    estimators            estimators: the rows that take part, and the influence of each
+    counted_rows          rows that count alike
+    population            probabilities and quantiles of a population
     fleets                fleets: units of one world, and how many of them have ended
-    sample                a sample
     sensitivities         sensitivity indices of a whole result, by every method
     pairing               pairing of the rows of two results
     statistic             a statistic of an output

@@ -3,27 +3,32 @@
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan
-from typing import NamedTuple
 
 import numpy as np
 
+from uq.assess.estimators import Estimator, quantile, share
+from uq.assess.sample import (
+    Curve,
+    Functions,
+    Sample,
+    censored_before,
+    on_side,
+    share_of,
+    whenever_censored_rows_end,
+)
 from uq.contract import Floats, Mask
-from uq.result.element import Element
 from uq.stats import order_statistics
 from uq.stats.beta_products import BetaProducts
 from uq.stats.clusters import Clusters, dealt
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import (
-    CONFIDENCE,
-    UNKNOWN,
     Ends,
-    Replicates,
     replicates_of_some,
     scattered_share_interval,
     share_interval,
     upper_probability,
 )
-from uq.stats.kaplan_meier import SurvivalCurve, outliving
+from uq.stats.kaplan_meier import SurvivalCurve, kaplan_meier, outliving
 from uq.stats.quantile_functions import normal
 
 ASSUMES = "that censoring is non-informative"
@@ -33,31 +38,20 @@ _FEW_ENDS = 5
 _FEW_AT_RISK = 10
 
 
-class Curve(NamedTuple):
-    """The share that outlives each time, and its pointwise interval; shapes (k,)."""
-
-    survival: Floats
-    low: Floats
-    high: Floats
-
-
 @dataclass(frozen=True)
-class CountedRows:
-    """The rows of an element that take part in its statistics, each counted once.
+class CountedRows(Sample):
+    """The rows of an element that take part in its statistics, each counted once."""
 
-    Attributes
-    ----------
-    element : Element
-        Of independent rows, or of rows in replicates or clusters.
-    part : ndarray of int, shape (n,), or None
-        The replicate or cluster of each row.
-    confidence : float
-        Of intervals.
-    """
-
-    element: Element
-    part: Replicates
-    confidence: float = CONFIDENCE
+    @property
+    def by(self) -> dict[str, Functions]:
+        """The functions that compute each estimate, by its name here."""
+        return super().by | {
+            "probability_above": (share_of, share_interval),
+            "probability_below": (share_of, share_interval),
+            "quantile": (order_statistics.quantile, order_statistics.quantile_interval),
+            "life_quantile": (CountedRows.life_quantile, kaplan_meier),
+            "ended_by": (CountedRows.ended_by, kaplan_meier, CountedRows.survival),
+        }
 
     def probability_below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold); unknown where rows were censored below it."""
@@ -113,22 +107,24 @@ class CountedRows:
         if "value" not in plain.beyond:
             return plain
         curve = self._kaplan_meier
-        first_end = _first(curve.survival < 1, self._times)
-        value, low, high = (_first(share <= 1 - probability, self._times) for share in curve)
+        first_end = _first(curve.survival < 1, self.times)
+        value, low, high = (_first(share <= 1 - probability, self.times) for share in curve)
         if low == first_end:  # earlier times carry no information
             low = nan
         return Estimate(value, low, high, assumes=ASSUMES) if np.isfinite(value) else plain
 
-    def ended_by(self, time: float) -> tuple[Estimate, Estimate]:
+    def ended_by(self, time: float) -> tuple[Estimate, Estimate] | None:
         """Estimate P(T > t) and P(T < t) by Kaplan-Meier, where rows were censored before t.
 
         Returns
         -------
         above, below : Estimate
             NaN where `time` is after the last observation; with the reason where there is no
-            interval.
+            interval. None where no row was censored before.
         """
-        times, curve = self._times, self._kaplan_meier
+        if not self.element.unknown_sides(time).any():
+            return None
+        times, curve = self.times, self._kaplan_meier
 
         def share(place: int) -> Estimate:
             if place < 0:
@@ -187,6 +183,14 @@ class CountedRows:
             return None
         return order_statistics.rows_to_reach(probability)
 
+    def share_estimator(self, threshold: float, side: str) -> Estimator:
+        """Return the estimator of P(Y > threshold) or P(Y < threshold): ``above`` or ``below``."""
+        return share(on_side(threshold, side))
+
+    def quantile_estimator(self, probability: float) -> Estimator:
+        """Return the estimator of a quantile."""
+        return quantile(probability)
+
     def _share(self, threshold: float, hits: Floats) -> Estimate:
         unknown = self.element.unknown_sides(threshold)
         if unknown.any():
@@ -196,14 +200,14 @@ class CountedRows:
         return share_of(hits[kept] > 0, part, self.confidence)
 
     @cached_property
-    def _times(self) -> Floats:
+    def times(self) -> Floats:
         """The times at which rows have ended or were censored, shape (k,)."""
         return np.unique(self.element.values[np.isfinite(self.element.values)])
 
     @cached_property
     def _kaplan_meier(self) -> Curve:
         """The survival curve at these times."""
-        return self.survival(self._times)
+        return self.survival(self.times)
 
     def _pointwise(
         self, values: Floats, censored: Mask, time: Floats, estimate: SurvivalCurve
@@ -227,33 +231,6 @@ class CountedRows:
         low[few] = 1 - law.ended_after(time[few]).quantile(upper)
         high[few] = 1 - law.ended_by(time[few]).quantile(1 - upper)
         return np.where(inside, low, np.nan), np.where(inside, high, np.nan)
-
-
-def share_of(hits: Mask, replicate: Replicates, confidence: float = CONFIDENCE) -> Estimate:
-    """Estimate the share of rows that are hits."""
-    share = float(hits.mean()) if len(hits) else nan
-    return Estimate(share, *share_interval(hits, replicate, confidence))
-
-
-def censored_before(unknown: Mask) -> str:
-    """Return why a probability is unknown, from the mask of rows whose side is."""
-    return f"{unknown.sum()} of {unknown.size} rows were censored before that time"
-
-
-def whenever_censored_rows_end(
-    value: Ends, low: Ends = UNKNOWN, high: Ends = UNKNOWN, reason: str = ""
-) -> Estimate:
-    """Return an estimate that is valid whenever the censored rows end.
-
-    Each number is given twice: with the censored rows ending when last observed, and never. The
-    second is returned, so that an upper bound is valid in any case.
-    """
-    pairs = {"value": value, "low": low, "high": high}
-    beyond = tuple(
-        name for name, (first, last) in pairs.items() if np.isposinf(last) > np.isposinf(first)
-    )
-    numbers = [np.inf if np.isposinf(first) else float(last) for first, last in pairs.values()]
-    return Estimate(numbers[0], numbers[1], numbers[2], reason, beyond=beyond)
 
 
 def _explained(share: Estimate, times: int) -> Estimate:

@@ -11,17 +11,19 @@ from uq.sampling.dependence import normal_correlations
 from uq.sampling.truncation import OUTSIDE_AT_MOST, factor_ends, log_density_between, ppf_within
 
 
-def log_ratio(old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:
+def log_ratio(rows: int, old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:
     """Return the logarithm of the new density of the inputs over the old one, shape (n,).
 
     Parameters
     ----------
+    rows : int
+        How many.
     old, new : Inputs
-        Of the same rows.
+        Of these rows.
     integrated : collection of str
         Inputs that do not take part.
     """
-    ratio = np.zeros(len(next(iter(old.values.values()))))
+    ratio = np.zeros(rows)
     for name in changed_laws(old, new):
         if name not in integrated:
             ratio += _log_density(new, name) - _log_density(old, name)

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.assess.population import Population
 from uq.contract import Status
 from uq.result.elements import Element, Floats, Mask, flags
 from uq.result.result import Result
@@ -108,15 +107,3 @@ def quantile(probability: float) -> Estimator:
         return below - below.mean()
 
     return Estimator(of, pull, is_share=True)
-
-
-def quantile_of(element: Element, probability: float) -> Estimator:
-    """Return the estimator of a quantile of an element, whose rows may be laws of lives."""
-    if element.is_plain:
-        return quantile(probability)
-
-    def sample(other: Element) -> SelectedRows:
-        at = Population(other, None).middle(probability)
-        return SelectedRows(other.present, other.below(at))
-
-    return Estimator(np.mean, _centred, sample, is_share=True)

@@ -5,7 +5,6 @@ import numpy as np
 from uq.assess.targets import IndexTarget
 from uq.indices.index import RefusedError
 from uq.indices.measures import MIN_SIDE
-from uq.result.elements import independent_rows
 from uq.result.result import Result
 from uq.sampling.layouts import PLAIN
 from uq.text.numbers import counted, grouped, rows_in_words
@@ -44,7 +43,8 @@ def few_hits(result: Result, target: IndexTarget, intervals: bool = True) -> tup
     if not (target.event or len(np.unique(values[np.isfinite(values)])) == 2):
         return ()
     if not result.why_no_statistics:
-        values = independent_rows(result.dataset.assign(hit=("row", values)))["hit"].values
+        with_hits = Result(result.dataset.assign(hit=("row", values)))
+        values = with_hits.independent.dataset["hit"].values
     defined = values[np.isfinite(values)]
     hits = defined > defined.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))

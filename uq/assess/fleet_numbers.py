@@ -74,9 +74,7 @@ class FleetNumbers:
 
     def first(self, probability: float) -> Banded:
         """Return a quantile of the time at which the first ends."""
-        estimates = [
-            self._within_horizon(population.quantile(probability)) for population in self._first
-        ]
+        estimates = [self._within_horizon(times.quantile(probability)) for times in self._first]
         reached = -expm1(log1p(-probability) / self._size)
         value = estimates[0].value
 
@@ -87,7 +85,7 @@ class FleetNumbers:
 
     def failed(self, time: float) -> Banded:
         """Return the number that has ended before a time."""
-        estimates = [_times(population.below(time), self._size) for population in self._alone]
+        estimates = [_times(times.probability_below(time), self._size) for times in self._alone]
 
         def band(share: float) -> Estimate:
             return _times(self._unit_at(time, share), self._size)
@@ -98,7 +96,7 @@ class FleetNumbers:
         """Return the probability that no more have ended before a time than allowed."""
         if self._allow >= self._size:
             return Banded(*3 * (Estimate(1.0, 1.0, 1.0),))
-        estimates = [_complement(population.below(time)) for population in self._beyond]
+        estimates = [_complement(times.probability_below(time)) for times in self._beyond]
 
         def band(share: float) -> Estimate:
             p = self._unit_at(time, 1 - share)

@@ -12,8 +12,9 @@ from math import ceil, nan
 
 import numpy as np
 
-from uq.assess.population import Population
+from uq.assess.population import as_sample
 from uq.assess.row_inputs import Inputs, inputs_of
+from uq.assess.sample import Sample
 from uq.assess.scale_laws import Scale
 from uq.assess.scaling import integrated, not_integrated, why_not_integrated, without_effect
 from uq.contract import Floats, Mask
@@ -123,7 +124,7 @@ class Units:
         means = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
         return means[:, None] if self.are_alike else means
 
-    def fleet(self, size: int, allow: int, part: Replicates) -> Population:
+    def fleet(self, size: int, allow: int, part: Replicates) -> Sample:
         """Return the population of the times by which more than `allow` of `size` have ended.
 
         Its rows are worlds, each the law of this time. Worlds with too few units have none.
@@ -144,7 +145,7 @@ class Units:
             _MoreThan(self, size, allow),
             self.of_worlds,
         )
-        return Population(worlds, part)
+        return as_sample(worlds, part)
 
     @property
     def _mask(self) -> Mask:
@@ -207,9 +208,9 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
     if scales and element.censored.any():
         why = why_not_integrated(rows, element)
     elif scales:
-        inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
-        outside = integrated(rows, element.declared, inputs, {SHARED})
-        inner, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}
+        inner, kept = integrated(rows, element.declared, inputs, {OWN, CHANCE})
+        shared, kept_outside = integrated(rows, element.declared, inputs, {SHARED})
+        kept |= kept_outside
         if inner and shared and shared.spread >= _WIDEST * inner.spread:
             kept |= dict.fromkeys(shared.inputs, _TOO_WIDE.format(" and ".join(inner.inputs)))
             shared = None

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import nan
-from typing import NamedTuple
 
 import numpy as np
 
@@ -86,11 +85,8 @@ def fits_of(element: Element, independent: bool) -> dict[str, Fit]:
     return {law: _fit(law, element, independent) for law in FAMILIES}
 
 
-class _Sample(NamedTuple):
-    """Logarithms of lives, ascending, and which of them ended; shapes (k, n)."""
-
-    x: Floats
-    ended: Mask
+_Lives = tuple[Floats, Mask]
+"""Logarithms of lives, ascending, and which of them ended; shapes (k, n)."""
 
 
 def _fit(law: str, element: Element, independent: bool) -> Fit:
@@ -150,26 +146,25 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
     return ""
 
 
-def _sorted(x: Floats, ended: Mask) -> _Sample:
+def _sorted(x: Floats, ended: Mask) -> _Lives:
     order = np.lexsort((~ended, x), axis=1)  # at equal times, ended rows before censored ones
-    return _Sample(np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1))
+    return np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1)
 
 
-def _refits(
-    law: str, location: float, scale: float, seen: _Sample
-) -> tuple[Floats, Floats, Floats]:
+def _refits(law: str, location: float, scale: float, seen: _Lives) -> tuple[Floats, Floats, Floats]:
     """Return location, scale and distance of samples drawn from the fitted law."""
-    n = seen.x.shape[1]
-    if seen.ended.all():
+    seen_lives, ended = seen
+    n = seen_lives.shape[1]
+    if ended.all():
         locations, scales, distances = _complete_refits(law, n)
         return location + scale * locations, scale * scales, distances
     rng = np.random.default_rng(0)
     family = FAMILIES[law]
     x = location + scale * family.standard.ppf(rng.random((_refits_of(n), n)))
     # The estimate of Kaplan and Meier with censoring for the end, and the end for censoring.
-    share = 1 - np.cumprod(1 - ~seen.ended[0] / np.arange(n, 0, -1))
+    share = 1 - np.cumprod(1 - ~ended[0] / np.arange(n, 0, -1))
     place = np.searchsorted(share, rng.random(x.shape))
-    limit = np.append(seen.x[0], np.inf)[place]
+    limit = np.append(seen_lives[0], np.inf)[place]
     drawn = _sorted(np.minimum(x, limit), x <= limit)
     fitted = fit(family, *drawn)
     return *fitted, _distance(family, *fitted, drawn)
@@ -184,7 +179,7 @@ def _complete_refits(law: str, n: int) -> tuple[Floats, Floats, Floats]:
     family = FAMILIES[law]
     u = np.random.default_rng(0).random((_refits_of(n), n))
     x = np.sort(family.standard.ppf(u), axis=1)
-    drawn = _Sample(x, np.ones_like(x, dtype=bool))
+    drawn = x, np.ones_like(x, dtype=bool)
     fitted = fit(family, *drawn)
     return *fitted, _distance(family, *fitted, drawn)
 
@@ -193,9 +188,10 @@ def _refits_of(rows: int) -> int:
     return min(REFITS, MOST_DRAWN // rows)
 
 
-def _distance(family: Family, location: Floats, scale: Floats, sample: _Sample) -> Floats:
-    w = (sample.x - location[:, None]) / scale[:, None]
-    return anderson_darling(family.standard.cdf(w), sample.ended)
+def _distance(family: Family, location: Floats, scale: Floats, lives: _Lives) -> Floats:
+    x, ended = lives
+    w = (x - location[:, None]) / scale[:, None]
+    return anderson_darling(family.standard.cdf(w), ended)
 
 
 def _exponential(value: float, draws: Floats) -> Estimate:

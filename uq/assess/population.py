@@ -1,18 +1,21 @@
 """Probabilities and quantiles of a population: rows with weights, each the law of a life."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from math import ceil, exp, isfinite, isnan, log, nan
+from math import ceil, exp, inf, isfinite, isnan, log, nan
 
 import numpy as np
 
 from uq.assess.conditional_survival import learnt_terms
-from uq.assess.counted_rows import Curve, censored_before
+from uq.assess.counted_rows import CountedRows
+from uq.assess.estimators import Estimator, SelectedRows, share
+from uq.assess.sample import Curve, Functions, Sample, censored_before, on_side
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
+from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import (
     CONFIDENCE,
     ROUNDING,
@@ -28,20 +31,14 @@ _TOLERANCE = 1e-12
 _FARTHEST = 60  # steps of growing length from a quantile to the end of its interval
 _SHOW_VARIANCE = 30  # independent parts, at least
 _LATEST = 1e300
+_MOST_TIMES = 500  # of a survival curve
+_RARE = 1e-4  # share of the weight that ends before the first time, and after the last
 _CENSORED = "rows were censored before that time"
 
 
 @dataclass(frozen=True)
-class Population:
+class Population(Sample):
     """The rows of an element that take part in its statistics.
-
-    Attributes
-    ----------
-    element : Element
-    part : ndarray of int, shape (n,), or None
-        The independent part of each row.
-    confidence : float
-        Of intervals.
 
     References
     ----------
@@ -49,9 +46,14 @@ class Population:
     given all that is not integrated exactly.
     """
 
-    element: Element
-    part: Replicates
-    confidence: float = CONFIDENCE
+    @property
+    def by(self) -> dict[str, Functions]:
+        """The functions that compute each estimate, by its name here."""
+        return super().by | {
+            "probability_above": (Population.probability_above, Population),
+            "probability_below": (Population.probability_below, Population),
+            "quantile": (Population.quantile, Population),
+        }
 
     def probability_below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold); unknown where rows were censored below it."""
@@ -93,26 +95,37 @@ class Population:
             return estimate
         return self._trusted(estimate, self.element.present)
 
-    def life_quantile(self, probability: float) -> Estimate:
-        """Estimate the time by which a share has ended: no Kaplan-Meier curve has weights."""
-        return self.quantile(probability)
-
     def survival(self, time: Floats) -> Curve:
         """Estimate P(T > t) at times that ascend, with pointwise intervals."""
         return Curve(*np.array([self.outliving(at).numbers for at in time]).reshape(-1, 3).T)
 
-    def rows_needed(self, probability: float) -> int | None:
-        """Return None: effective rows are counted with each quantile."""
-        return None
+    @property
+    def most_times(self) -> float:
+        """Number of times of a survival curve that shows enough of it."""
+        return _MOST_TIMES if self.element.weights is None else inf
 
-    def times_the_rows(self, threshold: float) -> float:
-        """Return the variance of P(Y < threshold) from lives as computed over that of this one.
+    @property
+    def times(self) -> Floats:
+        """Times at which rows ended, or between which equal shares of the weight have ended."""
+        ended, weights = np.isfinite(self.element.values), self.element.weights
+        if weights is None:
+            return np.unique(self.element.values[ended])
+        order = np.argsort(self.element.values[ended], kind="stable")
+        time, share = self.element.values[ended][order], np.cumsum(weights[ended][order])
+        if not len(time):
+            return time
+        wanted = np.linspace(_RARE, 1 - _RARE, min(_MOST_TIMES, len(time))) * share[-1]
+        return np.asarray(time[np.searchsorted(share, wanted)])
 
-        NaN where it is exact, or where too few independent parts show it.
+    def integration_gain(self, probability: float) -> float:
+        """Return the variance of P(Y < quantile) from lives as computed over that of this one.
+
+        NaN where it is exact, where too few independent parts show it, or rows have weights.
         """
         kept = ~self.element.failed
-        if not kept.any():
+        if self.element.weights is not None or not kept.any():
             return nan
+        threshold = self.middle(probability)
         part = replicates_of_some(self.part, kept)
         worth = np.ones(int(kept.sum()))
         integrated, plain = (
@@ -122,6 +135,25 @@ class Population:
         if len(integrated) < _SHOW_VARIANCE or is_constant(integrated):
             return nan
         return float(plain.var() / integrated.var())
+
+    def share_estimator(self, threshold: float, side: str) -> Estimator:
+        """Return the estimator of P(Y > threshold) or P(Y < threshold): ``above`` or ``below``."""
+        return replace(share(on_side(threshold, side)), counts_hits=False, averages=True)
+
+    def quantile_estimator(self, probability: float) -> Estimator:
+        """Return the estimator of a quantile; that of another study lies elsewhere."""
+
+        def rows(other: Element) -> SelectedRows:
+            at = Population(other, None).middle(probability)
+            return SelectedRows(other.present, other.below(at))
+
+        return replace(share(rows), counts_hits=False)
+
+    def _share_never_ending(self, kept: Mask) -> Estimate:
+        if self.element.weights is None:
+            return super()._share_never_ending(kept)
+        part = replicates_of_some(self.part, kept)
+        return self._share(self.element.never.astype(float), kept, part)
 
     def _share(self, numbers: Floats, kept: Mask, part: Replicates) -> Estimate:
         """Estimate a probability, or say why the weights do not allow it."""
@@ -147,7 +179,9 @@ class Population:
             return part
         follows, by = (of_rows[kept] for of_rows in terms)
         worth = weights / weights.sum()
-        joint = worth @ by - (worth @ self._below(time)[kept]) * (worth @ follows)
+        joint = worth @ by - (worth @ self.element.below(time, signed=True)[kept]) * (
+            worth @ follows
+        )
         return part.with_together(part.together.going_with(side * joint))
 
     def _trusted(self, estimate: Estimate, kept: Mask) -> Estimate:
@@ -170,11 +204,13 @@ class Population:
         """
         kept = self.element.present
         weights, part = self._weights(kept), self._part(kept, value)
-        hits = hits_behind(self._below(value)[kept], weights, part)
+        hits = hits_behind(self.element.below(value, signed=True)[kept], weights, part)
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
-            return weighted_share(self._below(y)[kept], weights, part, hits, self.confidence)
+            return weighted_share(
+                self.element.below(y, signed=True)[kept], weights, part, hits, self.confidence
+            )
 
         return share, fewest_rows(hits)
 
@@ -190,17 +226,11 @@ class Population:
             return f"{ends}: too few rows carry it"
         return f"{ends}: {rows:.3g} effective rows, and it needs {needed}"
 
-    def _below(self, value: float) -> Floats:
-        """Return the probability that each row lies below a value: of an angle, not its size."""
-        element = self.element
-        if element.law is not None:
-            return element.below(value)
-        with np.errstate(invalid="ignore"):
-            return ((element.values < value) & ~element.censored).astype(float)
-
     def _average(self, value: float) -> float:
         kept = self.element.present
-        return float(np.average(self._below(value)[kept], weights=self._weights(kept)))
+        return float(
+            np.average(self.element.below(value, signed=True)[kept], weights=self._weights(kept))
+        )
 
     def middle(self, probability: float) -> float:
         """Return the estimate of a quantile without its interval."""
@@ -293,6 +323,28 @@ class Population:
         share, rows = self._near(beside)
         low, high = least(share, "high"), least(share, "low")
         return Estimate(value, low, high, self._why_open(probability, low, high, rows))
+
+
+def as_sample(
+    element: Element,
+    part: Replicates,
+    confidence: float = CONFIDENCE,
+    weights: Smoothed | None = None,
+) -> Sample:
+    """Return the rows of an element as a sample.
+
+    Parameters
+    ----------
+    element : Element
+    part : ndarray of int, shape (n,), or None
+        The replicate or cluster of each row.
+    confidence : float, optional
+        Of intervals.
+    weights : Smoothed, optional
+        Of the rows with lives as computed.
+    """
+    strategy = CountedRows if element.is_plain else Population
+    return strategy(element, part, confidence, weights)
 
 
 def first_step(

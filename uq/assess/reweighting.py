@@ -52,7 +52,7 @@ class Weighting:
         for element in self._rows.elements(outputs):
             law = None
             if element.declared.scales and not element.censored.any():
-                law = integrated(self._rows, element.declared, self._new).law
+                law = integrated(self._rows, element.declared, self._new)[0]
             weights = self.integrating(law.inputs if law else ())
             if weights.refusal:
                 self.refused[element.name] = weights
@@ -65,11 +65,11 @@ class Weighting:
         for name in changed_laws(self._old, self._new):
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
                 return no_weights(
-                    len(next(iter(self._old.values.values()))),
+                    len(self._rows),
                     f"uncertain.{name}: has {share:.2g} of its probability where the study's law"
                     " has none, so that no row is there; run it as a study of its own",
                 )
-        weights = log_ratio(self._old, self._new, inputs)
+        weights = log_ratio(len(self._rows), self._old, self._new, inputs)
         if not np.isfinite(weights.max()):
             why = "no row of this result is possible under the other laws"
             return no_weights(len(weights), why)

@@ -1,6 +1,6 @@
 """The uncertain inputs of some rows: their values, and the laws that these follow."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -79,25 +79,15 @@ def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> I
             for parameter in (name, *(a for a, b in tied.items() if b == name))
         ]
         bounds[name] = (max(low for low, _ in ends), min(high for _, high in ends))
-    return Inputs(laws, tied, study.dependence, bounds, _Columns(rows, study.uncertain))
+    return Inputs(laws, tied, study.dependence, bounds, _Columns(rows))
 
 
-class _Columns(Mapping[str, Floats]):
+class _Columns(dict[str, Floats]):
     """Columns of a result, each read when it is first needed."""
 
-    def __init__(self, rows: Result, names: Iterable[str]):
-        self._rows, self._names = rows, tuple(names)
-        self._read: dict[str, Floats] = {}
+    def __init__(self, rows: Result):
+        self._dataset = rows.dataset
 
-    def __getitem__(self, name: str) -> Floats:
-        if name not in self._names:
-            raise KeyError(name)
-        if name not in self._read:
-            self._read[name] = self._rows.dataset[name].values
-        return self._read[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
+    def __missing__(self, name: str) -> Floats:
+        self[name] = self._dataset[name].values
+        return self[name]

@@ -1,59 +1,243 @@
-"""A sample: the rows of an element and the estimates from them, whatever kind of rows they are."""
+"""A sample: the rows of an element with the estimates from them, whatever kind of rows they are."""
 
-from typing import Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+from typing import Any, NamedTuple
 
-from uq.assess.counted_rows import CountedRows, Curve
-from uq.assess.population import Population
-from uq.contract import Floats
+import numpy as np
+
+from uq.assess.estimators import Estimator, SelectedRows
+from uq.contract import Floats, Mask
 from uq.result.element import Element
-from uq.stats.estimate import Estimate
-from uq.stats.intervals import CONFIDENCE, Replicates
+from uq.stats import importance_weights, order_statistics
+from uq.stats.estimate import NOTHING, Estimate
+from uq.stats.importance_weights import Smoothed, per_sample
+from uq.stats.intervals import (
+    CONFIDENCE,
+    UNKNOWN,
+    Ends,
+    Replicates,
+    mean_interval,
+    replicates_of_some,
+    share_interval,
+)
+from uq.stats.moments import Moments, moments, sd_interval, standard_deviation
+from uq.stats.weighted_means import moments_of_rows, weighted_moments
+
+Functions = tuple[Callable[..., Any], ...]
 
 
-class Sample(Protocol):
+class Curve(NamedTuple):
+    """The share that outlives each time, and its pointwise interval; shapes (k,)."""
+
+    survival: Floats
+    low: Floats
+    high: Floats
+
+
+@dataclass(frozen=True)
+class Sample(ABC):
     """The rows of an element that take part in its statistics.
 
     Rows are independent, in replicates of a design or in clusters; they count alike, or have
     weights; each is a number, or the law of a life.
-    """
 
-    @property
-    def element(self) -> Element:
-        """The element."""
-
-    @property
-    def part(self) -> Replicates:
-        """The replicate or cluster of each row; None where rows are independent."""
-
-    def probability_below(self, threshold: float) -> Estimate:
-        """Estimate P(Y < threshold), with the reason where it is unknown."""
-
-    def probability_above(self, threshold: float) -> Estimate:
-        """Estimate P(Y > threshold), with the reason where it is unknown."""
-
-    def quantile(self, probability: float) -> Estimate:
-        """Estimate a quantile without any assumption on censored rows."""
-
-    def life_quantile(self, probability: float) -> Estimate:
-        """Estimate the time by which a share has ended, where needed by Kaplan-Meier."""
-
-    def survival(self, time: Floats) -> Curve:
-        """Estimate P(T > t) at times that ascend, with pointwise intervals."""
-
-    def rows_needed(self, probability: float) -> int | None:
-        """Return how many rows a quantile needs; None where there are enough, or none."""
-
-
-def as_sample(element: Element, part: Replicates, confidence: float = CONFIDENCE) -> Sample:
-    """Return the rows of an element as a sample.
-
-    Parameters
+    Attributes
     ----------
     element : Element
     part : ndarray of int, shape (n,), or None
-        The replicate or cluster of each row.
-    confidence : float, optional
+        The replicate or cluster of each row; None where rows are independent.
+    confidence : float
         Of intervals.
+    weights : Smoothed, optional
+        Of the rows with lives as computed, where they have weights.
     """
-    strategy = CountedRows if element.is_plain else Population
-    return strategy(element, part, confidence)
+
+    element: Element
+    part: Replicates
+    confidence: float = CONFIDENCE
+    weights: Smoothed | None = None
+
+    @property
+    def is_simple_random(self) -> bool:
+        """Whether rows are independent and count alike, as exact bounds and tests need it."""
+        return self.part is None and self.element.weights is None
+
+    @property
+    def by(self) -> dict[str, Functions]:
+        """The functions that compute each estimate, by its name here."""
+        weighted = (weighted_moments, moments_of_rows)
+        return {
+            "mean": (moments, mean_interval) if self.weights is None else weighted,
+            "sd": (standard_deviation, sd_interval) if self.weights is None else weighted,
+        }
+
+    # Of the lives as computed, whatever is integrated in their laws
+
+    def moments(self) -> Moments:
+        """Estimate mean, standard deviation and tail; unknown where rows never end or are censored.
+
+        The tail rules out of weighted rows what it does without weights.
+        """
+        element, by = self.element, self.weights
+        if not len(element.at_least) or element.never.any() or element.censored.any():
+            return Moments(NOTHING, NOTHING, None, None)
+        kept = element.present
+        part = replicates_of_some(self.part, kept)
+        plain = moments(element.at_least, part, self.confidence)
+        if by is None:
+            return plain
+        mean, sd = (
+            Estimate(estimate.value if isfinite(other.value) else nan, reason=other.reason)
+            if other.reason
+            else estimate
+            for estimate, other in zip(
+                weighted_moments(element.values[kept], by.weights[kept], part),
+                (plain.mean, plain.sd),
+                strict=True,
+            )
+        )
+        if by.refusal:
+            mean = sd = Estimate(reason=by.refusal)
+        return Moments(mean, sd, plain.tail, plain.caution)
+
+    def tolerance_bounds(self, coverage: float, confidence: float) -> dict[str, Estimate]:
+        """Return one-sided tolerance bounds; failed rows count as the worst on each side.
+
+        Returns
+        -------
+        dict of str to Estimate
+            ``lower`` and ``upper``, of an angle also ``magnitude``; NaN with too few rows. Empty
+            unless rows are a simple random sample.
+        """
+        if not self.is_simple_random:
+            return {}
+        element, failed = self.element, int(self.element.failed.sum())
+        asked = failed, coverage, confidence
+        early = order_statistics.tolerance_bounds(element.at_least, *asked)
+        late = order_statistics.tolerance_bounds(element.at_most, *asked)
+        bounds = {
+            "lower": whenever_censored_rows_end((early[0], early[0])),
+            "upper": whenever_censored_rows_end((early[1], late[1])),
+        }
+        if element.is_angle:
+            largest = order_statistics.tolerance_bounds(np.abs(element.at_most), *asked)[1]
+            bounds["magnitude"] = Estimate(largest)
+        return bounds
+
+    def never_ending(self) -> Estimate:
+        """Estimate the probability that a life never ends; unknown where censored rows may not."""
+        element = self.element
+        if element.censored.any() and not element.declared.never_known_at_once:
+            return Estimate(reason="censored rows may never end")
+        return self._share_never_ending(~element.failed)
+
+    def _share_never_ending(self, kept: Mask) -> Estimate:
+        return share_of(self.element.never[kept], replicates_of_some(self.part, kept))
+
+    @property
+    def effective_rows(self) -> float | None:
+        """Kish's number of equal rows, or samples, that are worth as much; None of equal ones."""
+        if self.element.weights is None:
+            return None
+        kept = self.element.present
+        part = replicates_of_some(self.part, kept)
+        return importance_weights.effective_rows(per_sample(self.element.weights[kept], part))
+
+    # By each strategy in its own way
+
+    @abstractmethod
+    def probability_below(self, threshold: float) -> Estimate:
+        """Estimate P(Y < threshold), with the reason where it is unknown."""
+
+    @abstractmethod
+    def probability_above(self, threshold: float) -> Estimate:
+        """Estimate P(Y > threshold), with the reason where it is unknown."""
+
+    @abstractmethod
+    def quantile(self, probability: float) -> Estimate:
+        """Estimate a quantile without any assumption on censored rows."""
+
+    @abstractmethod
+    def survival(self, time: Floats) -> Curve:
+        """Estimate P(T > t) at times that ascend, with pointwise intervals."""
+
+    @property
+    def most_times(self) -> float:
+        """Number of times of a survival curve that shows enough of it."""
+        return inf
+
+    @property
+    @abstractmethod
+    def times(self) -> Floats:
+        """Times of a survival curve, at which rows ended or were censored; they ascend."""
+
+    def life_quantile(self, probability: float) -> Estimate:
+        """Estimate the time by which a share has ended, where needed by Kaplan-Meier."""
+        return self.quantile(probability)
+
+    def ended_by(self, time: float) -> tuple[Estimate, Estimate] | None:
+        """Estimate P(T > t) and P(T < t) under an assumption on censored rows, where one helps."""
+        return None
+
+    def rows_needed(self, probability: float) -> int | None:
+        """Return how many rows a quantile needs; None where there are enough, or none."""
+        return None
+
+    def integration_gain(self, probability: float) -> float:
+        """Return the variance of P(T < quantile) with lives as computed over that of this sample.
+
+        NaN where nothing is integrated, or it is not known.
+        """
+        return nan
+
+    # For the difference between two studies
+
+    @abstractmethod
+    def share_estimator(self, threshold: float, side: str) -> Estimator:
+        """Return the estimator of P(Y > threshold) or P(Y < threshold): ``above`` or ``below``."""
+
+    @abstractmethod
+    def quantile_estimator(self, probability: float) -> Estimator:
+        """Return the estimator of a quantile."""
+
+
+def on_side(threshold: float, side: str) -> Callable[[Element], SelectedRows | None]:
+    """Return a function from elements to the probability that each row lies on a side."""
+
+    def rows(element: Element) -> SelectedRows | None:
+        if element.law is None and element.unknown_sides(threshold).any():
+            return None
+        numbers = (element.above if side == "above" else element.below)(threshold)
+        return SelectedRows(~element.failed, numbers)
+
+    return rows
+
+
+def share_of(hits: Mask, replicate: Replicates, confidence: float = CONFIDENCE) -> Estimate:
+    """Estimate the share of rows that are hits."""
+    share = float(hits.mean()) if len(hits) else nan
+    return Estimate(share, *share_interval(hits, replicate, confidence))
+
+
+def censored_before(unknown: Mask) -> str:
+    """Return why a probability is unknown, from the mask of rows whose side is."""
+    return f"{unknown.sum()} of {unknown.size} rows were censored before that time"
+
+
+def whenever_censored_rows_end(
+    value: Ends, low: Ends = UNKNOWN, high: Ends = UNKNOWN, reason: str = ""
+) -> Estimate:
+    """Return an estimate that is valid whenever the censored rows end.
+
+    Each number is given twice: with the censored rows ending when last observed, and never. The
+    second is returned, so that an upper bound is valid in any case.
+    """
+    pairs = {"value": value, "low": low, "high": high}
+    beyond = tuple(
+        name for name, (first, last) in pairs.items() if np.isposinf(last) > np.isposinf(first)
+    )
+    numbers = [np.inf if np.isposinf(first) else float(last) for first, last in pairs.values()]
+    return Estimate(numbers[0], numbers[1], numbers[2], reason, beyond=beyond)

@@ -1,9 +1,8 @@
 """Inputs of a result that only scale a life, and the laws of its lives given all others."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,24 +22,9 @@ from uq.text.numbers import counted
 NOT_POSITIVE = "it is not always positive"
 
 
-@dataclass(frozen=True)
-class Integrated:
-    """Law of the integrated inputs of the lives of an output, and why others are not integrated.
-
-    Attributes
-    ----------
-    law : Scale or None
-    kept : dict of str to str
-        Input that scales the lives -> why it is not integrated.
-    """
-
-    law: Scale | None
-    kept: Mapping[str, str]
-
-
 def integrated(
     rows: Result, output: Output, inputs: Inputs, levels: Collection[str] | None = None
-) -> Integrated:
+) -> tuple[Scale | None, dict[str, str]]:
     """Return the law of the inputs that only scale the lives of an output, given all others.
 
     Parameters
@@ -55,9 +39,11 @@ def integrated(
 
     Returns
     -------
-    Integrated
-        All inputs that are independent of the others, or the one that depends on others if it
+    law : Scale or None
+        Of all inputs that are independent of the others, or of the one that depends on others if it
         alone scatters the lives more.
+    kept : dict of str to str
+        Input that scales the lives -> why it is not integrated.
     """
     exponents, kept, _ = _exponents(inputs, output.scales)
     if levels is not None:
@@ -65,7 +51,7 @@ def integrated(
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
         kept = {name: why for name, why in kept.items() if level[name] in levels}
     if rows.design.imported:
-        return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+        return None, dict.fromkeys(exponents, "its rows are imported") | kept
     if rows.has_weights:
         any_unit = rows.stands_for_any_unit
         learnt = {name for name in exponents if not any_unit or inputs.laws[name].level == SHARED}
@@ -88,9 +74,9 @@ def integrated(
     widest = max(bound, key=lambda name: reach[name], default="")
     if free and np.hypot.reduce([term.spread for term in free.values()]) >= reach.get(widest, 0.0):
         kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
-        return Integrated(_independent(free, exponents, inputs, kept), kept)
+        return _independent(free, exponents, inputs, kept), kept
     kept |= dict.fromkeys({*free, *bound} - {widest}, f"{widest} scatters lives more")
-    return Integrated(bound.get(widest), kept)
+    return bound.get(widest), kept
 
 
 def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
@@ -103,11 +89,13 @@ def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
     }
 
 
-class _Exponents(NamedTuple):
-    """Exponents of the inputs in a life that scales.
+def _exponents(
+    inputs: Inputs, scales: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, str], tuple[str, ...]]:
+    """Return the exponents of the inputs in a life that scales.
 
-    Attributes
-    ----------
+    Returns
+    -------
     scaling : dict of str to float
         Input -> exponent, with those of the parameters that equal it.
     kept : dict of str to str
@@ -115,13 +103,6 @@ class _Exponents(NamedTuple):
     idle : tuple of str
         Inputs whose exponents cancel.
     """
-
-    scaling: dict[str, float]
-    kept: dict[str, str]
-    idle: tuple[str, ...]
-
-
-def _exponents(inputs: Inputs, scales: Mapping[str, float]) -> _Exponents:
     exponents: dict[str, float] = {}
     for name, exponent in scales.items():
         if name in inputs.laws or name in inputs.tied:
@@ -136,14 +117,12 @@ def _exponents(inputs: Inputs, scales: Mapping[str, float]) -> _Exponents:
         elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
             kept[leader] = f"{other} is a multiple of it"
     idle = tuple(name for name, exponent in exponents.items() if not exponent and name not in kept)
-    return _Exponents(
-        {name: exponent for name, exponent in exponents.items() if exponent}, kept, idle
-    )
+    return {name: exponent for name, exponent in exponents.items() if exponent}, kept, idle
 
 
 def without_effect(inputs: Inputs, output: Output) -> tuple[str, ...]:
     """Return the inputs that scale the lives of an output to powers that cancel."""
-    return _exponents(inputs, output.scales).idle
+    return _exponents(inputs, output.scales)[2]
 
 
 def _problem(name: str, inputs: Inputs) -> str:
@@ -238,7 +217,7 @@ def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> 
         if not plain and element.declared.scales and not element.censored.any():
             inputs = inputs or inputs_of(rows)
             learnt = learnt_scale(rows, inputs, scalers(inputs, element.declared))
-            law = learnt or integrated(rows, element.declared, inputs).law
+            law = learnt or integrated(rows, element.declared, inputs)[0]
             element = replace(element, law=law)
         yield element
 
@@ -254,7 +233,7 @@ def why_not_integrated(rows: Result, element: Element) -> str:
         count = int(element.censored.sum())
         lives = counted(count, "life is", "lives are")
         return f"{names} not integrated: {lives} censored, which gives bounds only"
-    kept = integrated(rows, element.declared, inputs).kept
+    _, kept = integrated(rows, element.declared, inputs)
     return not_integrated({name: why for name, why in kept.items() if name != learnt_input(rows)})
 
 

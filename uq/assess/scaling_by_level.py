@@ -63,6 +63,6 @@ def scales_by_level(rows: Result, element: Element) -> Scales:
         return Scales({})
     inputs = inputs_of(rows)
     parts = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
-    kept = {name: why for part in parts.values() for name, why in part.kept.items()}
-    laws = {level: part.law for level, part in parts.items() if part.law is not None}
+    kept = {name: why for _, reasons in parts.values() for name, why in reasons.items()}
+    laws = {level: law for level, (law, _) in parts.items() if law is not None}
     return Scales(laws, not_integrated(kept), without_effect(inputs, element.declared))

@@ -9,13 +9,14 @@ from typing import Any
 
 from uq.assess.estimators import Estimator
 from uq.assess.joint_bounds import JointBound, joint_bounds
-from uq.assess.sample import Sample, as_sample
+from uq.assess.population import as_sample
+from uq.assess.sample import Sample
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text
 from uq.stats.importance_weights import Smoothed
-from uq.stats.intervals import Replicates, replicates_of_some
+from uq.stats.intervals import Replicates
 from uq.study.file import AnalysisTable
 from uq.text.numbers import number, percent, percent_interval
 
@@ -61,11 +62,7 @@ class Context:
 
     def sample(self, element: Element) -> Sample:
         """Return the rows of an element as a sample."""
-        return as_sample(element, self.replicate)
-
-    def present(self, element: Element) -> Replicates:
-        """Return the replicate of each row in which the element has a value."""
-        return replicates_of_some(self.replicate, element.present)
+        return as_sample(element, self.replicate, weights=self.weights)
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,10 @@ import numpy as np
 
 from uq.assess.design_sample import sample_of
 from uq.assess.joint_targets import wholes
-from uq.assess.sample import as_sample
+from uq.assess.population import as_sample
 from uq.assess.scaling import population
 from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
-from uq.contract import Floats
 from uq.indices.methods import METHODS, kinds_with_intervals
 from uq.result.elements import Element
 from uq.result.result import Result
@@ -27,7 +26,6 @@ from uq.sampling.layouts import PATHS
 from uq.stats import group_sequential, intervals
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.hall_intervals import corrected_mean_interval
-from uq.stats.moments import moments
 from uq.stats.weighted_means import EXACT
 from uq.text.element_names import is_whole
 from uq.text.numbers import counted
@@ -211,21 +209,13 @@ def statistic(
         return sample.quantile(until.quantile)
     if until.probability is not None:
         return sample.life_quantile(until.probability)
-    values = element.at_most
-    if not len(values):
-        return NOTHING
-    if not np.isfinite(values).all():
+    if not np.isfinite(element.at_most).all():
         return Estimate(reason="some rows never end, or are censored")
-    within = intervals.replicates_of_some(replicate, element.present)
-    return _mean(values, within, level)
-
-
-def _mean(values: Floats, replicate: intervals.Replicates, level: float) -> Estimate:
-    """Estimate a mean: a few replicates show little of the skewness of their means."""
-    mean = moments(values, replicate, level).mean
+    mean = sample.moments().mean
     if replicate is None or intervals.parts_are_independent(replicate) or not mean.has_interval:
         return mean
-    low, high = corrected_mean_interval(values, replicate, level)
+    # A few replicates show little of the skewness of their means.
+    low, high = corrected_mean_interval(element.at_least, replicate[element.present], level)
     return replace(mean, low=low, high=high)
 
 

@@ -7,11 +7,11 @@ from itertools import chain
 import numpy as np
 
 from uq.assess import stopping_status
-from uq.assess.counted_rows import share_of
 from uq.assess.estimators import in_categories, share
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.reweighting import Weighting
+from uq.assess.sample import share_of
 from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
@@ -225,7 +225,8 @@ def _described(
     if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
         for name in _OF_VALUES & parts.keys():
             parts[name] = tuple(replace(statistic, resolution=step) for statistic in parts[name])
-    fitted = fits_of(element, context.replicate is None) if fits and element.is_lifetime else {}
+    independent = context.sample(element).is_simple_random
+    fitted = fits_of(element, independent) if fits and element.is_lifetime else {}
     return Described(element.units, parts, fitted)
 
 

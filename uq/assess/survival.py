@@ -6,14 +6,12 @@ import numpy as np
 import xarray as xr
 
 from uq.assess.failed_rows import outer, with_failed_at
-from uq.assess.sample import as_sample
+from uq.assess.population import as_sample
+from uq.assess.sample import Sample
 from uq.assess.scaling import population
-from uq.result.elements import Element, Floats
+from uq.result.elements import Floats
 from uq.result.result import AnyResult, Result
-from uq.stats.intervals import (
-    Ends,
-    Replicates,
-)
+from uq.stats.intervals import Ends
 from uq.stats.survival_band import simultaneous_band
 
 
@@ -71,10 +69,10 @@ def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Datas
     wanted = {element.name for element in rows.lifetimes(output)}
     whole = population(rows, [output.partition("[")[0]], plain=plain)
     chosen = [element for element in whole if element.name in wanted]
-    time = _times(chosen)
-    replicate = rows.replicates
+    samples = [as_sample(element, rows.replicates) for element in chosen]
+    time = _times(samples)
     lost = any(element.failed.any() for element in chosen)
-    curves = [_variables(element, time, replicate, lost) for element in chosen]
+    curves = [_variables(sample, time, lost) for sample in samples]
 
     of = rows.dataset[chosen[0].output]
     places = {dim: of[dim] for dim in of.dims if dim != "row"}
@@ -89,7 +87,7 @@ def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Datas
     coords = places if dims else chosen[0].place
     axis = ("time", time, {"long_name": "time", "units": chosen[0].declared.unit})
     attrs = {"output": output, "long_name": of.attrs["long_name"]}
-    attrs["band"] = _why_no_band(chosen[0], replicate) or BAND
+    attrs["band"] = _why_no_band(samples[0]) or BAND
     if chosen[0].law is not None:
         attrs["integrated"] = " ".join(chosen[0].law.inputs)
     return xr.Dataset(data, {**coords, "time": axis}, attrs)
@@ -103,10 +101,10 @@ NO_BAND = "none: a simultaneous band needs independent rows"
 NO_WEIGHTED_BAND = "none: a simultaneous band needs rows of equal weight"
 
 
-def _why_no_band(element: Element, replicate: Replicates) -> str:
-    if element.weights is not None:
-        return NO_WEIGHTED_BAND
-    return "" if replicate is None else NO_BAND
+def _why_no_band(sample: Sample) -> str:
+    if sample.is_simple_random:
+        return ""
+    return NO_BAND if sample.effective_rows is None else NO_WEIGHTED_BAND
 
 
 _MEANINGS = {
@@ -125,60 +123,43 @@ _MEANINGS = {
 }
 
 
-_MOST_TIMES = 500
-_RARE = 1e-4  # share of the weight that ends before the first time, and after the last
-
-
-def _times(chosen: list[Element]) -> Floats:
-    """Return every time at which a row ended, or some of these for laws of lives or weights."""
-    if all(element.weights is not None for element in chosen):
-        return np.unique(np.concatenate([_weighted_times(element) for element in chosen]))
-    time = np.unique(np.concatenate([e.values[np.isfinite(e.values)] for e in chosen]))
-    if all(element.is_plain for element in chosen) or len(time) <= _MOST_TIMES:
+def _times(samples: list[Sample]) -> Floats:
+    """Return the times of all samples, or some of these for laws of lives."""
+    time = np.unique(np.concatenate([sample.times for sample in samples]))
+    most = min(sample.most_times for sample in samples)
+    if len(time) <= most:
         return time
-    return time[np.linspace(0, len(time) - 1, _MOST_TIMES).round().astype(int)]
+    return time[np.linspace(0, len(time) - 1, int(most)).round().astype(int)]
 
 
-def _weighted_times(element: Element) -> Floats:
-    """Return times between which equal shares of the weight have ended."""
-    assert element.weights is not None
-    ended = np.isfinite(element.values)
-    order = np.argsort(element.values[ended], kind="stable")
-    time, share = element.values[ended][order], np.cumsum(element.weights[ended][order])
-    if not len(time):
-        return time
-    wanted = np.linspace(_RARE, 1 - _RARE, min(_MOST_TIMES, len(time))) * share[-1]
-    return np.asarray(time[np.searchsorted(share, wanted)])
-
-
-def _variables(
-    element: Element, time: Floats, replicate: Replicates, with_failed: bool
-) -> dict[str, Any]:
+def _variables(sample: Sample, time: Floats, with_failed: bool) -> dict[str, Any]:
     """Return every variable of `survival` for one element, named and ordered as there."""
-    plain = as_sample(element, replicate).survival(time)
-    band_low, band_high = _band(element.plain, time, replicate)
+    element, curve = sample.element, sample.survival(time)
     kept = element.present
     rows = int(kept.sum())
     worth = None if element.weights is None else element.weights[kept]
     never = np.average(element.never[kept], weights=worth) if rows else np.nan
-    variables = plain._asdict() | {"band_low": band_low, "band_high": band_high}
+    variables = curve._asdict() | dict(
+        zip(("band_low", "band_high"), _band(sample, time), strict=True)
+    )
     variables |= {"never": never, "rows": rows}
     variables |= {
         name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")
     }
     if with_failed:
         for end, life in (("low", 0.0), ("high", np.inf)):
-            other = as_sample(with_failed_at(element, life), replicate).survival(time)
+            other = as_sample(with_failed_at(element, life), sample.part).survival(time)
             alone = np.isnan(other.low).all() and np.isnan(other.high).all()
             bound = other.survival if alone else getattr(other, end)
-            variables[f"failed_{end}"] = outer(end, bound, getattr(plain, end))
+            variables[f"failed_{end}"] = outer(end, bound, getattr(curve, end))
     return variables
 
 
-def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
-    """Return the simultaneous 95 % band of `survival` for one element; NaN for replicates."""
+def _band(sample: Sample, time: Floats) -> Ends:
+    """Return the simultaneous 95 % band of lives as computed; NaN without one."""
+    element = sample.element
     values, censored = element.at_least, element.censored[element.present]
-    if len(values) == 0 or _why_no_band(element, replicate):
+    if len(values) == 0 or not sample.is_simple_random:
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
     known_at_once = element.declared.never_known_at_once
     return simultaneous_band(values, censored, time, known_at_once=known_at_once)

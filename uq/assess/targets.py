@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from uq.assess.sample import censored_before
 from uq.assess.transforms import heaviness, logarithm, rank, rate
 from uq.result.elements import Element, Floats, flags
 from uq.result.result import Result
@@ -208,19 +209,17 @@ def _heaviness(target: IndexTarget) -> str:
 
 
 def _lighter_form(element: Element) -> str:
-    logarithms = logarithm(element)
-    return "rank" if logarithms.refused or heaviness(logarithms.values) else "log"
+    logarithms, refused = logarithm(element)
+    return "rank" if refused or heaviness(logarithms) else "log"
 
 
 def _event(element: Element, threshold: float) -> IndexTarget:
-    if not element.is_lifetime:
-        above = np.where(element.present, element.for_thresholds > threshold, np.nan)
-        return IndexTarget(f"P({element.name}>{threshold!r})", element, above, event=True)
-    ended = element.values < threshold
-    unknown = int(element.unknown_sides(threshold).sum())
-    refused = f"{unknown} of {ended.size} rows were censored before that time" * (unknown > 0)
-    event = np.where(element.present, ended, np.nan)
-    return IndexTarget(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
+    unknown = element.unknown_sides(threshold)
+    refused = censored_before(unknown) if element.is_lifetime and unknown.any() else ""
+    sign, hits = ("<", element.below) if element.is_lifetime else (">", element.above)
+    values = np.where(element.present, hits(threshold), np.nan)
+    name = f"P({element.name}{sign}{threshold!r})"
+    return IndexTarget(name, element, values, refused, event=True)
 
 
 def category_targets(result: Result, output: str) -> Iterator[IndexTarget]:

@@ -4,8 +4,6 @@ A life may never end or be censored; and where a few rows hold most of the varia
 about these rows.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from uq.contract import LARGEST_VALUE
@@ -25,11 +23,8 @@ FEWEST = 100
 """In fewer rows a single one is more than `LARGEST`: no tail is judged."""
 
 
-class Transformed(NamedTuple):
-    """One number per row, NaN where there is none; and why there can be none at all, or ""."""
-
-    values: Floats
-    refused: str = ""
+Transformed = tuple[Floats, str]
+"""One number per row, NaN where there is none; and why there can be none at all, or ""."""
 
 
 def tail_share(values: Floats) -> float:
@@ -87,8 +82,8 @@ def logarithm(element: Element) -> Transformed:
     excluded = [counted(count, *words) for words, count in counts.items() if count]
     if excluded:
         rows = f"of {int(element.present.sum())} rows {' and '.join(excluded)}"
-        return Transformed(nothing, f"{rows}: no logarithm; ask for rank({element.name})")
-    return Transformed(np.log(element.values))
+        return nothing, f"{rows}: no logarithm; ask for rank({element.name})"
+    return np.log(element.values), ""
 
 
 def rank(element: Element) -> Transformed:
@@ -102,9 +97,10 @@ def rank(element: Element) -> Transformed:
 
     Returns
     -------
-    Transformed
-        Between 0 and 1. Refused if a row was censored before the last life ended: its rank is not
-        known.
+    values : ndarray, shape (n,)
+        Between 0 and 1.
+    refused : str
+        Where a row was censored before the last life ended: its rank is not known.
 
     References
     ----------
@@ -116,14 +112,14 @@ def rank(element: Element) -> Transformed:
     last = values[present & ~beyond].max(initial=-np.inf)
     unknown = int((element.censored & (values < last)).sum())
     if unknown:
-        return Transformed(
+        return (
             np.full(len(values), np.nan),
             f"{counted(unknown, 'row')} censored before the last life ended: the order of the rows"
             " is not known; ask for P(T < t) by a threshold in [analysis], or lengthen the horizon",
         )
     ranks = np.full(len(values), np.nan)
     ranks[present] = mid_ranks(np.where(beyond, np.inf, values)[present])
-    return Transformed(ranks)
+    return ranks, ""
 
 
 def rate(element: Element) -> Transformed:
@@ -140,4 +136,4 @@ def rate(element: Element) -> Transformed:
         refused = f"{rows} lifetime zero or below {1 / LARGEST_VALUE:g} {unit}: no rate"
     else:
         refused = ""
-    return Transformed(inverse, refused)
+    return inverse, refused

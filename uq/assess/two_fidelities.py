@@ -12,13 +12,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from uq.assess.counted_rows import share_of
 from uq.assess.fact import Fact
 from uq.assess.failed_rows import failed_share_bounds
+from uq.assess.sample import share_of
 from uq.assess.statistics.thresholds import SIDES
 from uq.contract import Floats
 from uq.errors import InputError, first_fault_alone
-from uq.result.elements import Element, elements_of, shown_outputs
+from uq.result.elements import Element
 from uq.result.result import AnyResult, Result
 from uq.result.result_file import build_rows
 from uq.sampling.named_values import read_settings
@@ -255,9 +255,9 @@ def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]
     else:  # the same outputs, from rows that cost less
         settings = read_settings(model, asdict(settings) | twin)[0]
     chunk = evaluate(model, settings, x, seed)
-    ds = build_rows(model, settings, {}, chunk.columns, chunk.status, {})
-    outputs = (twin,) if isinstance(twin, str) else shown_outputs(ds, study.analysis)
-    return list(elements_of(ds, outputs))
+    computed = Result(build_rows(model, settings, {}, chunk.columns, chunk.status, {}))
+    outputs = (twin,) if isinstance(twin, str) else computed.shown_outputs(study.analysis)
+    return list(computed.elements(outputs))
 
 
 def _joined(pieces: tuple[Element, ...]) -> Element:

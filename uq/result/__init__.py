@@ -15,7 +15,6 @@ Reading order; each part imports only those above it:
     result_file    the schema of a result
     elements       the elements of a result's outputs
     workload       rows of one model that are to be computed, by a study or any other analysis
-    regimes        the rows of a result that are in one regime
     preview        a preview of the rows of a run as they arrive
     result         a result
     row_choice     choice of a row

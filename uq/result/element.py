@@ -121,12 +121,16 @@ class Element:
         """The same rows with the lives that were computed."""
         return replace(self, law=None)
 
-    def below(self, threshold: float) -> Floats:
-        """Return the probability that each row lies below a threshold, shape (n,)."""
+    def below(self, threshold: float, signed: bool = False) -> Floats:
+        """Return the probability that each row lies below a threshold, shape (n,).
+
+        Of an angle its magnitude counts, unless `signed`.
+        """
         if self.law is not None:
             return self.law.below(self.values, threshold)
+        values = self.values if signed else self.for_thresholds
         with np.errstate(invalid="ignore"):
-            return ((self.for_thresholds < threshold) & ~self.censored).astype(float)
+            return ((values < threshold) & ~self.censored).astype(float)
 
     def above(self, threshold: float) -> Floats:
         """Return the probability that each row lies above a threshold, shape (n,)."""

@@ -31,23 +31,8 @@ from uq.stats.importance_weights import (
 )
 from uq.stats.intervals import Replicates
 from uq.stats.jumps import EvenReplicates
-from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import study_of_result
 from uq.text.element_names import MOST_PLACES, Place, is_whole, place_of, whole_name
-
-
-def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
-    """Return the [analysis] of the study in a result, restricted to one output if it is named."""
-    analysis = study_file_of(ds).analysis
-    if output is None:
-        return analysis
-    thresholds = {name: at for name, at in analysis.thresholds.items() if name == output}
-    return analysis.model_copy(update={"outputs": (output,), "thresholds": thresholds})
-
-
-def study_file_of(ds: xr.Dataset) -> StudyFile:
-    """Return the study in a result."""
-    return study_of_result(ds.attrs["study"])
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
@@ -85,7 +70,7 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
     """
     together = LAW_PULLS in rows.variables
     if not is_nested(rows) and not together:
-        if are_independent(rows):
+        if has_independent_samples(rows):
             return None
         return EvenReplicates(rows["replicate"].values, inputs_of(rows))
     place = nesting_of(rows)
@@ -109,17 +94,14 @@ def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> SharedInfluence:
     return SharedInfluence(scaled_pulls, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
 
 
-def are_independent(ds: xr.Dataset) -> bool:
-    """Whether the rows of a result (blocks A and B of a crossed design) are independent."""
-    return has_independent_samples(ds) and not is_nested(ds)
-
-
 def has_independent_samples(ds: xr.Dataset) -> bool:
     """Whether samples are independent, however many rows each has."""
     if has_rounds(ds):
         return False
     design = DESIGNS[ds.attrs["design"]]
-    return design.independent or (design.imported and study_file_of(ds).design.independent)
+    return design.independent or (
+        design.imported and study_of_result(ds.attrs["study"]).design.independent
+    )
 
 
 def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
@@ -189,17 +171,6 @@ def _no_such_element(name: str, names: Collection[str]) -> InputError:
     return InputError(f"no such element '{name}'{nearest(name, names)} (allowed: {choices(names)})")
 
 
-def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
-    """Return the outputs that a study names, or all if it names none."""
-    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)))
-    return named if analysis.outputs else output_names(ds)
-
-
-def output_names(ds: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of all outputs of a result."""
-    return tuple(outputs_of(ds))
-
-
 def thinned_outputs(ds: xr.Dataset) -> dict[str, int]:
     """Return the number of elements of each output that is described at selected elements only.
 
@@ -209,17 +180,8 @@ def thinned_outputs(ds: xr.Dataset) -> dict[str, int]:
         name: prod(ds.sizes[dim] for dim in output.dims) for name, output in outputs_of(ds).items()
     }
     huge = {name: size for name, size in sizes.items() if size > MOST_PLACES}
-    named = analysis_of(ds).outputs if huge else ()
+    named = study_of_result(ds.attrs["study"]).analysis.outputs if huge else ()
     return {name: size for name, size in huge.items() if name not in named}
-
-
-def notes_on_places(ds: xr.Dataset) -> list[str]:
-    """Return a sentence on each of `thinned_outputs`."""
-    return [
-        f"{name}: shown at evenly spread places, as it has {size} elements; name it in [analysis]"
-        " outputs for all of them"
-        for name, size in thinned_outputs(ds).items()
-    ]
 
 
 def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
@@ -300,21 +262,6 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     if name == output or (name == whole_name(output) and len(elements) > 1):
         return elements
     raise _no_such_element(name, [element.name for element in elements])
-
-
-def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
-    """Return the elements of a lifetime that a name refers to; see `named_elements`.
-
-    Raises
-    ------
-    InputError
-        Also when the output is not a lifetime.
-    """
-    elements = named_elements(ds, name)
-    if not elements[0].is_lifetime:
-        lives = [life for life, output in outputs_of(ds).items() if output.is_lifetime]
-        raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
-    return elements
 
 
 def weights_of(rows: xr.Dataset) -> Smoothed | None:

@@ -5,7 +5,6 @@ inputs, each with ``own`` inputs of its own, each computed in several repeats th
 Samples are independent, their rows are not.
 """
 
-from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,9 +12,6 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from uq.contract import Floats
-from uq.sampling.levels import CHANCE, LEVELS
-from uq.study.file import Tied
-from uq.study.reading import study_of_result
 from uq.text.numbers import counted
 
 
@@ -126,33 +122,3 @@ def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
     chosen = ds["group"].values < samples
     count = int(chosen.sum())
     return ds.isel(row=slice(count) if chosen[:count].all() else chosen)
-
-
-def levels_of(ds: xr.Dataset) -> dict[str, str]:
-    """Return the level of each input of a result, by name."""
-    return {name: level for name, (_, level) in _placed(ds).items()}
-
-
-def levels_that_vary(ds: xr.Dataset, without: Collection[str] = ()) -> Sequence[str]:
-    """Return the levels on which rows of a result differ; a random model differs by chance.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-    without : collection of str
-        Inputs to ignore, as well as the inputs that equal them.
-    """
-    levels = {level for law_of, level in _placed(ds).values() if law_of not in without}
-    if ds.attrs.get("random"):
-        levels.add(CHANCE)
-    return [level for level in LEVELS if level in levels]
-
-
-def _placed(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
-    """Return the leader of each input (the input that it equals, or itself) and its level."""
-    entries = study_of_result(ds.attrs["study"]).uncertain
-    leaders = {
-        name: entry.equals if isinstance(entry, Tied) else name for name, entry in entries.items()
-    }
-    laws = {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}
-    return {name: (leader, laws[leader].level) for name, leader in leaders.items()}

@@ -10,16 +10,40 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Output
-from uq.errors import InputError
-from uq.result import commands, elements, nesting, ranked_rows, regimes, result_file, variables
-from uq.result import weights as row_weights
+from uq.errors import InputError, choices, nearest
+from uq.result.commands import file_of, model_option
 from uq.result.element import Element
-from uq.result.nesting import Nesting
+from uq.result.elements import (
+    category_codes,
+    elements_of,
+    flags,
+    has_independent_samples,
+    independent_rows,
+    named_elements,
+    replicates_of,
+    thinned_outputs,
+    weights_of,
+    why_no_statistics,
+)
+from uq.result.nesting import Nesting, first_samples, is_nested, nesting_of, one_of_each_sample
+from uq.result.ranked_rows import ranked_in_words, ranked_rows
+from uq.result.result_file import failed, open_result, refuse_empty, upgraded
+from uq.result.variables import outputs_of
+from uq.result.weights import (
+    has_rounds,
+    has_weights,
+    refuse_weights,
+    row_weights,
+    sample_weights,
+    stand_for_any_unit,
+)
 from uq.sampling.designs import DESIGNS, Design
+from uq.sampling.levels import CHANCE, LEVELS
 from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import Replicates
-from uq.study.file import AnalysisTable, StudyFile
-from uq.text.units import ReadableUnit
+from uq.study.file import AnalysisTable, StudyFile, Tied
+from uq.study.reading import study_of_result
+from uq.text.units import ReadableUnit, typical, unit_of
 
 
 class Result:
@@ -47,7 +71,7 @@ class Result:
         if isinstance(source, Result):
             return source
         if isinstance(source, xr.Dataset):
-            return cls(result_file.upgraded(source))
+            return cls(upgraded(source))
         if isinstance(source, str | Path):
             return cls.open(source)
         raise InputError(
@@ -57,7 +81,7 @@ class Result:
     @classmethod
     def open(cls, path: str | Path) -> "Result":
         """Open a result and check its schema (`uq.result.result_file.open_result`)."""
-        return cls(result_file.open_result(path))
+        return cls(open_result(path))
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -72,7 +96,7 @@ class Result:
     @cached_property
     def study(self) -> StudyFile:
         """The study file."""
-        return elements.study_file_of(self.dataset)
+        return study_of_result(self.dataset.attrs["study"])
 
     @property
     def analysis(self) -> AnalysisTable:
@@ -81,7 +105,10 @@ class Result:
 
     def analysis_of(self, output: str | None) -> AnalysisTable:
         """Return the [analysis] of the study, restricted to one output if it is named."""
-        return elements.analysis_of(self.dataset, output)
+        if output is None:
+            return self.analysis
+        thresholds = {name: at for name, at in self.analysis.thresholds.items() if name == output}
+        return self.analysis.model_copy(update={"outputs": (output,), "thresholds": thresholds})
 
     @property
     def design_name(self) -> str:
@@ -103,7 +130,7 @@ class Result:
     @cached_property
     def outputs(self) -> Mapping[str, Output]:
         """The outputs as their variables declare them, by name and in order."""
-        return variables.outputs_of(self.dataset)
+        return outputs_of(self.dataset)
 
     @property
     def output_names(self) -> tuple[str, ...]:
@@ -112,48 +139,61 @@ class Result:
 
     def shown_outputs(self, analysis: AnalysisTable) -> tuple[str, ...]:
         """Return the outputs that an [analysis] names, or all if it names none."""
-        return elements.shown_outputs(self.dataset, analysis)
+        if not analysis.outputs:
+            return self.output_names
+        named = (*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)
+        return tuple(dict.fromkeys(named))
 
     def is_category(self, name: str) -> bool:
         """Whether there is a category of this name."""
-        return variables.is_category(self.dataset, name)
+        return name in self.outputs and self.outputs[name].is_category
 
     def codes(self, name: str) -> dict[str, NDArray[np.int8]]:
         """Return the codes of a category by element (`uq.result.elements.category_codes`)."""
-        return elements.category_codes(self.dataset, name)
+        return category_codes(self.dataset, name)
 
     def elements(self, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
         """Yield the elements of outputs (`uq.result.elements.elements_of`)."""
-        return elements.elements_of(self.dataset, outputs, every)
+        return elements_of(self.dataset, outputs, every)
 
     def named_elements(self, name: str) -> list[Element]:
         """Return the elements that a name refers to (`uq.result.elements.named_elements`)."""
-        return elements.named_elements(self.dataset, name)
+        return named_elements(self.dataset, name)
 
     def lifetimes(self, name: str) -> list[Element]:
-        """Return the elements of a lifetime (`uq.result.elements.lifetimes`)."""
-        return elements.lifetimes(self.dataset, name)
+        """Return the elements of a lifetime that a name refers to (`named_elements`).
+
+        Raises
+        ------
+        InputError
+            When there is no such output or element, or it is not a lifetime.
+        """
+        elements = self.named_elements(name)
+        if not elements[0].is_lifetime:
+            lives = [life for life, output in self.outputs.items() if output.is_lifetime]
+            raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
+        return elements
 
     @property
     def notes_on_places(self) -> list[str]:
         """A sentence on each output of which only some elements are shown."""
-        return elements.notes_on_places(self.dataset)
-
-    @cached_property
-    def inputs(self) -> Floats:
-        """The values of the uncertain inputs, shape (n, d)."""
-        return elements.inputs_of(self.dataset)
+        return [
+            f"{name}: shown at evenly spread places, as it has {size} elements; name it in"
+            " [analysis] outputs for all of them"
+            for name, size in thinned_outputs(self.dataset).items()
+        ]
 
     def input_unit(self, name: str) -> ReadableUnit:
-        """Return the unit in which an input is read."""
-        return variables.input_unit(self.dataset, name)
+        """Return the unit in which an input is read, in all sentences, tables and figures."""
+        variable = self.dataset[name]
+        return unit_of(str(variable.attrs["units"]), typical(variable.values.ravel()))
 
     # Rows: outcome, dependence and weights
 
     @cached_property
     def failed(self) -> Mask:
         """Mask of rows that failed, shape (n,)."""
-        return result_file.failed(self.dataset)
+        return failed(self.dataset)
 
     def refuse_empty(self) -> None:
         """Refuse a result without rows.
@@ -162,7 +202,7 @@ class Result:
         ------
         InputError
         """
-        result_file.refuse_empty(self.dataset)
+        refuse_empty(self.dataset)
 
     @cached_property
     def independent(self) -> "Result":
@@ -173,57 +213,57 @@ class Result:
         InputError
             When there are no rows at all.
         """
-        rows = elements.independent_rows(self.dataset)
+        rows = independent_rows(self.dataset)
         return self if rows is self.dataset else Result(rows)
 
     @cached_property
     def why_no_statistics(self) -> str:
         """Why the rows do not support plain statistics (a predicate), or ""."""
-        return elements.why_no_statistics(self.dataset)
+        return why_no_statistics(self.dataset)
 
     @cached_property
     def replicates(self) -> Replicates:
         """The replicate or cluster of each row (`uq.result.elements.replicates_of`)."""
-        return elements.replicates_of(self.dataset)
+        return replicates_of(self.dataset)
 
     @property
     def has_independent_rows(self) -> bool:
         """Whether rows (blocks A and B of a crossed design) are independent."""
-        return elements.are_independent(self.dataset)
+        return self.has_independent_samples and not self.is_nested
 
     @property
     def has_independent_samples(self) -> bool:
         """Whether samples are independent, however many rows each has."""
-        return elements.has_independent_samples(self.dataset)
+        return has_independent_samples(self.dataset)
 
     @property
     def has_weights(self) -> bool:
         """Whether inspections have weighted the rows."""
-        return row_weights.has_weights(self.dataset)
+        return has_weights(self.dataset)
 
     @property
     def has_rounds(self) -> bool:
         """Whether a sampler has added rows to those of the design."""
-        return row_weights.has_rounds(self.dataset)
+        return has_rounds(self.dataset)
 
     @property
     def row_weights(self) -> Floats | None:
         """The weights of rows, of mean 1 (`uq.result.weights.row_weights`)."""
-        return row_weights.row_weights(self.dataset)
+        return row_weights(self.dataset)
 
     @cached_property
     def weights(self) -> Smoothed | None:
         """The weights of rows with their quality (`uq.result.elements.weights_of`)."""
-        return elements.weights_of(self.dataset)
+        return weights_of(self.dataset)
 
     def sample_weights(self, question: str) -> Floats | None:
         """Return the weights of samples whose units were not inspected (`sample_weights`)."""
-        return row_weights.sample_weights(self.dataset, self.nesting, question)
+        return sample_weights(self.dataset, self.nesting, question)
 
     @property
     def stands_for_any_unit(self) -> bool:
         """Whether rows stand for any unit: no inspection concerns the units."""
-        return row_weights.stand_for_any_unit(self.dataset)
+        return stand_for_any_unit(self.dataset)
 
     def refuse_weights(self, question: str) -> None:
         """Refuse a question that weighted rows cannot answer.
@@ -232,65 +272,108 @@ class Result:
         ------
         InputError
         """
-        row_weights.refuse_weights(self.dataset, question)
+        refuse_weights(self.dataset, question)
 
     # Samples, units, repeats, and parts of the rows
 
     @cached_property
     def nesting(self) -> Nesting:
         """The places of rows in samples, units and repeats."""
-        return nesting.nesting_of(self.dataset)
+        return nesting_of(self.dataset)
 
     @property
     def is_nested(self) -> bool:
         """Whether samples have several rows."""
-        return nesting.is_nested(self.dataset)
+        return is_nested(self.dataset)
 
     @property
     def levels(self) -> dict[str, str]:
         """The level of each input, by name."""
-        return nesting.levels_of(self.dataset)
+        return {name: level for name, (_, level) in self._leaders.items()}
 
     def levels_that_vary(self, without: Collection[str] = ()) -> Sequence[str]:
-        """Return the levels on which rows differ (`uq.result.nesting.levels_that_vary`)."""
-        return nesting.levels_that_vary(self.dataset, without)
+        """Return the levels on which rows differ; a random model differs by chance.
+
+        Parameters
+        ----------
+        without : collection of str
+            Inputs to ignore, as well as the inputs that equal them.
+        """
+        levels = {level for leader, level in self._leaders.values() if leader not in without}
+        if self.is_random:
+            levels.add(CHANCE)
+        return [level for level in LEVELS if level in levels]
+
+    @property
+    def _leaders(self) -> dict[str, tuple[str, str]]:
+        """The leader of each input (the input that it equals, or itself) and its level."""
+        entries = self.study.uncertain
+        leaders = {
+            name: entry.equals if isinstance(entry, Tied) else name
+            for name, entry in entries.items()
+        }
+        laws = {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}
+        return {name: (leader, laws[leader].level) for name, leader in leaders.items()}
 
     @property
     def first_rows(self) -> "Result":
         """The first repeat of the first unit of each sample: they follow a plain design."""
-        rows = nesting.one_of_each_sample(self.dataset)
+        rows = one_of_each_sample(self.dataset)
         return self if rows is self.dataset else Result(rows)
 
     def first_samples(self, samples: int) -> "Result":
         """Return the rows of the first samples of each replicate."""
-        return Result(nesting.first_samples(self.dataset, samples))
+        return Result(first_samples(self.dataset, samples))
 
     @cached_property
     def ranked(self) -> "Result":
         """The rows that rank inputs (`uq.result.ranked_rows.ranked_rows`)."""
-        rows = ranked_rows.ranked_rows(self.dataset)
+        rows = ranked_rows(self.dataset)
         return self if rows is self.dataset else Result(rows)
 
     @property
     def ranked_in_words(self) -> str:
         """A phrase for the rows that are ranked, ``by the first 50 000 rows``; "" for all."""
-        return ranked_rows.ranked_in_words(self.ranked.dataset, self.dataset)
+        return ranked_in_words(self.ranked.dataset, self.dataset)
 
     def within_regime(self, regime: str) -> "Result":
-        """Return the rows in one regime (`uq.result.regimes.within_regime`)."""
-        return Result(regimes.within_regime(self.dataset, regime))
+        """Return the rows in one regime.
+
+        Failed rows without a regime are kept: any of them might have been in this one, and failed
+        rows must be counted.
+
+        Raises
+        ------
+        InputError
+            When the result has no regimes, this one does not exist, or no row is in it.
+        """
+        if "regime" not in self.dataset:
+            raise InputError("this result has no regimes; leave the regime out")
+        variable = self.dataset["regime"]
+        codes = {label: code for code, label in flags(variable) if code >= 0}
+        if regime not in codes:
+            near, allowed = nearest(regime, list(codes)), ", ".join(codes)
+            raise InputError(f"no such regime '{regime}'{near} (allowed: {allowed})")
+        in_regime = variable.values == codes[regime]
+        if not in_regime.any():
+            present = np.unique(variable.values)
+            occurring = [label for label, code in codes.items() if code in present]
+            raise InputError(
+                f"no row is in the regime '{regime}' (there are rows in: {choices(occurring)})"
+            )
+        return self.take(np.flatnonzero(in_regime | ((variable.values < 0) & self.failed)))
 
     # Commands on the file
 
     @property
     def file(self) -> str:
         """The file as a shell reads it, OUT if it is not recorded."""
-        return commands.file_of(self.dataset)
+        return file_of(self.dataset)
 
     @property
     def model_option(self) -> str:
         """``--model`` and a file, after a blank, for a model that is not installed here."""
-        return commands.model_option(self.dataset)
+        return model_option(self.dataset)
 
 
 AnyResult = Result | xr.Dataset | str | Path

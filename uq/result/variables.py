@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from uq.contract import Model, Output, Status, censored_name
 from uq.study.installed_models import made_here
 from uq.study.row_sampling import block_labels
-from uq.text.units import ReadableUnit, typical, unit_of
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -42,19 +41,6 @@ def parameter_variable(
     attrs |= {"initial": 1} if declared.initial else {}
     attrs |= {"level": level} if level else {}
     return (("row",), value, attrs) if uncertain else ((), np.float64(value), attrs)
-
-
-def input_unit(ds: xr.Dataset, name: str) -> ReadableUnit:
-    """Return the unit in which an input is read, in all sentences, tables and figures.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result.
-    name : str
-        Of an input.
-    """
-    return unit_of(str(ds[name].attrs["units"]), typical(ds[name].values.ravel()))
 
 
 def output_variables(
@@ -118,11 +104,6 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
         for name, variable in ds.variables.items()
         if variable.attrs.get("role") == "output"
     }
-
-
-def is_category(ds: xr.Dataset, name: str) -> bool:
-    """Whether a result has a category of this name."""
-    return name in (outputs := outputs_of(ds)) and outputs[name].is_category
 
 
 def coordinates(model: Model, settings: Any) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from answered import numbers_in
 from scipy.stats import binomtest
 
 import uq
-from uq.result.elements import are_independent, study_file_of
+from uq.result.result import Result
 from uq.result.result_file import failed
 
 
@@ -21,7 +21,7 @@ def denied_event(rows, event, hits):
         value, low, high = shown[:3]
         if not (low <= value <= high and low - 0.06 <= share <= high + 0.06):
             yield event.sentence
-        far = 0.15 if are_independent(rows) else 0.35
+        far = 0.15 if Result(rows).has_independent_rows else 0.35
         exact = binomtest(round(np.nansum(hits)), len(hits)).proportion_ci()
         ends = 100 * exact.low, 100 * exact.high
         if not np.allclose((low, high), ends, atol=far * (ends[1] - ends[0]), rtol=0):
@@ -135,7 +135,7 @@ def _before(lead, tolerance):
 
 def _denied_law(ds, tolerance):
     """Compare half the scatter with the law of the study, and the numbers behind the key."""
-    laws = {name: study_file_of(ds).uncertain[name] for name in tolerance.inputs}
+    laws = {name: Result(ds).study.uncertain[name] for name in tolerance.inputs}
     texts = dict(re.findall(r"(?:^|; )([^:;]+): ([^:;]+)", tolerance.law)) or dict.fromkeys(
         (name.replace("_", " ") for name in laws), tolerance.law
     )

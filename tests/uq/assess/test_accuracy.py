@@ -15,7 +15,7 @@ from uq.assess.summary import summarise
 from uq.cli.summary_tables import show_summary
 from uq.contract import Output, Setting
 from uq.render.html.outcomes import outcomes, result_tables
-from uq.result.elements import analysis_of, elements_of
+from uq.result.elements import elements_of
 from uq.result.result import Result
 
 
@@ -47,7 +47,7 @@ ROUGH = replace(
 def accuracy_of(ds, name):
     """Return what is said of the accuracy of an output without dimensions."""
     (element,) = elements_of(ds, [name])
-    (statistic,) = accuracy(element, Context(Result(ds), analysis_of(ds)))
+    (statistic,) = accuracy(element, Context(Result(ds), Result(ds).analysis))
     return statistic.facts["accuracy"]
 
 

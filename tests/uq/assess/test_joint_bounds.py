@@ -14,7 +14,6 @@ from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.assess.joint_bounds import Needed, rows_needed
 from uq.errors import InputError
-from uq.result.elements import analysis_of
 from uq.result.result import Result
 from uq.result.result_file import failed
 from uq.stats.order_statistics import joint_bounds, rows_for_bound, tolerance_bounds
@@ -86,7 +85,7 @@ def test_a_summary_has_them_beside_each_output():
     got = [outputs[f"work[side={side}]"]["joint_bounds"]["upper"] for side in ("left", "right")]
     got += [-outputs["angle"]["joint_bounds"]["lower"], outputs["angle"]["joint_bounds"]["upper"]]
     assert got == expected
-    assert rows_needed(Result(ds), analysis_of(ds)) == {"joint_bounds": Needed(153, 4)}
+    assert rows_needed(Result(ds), Result(ds).analysis) == {"joint_bounds": Needed(153, 4)}
 
 
 def test_lives_are_never_or_beyond_the_horizon():

@@ -13,7 +13,7 @@ from uq.assess.statistics.between_regimes import between_share
 from uq.assess.stopping import interim_estimate
 from uq.assess.survival import survival
 from uq.errors import InputError
-from uq.result.elements import are_independent, replicates_of
+from uq.result.elements import replicates_of
 from uq.result.nesting import one_of_each_sample
 from uq.result.result import Result
 from uq.stats.clusters import Clusters, dealt, linearised_means
@@ -77,7 +77,7 @@ def test_groups_hold_whole_samples():
 def test_what_depends_on_the_sample_alone_has_the_interval_of_the_samples():
     ds = nested_result(levels=SHARED_ALONE, samples=200, analysis={"thresholds": {"y": [5.0]}})
     alone = one_of_each_sample(ds)
-    assert not are_independent(ds) and isinstance(replicates_of(ds), Clusters)
+    assert not Result(ds).has_independent_rows and isinstance(replicates_of(ds), Clusters)
     statistics = summarised(ds)["outputs"]["y"]
     mean = statistics["mean_interval"]
     assert (mean["low"], mean["high"]) == pytest.approx(mean_interval(alone["y"].values))

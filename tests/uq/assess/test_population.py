@@ -194,7 +194,7 @@ def test_each_level_is_integrated_by_itself():
     element = next(population(Result(rows), ["life"]))
     inputs = inputs_of(Result(rows))
     unit_part, world = (
-        integrated(Result(rows), element.declared, inputs, {level}).law
+        integrated(Result(rows), element.declared, inputs, {level})[0]
         for level in ("own", "shared")
     )
     assert (unit_part.inputs, world.inputs) == (("a",), ("b",))

@@ -26,7 +26,6 @@ from uq.errors import InputError
 from uq.explore.rare_events import ESTIMATORS as RARE
 from uq.explore.rare_events import rare_event
 from uq.indices.methods import fed_by
-from uq.result.elements import study_file_of
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 
@@ -333,7 +332,7 @@ def test_rare_events(method, damage, settings):
 @pytest.mark.parametrize("estimate", [{}, {"quantile": 0.5}, {"above": 6.0}])
 def test_a_look_at_damaged_rows(damage, estimate):
     ds = damaged(linear(until={"output": "y", "half_width": 0.5} | estimate), damage, ("y",))
-    seen = stopping.interim_estimate(study_file_of(ds).design, Result(ds))
+    seen = stopping.interim_estimate(Result(ds).study.design, Result(ds))
     if damage == "all failed":
         assert not seen.reached and np.isnan(seen.estimate.numbers[:2]).all()
         return

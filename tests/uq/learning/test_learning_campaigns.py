@@ -7,7 +7,6 @@ from benchmarks.campaigns import apart, campaign, worlds
 from uq.learning.epistemic_band import over_shared
 from uq.learning.posterior import posterior
 from uq.learning.posterior_result import as_result
-from uq.result.elements import lifetimes
 from uq.result.result import Result
 
 CAMPAIGNS = 200
@@ -46,7 +45,7 @@ def covered(rods, count):
         low, high = quantiles(everyone.scale, everyone.weights.weights)
         coefficient.append(low <= true <= high)
         after = as_result(Result(rows), learnt, inspections, 0.0)
-        life = lifetimes(after, "first_time_to_depth")[-1]
+        life = Result(after).lifetimes("first_time_to_depth")[-1]
         low, high = over_shared(Result(after), life, 0.0, 2 * last).values()
         share = np.searchsorted(everywhere, 2 * last * true) / len(everywhere)
         ended.append(low <= share <= high)

@@ -12,6 +12,7 @@ import uq as package
 from uq.contract import Status
 from uq.execution import child, loading
 from uq.result import elements
+from uq.result.result import Result
 
 
 def test_a_function_becomes_a_machine_with_units_bounds_lives_and_arrays(uq, write_function):
@@ -59,7 +60,7 @@ def test_a_long_array_is_described_at_some_places_unless_it_is_named(
         (element,) = elements.named_elements(ds, "y[y_0=17,y_1=1]")
         assert element.place == {"y_0": 17, "y_1": 1}
         sentence = "y: shown at evenly spread places, as it has 270 elements"
-        assert [note[: len(sentence)] for note in elements.notes_on_places(ds)] == [sentence] * (
+        assert [note[: len(sentence)] for note in Result(ds).notes_on_places] == [sentence] * (
             not more
         )
 

@@ -9,7 +9,8 @@ from nested_studies import LEVELS, nested, nested_result
 from noisy_studies import noisy
 
 from uq.errors import InputError
-from uq.result.nesting import levels_of, nesting_of, one_of_each_sample
+from uq.result.nesting import nesting_of, one_of_each_sample
+from uq.result.result import Result
 from uq.result.result_file import relabel
 from uq.sampling.levels import coordinates, dimension
 from uq.study.changes import what_changed
@@ -111,7 +112,7 @@ def test_rows_of_a_sample_are_found_in_any_order():
 def test_an_input_that_follows_another_has_its_level():
     study = nested(uncertain={"x4": {"equals": "x1"}})
     ds = computed(study)
-    assert levels_of(ds)["x4"] == "shared" == ds["x4"].attrs["level"]
+    assert Result(ds).levels["x4"] == "shared" == ds["x4"].attrs["level"]
     assert np.array_equal(ds["x4"].values, ds["x1"].values)
     factor = {"distribution": "uniform", "lower": 0.5, "upper": 0.9, "times": "x1"}
     above_zero = {"x1": {"distribution": "uniform", "lower": 0.1, "upper": 1.0, "level": "shared"}}

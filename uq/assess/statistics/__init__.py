@@ -5,7 +5,6 @@ Reading order; each part imports only those above it:
     between_regimes  the share of the variance of an output that lies between regimes
     counts           numbers of rows without a value, or less accurate than requested
     quantiles        the quantiles that a study asks for, and the B-lives of lifetimes
-    joint            tolerance bounds that hold for several outputs at once
     moments          mean, standard deviation, and the tail that may rule them out
     thresholds       probabilities that an output lies above and below thresholds
     tolerance        tolerance bounds

@@ -37,7 +37,7 @@ _KIND = StatisticKind(
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the share of the variance between regimes, of a life by its logarithm or rank."""
     target = number_of(element)
-    if "regime" not in context.rows.output_names or target.refused or context.weights:
+    if "regime" not in context.rows.output_names or target.refused or element.weights is not None:
         return
     codes = context.rows.dataset["regime"].values
     split = between_share(target.values, codes, context.replicate)

@@ -5,15 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from uq.assess.counted_rows import share_of
-from uq.assess.population import Population
+from uq.assess.population import as_sample
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.result.variables import error_name
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import effective_rows, per_sample
-from uq.stats.intervals import Replicates, replicates_of_some
+from uq.stats.importance_weights import effective_rows
+from uq.stats.intervals import Replicates
 from uq.text.numbers import counted, percent
 
 _EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
@@ -28,24 +27,12 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
 
 def never_ending(element: Element, replicate: Replicates) -> Estimate:
     """Estimate the probability that a life never ends; unknown where censored rows may not end."""
-    if element.censored.any() and not element.declared.never_known_at_once:
-        return Estimate(reason="censored rows may never end")
-    if element.weights is None:
-        kept = ~element.failed
-        return share_of(element.never[kept], replicates_of_some(replicate, kept))
-    certain = np.where(element.present, element.never, np.nan)
-    flags = np.zeros(len(certain), dtype=bool)
-    return Population(replace(element, values=certain, censored=flags, law=None), replicate).above(
-        0.5
-    )
+    return as_sample(element, replicate).never_ending()
 
 
 def effective(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield Kish's number of rows of equal weight, or samples, that are worth as much."""
-    if element.weights is not None:
-        kept = element.present
-        part = replicates_of_some(context.replicate, kept)
-        number = effective_rows(per_sample(element.weights[kept], part))
+    if (number := context.sample(element).effective_rows) is not None:
         yield Statistic(
             ("effective_rows",),
             "effective rows",

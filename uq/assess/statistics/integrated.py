@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import isfinite, nan
+from math import isfinite
 
-from uq.assess.population import Population
 from uq.assess.scaling import why_not_integrated
 from uq.assess.statistic import FACT, Context, Reader, Statistic
 from uq.assess.statistics.quantiles import B_LIVES, LIFE
@@ -32,10 +31,8 @@ def integrated(element: Element, context: Context) -> Iterator[Statistic]:
             yield Statistic(("integrated",), "", Estimate(), kind=_KIND, column="", notes=(why,))
         return
     names = " and ".join(name.replace("_", " ") for name in law.inputs)
-    words, worth = f"{names} integrated exactly", nan
-    if element.weights is None:
-        of = Population(element, context.replicate)
-        worth = of.times_the_rows(of.middle(B_LIVES[_AT]))
+    words = f"{names} integrated exactly"
+    worth = context.sample(element).integration_gain(B_LIVES[_AT])
     if isfinite(worth):
         words += f", worth {worth:.2g} times the rows at {_AT}"
     yield Statistic(

@@ -3,15 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from uq.assess.counted_rows import CountedRows
-from uq.assess.estimators import quantile_of
 from uq.assess.failed_rows import bounded
-from uq.assess.population import Population
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
-from uq.stats import order_statistics
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.kaplan_meier import kaplan_meier
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 """Share of rows that have ended by each of the lives that engineers quote."""
@@ -19,9 +14,6 @@ B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 _LIVES = Listing("B-lives: B10 is the time by which 10 % have ended", first="lifetime")
 _TIMES = Listing("Times by which a share has succeeded", first="time")
 LIFE = StatisticKind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
-_BY = (order_statistics.quantile, order_statistics.quantile_interval)
-_BY_KAPLAN_MEIER = (CountedRows.life_quantile, kaplan_meier)
-_LAWS = (Population.quantile, Population)
 _ROWS = replace(COUNT, readers=Reader.REPORT)
 
 
@@ -39,13 +31,16 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             column=f"q{name}",
             heading=f"{100 * p:g} % quantile",
             rows_needed=sample.rows_needed(p),
-            estimator=quantile_of(element, p),
-            by=_BY if element.is_plain else _LAWS,
+            estimator=sample.quantile_estimator(p),
+            by=sample.by["quantile"],
         )
         guess = sample.life_quantile(p) if element.is_lifetime else NOTHING
         label = f"{statistic.label}, if"
-        otherwise = replace(statistic, label=label, estimate=guess, by=_BY_KAPLAN_MEIER)
-        yield replace(statistic, otherwise=otherwise) if guess.assumes else statistic
+        if guess.assumes:
+            by = sample.by["life_quantile"]
+            otherwise = replace(statistic, label=label, estimate=guess, by=by)
+            statistic = replace(statistic, otherwise=otherwise)
+        yield statistic
 
 
 @bounded()
@@ -66,8 +61,8 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
             replace(LIFE, listing=listing),
             rows_needed=None if life.assumes else sample.rows_needed(p),
             column=name,
-            estimator=quantile_of(element, p),
-            by=(_BY_KAPLAN_MEIER if life.assumes else _BY) if element.is_plain else _LAWS,
+            estimator=sample.quantile_estimator(p),
+            by=sample.by["life_quantile" if life.assumes else "quantile"],
         )
     rows_in = replace(_ROWS, listing=listing)
     for label, rows in (("never ending", element.never), ("censored", element.censored)):

@@ -1,20 +1,15 @@
 """Probabilities that an output lies above and below thresholds."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from math import nan
 
-from uq.assess.counted_rows import CountedRows, share_of
-from uq.assess.estimators import SelectedRows, share
 from uq.assess.failed_rows import bounded
-from uq.assess.population import Population
 from uq.assess.sample import Sample
 from uq.assess.statistic import Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.elements import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import share_interval
-from uq.stats.kaplan_meier import kaplan_meier
 
 SIDES = {"above": ">", "below": "<"}
 
@@ -45,7 +40,7 @@ def _probabilities(sample: Sample, threshold: float) -> Iterator[Statistic]:
     share_undefined = float(element.undefined[kept].mean()) if kept.any() else nan
     undefined = {"undefined": estimate_json.number(share_undefined)}
     estimates = (sample.probability_above(threshold), sample.probability_below(threshold))
-    counts = isinstance(sample, CountedRows)
+    guesses = sample.ended_by(threshold)
     for (side, sign), estimate in zip(SIDES.items(), estimates, strict=True):
         statistic = Statistic(
             ("thresholds", repr(threshold), side),
@@ -56,15 +51,12 @@ def _probabilities(sample: Sample, threshold: float) -> Iterator[Statistic]:
             falls=side == "below",
             at=threshold,
             facts=undefined,
-            estimator=replace(
-                share(_hits(threshold, side)), counts_hits=counts, averages=not counts
-            ),
-            by=(share_of, share_interval)
-            if counts
-            else (getattr(Population, f"probability_{side}"), Population),
+            estimator=sample.share_estimator(threshold, side),
+            by=sample.by[f"probability_{side}"],
         )
-        if isinstance(sample, CountedRows) and element.unknown_sides(threshold).any():
-            statistic = _by_kaplan_meier(statistic, sample, threshold)
+        if guesses is not None:
+            guess = replace(statistic, estimate=guesses[statistic.falls], by=sample.by["ended_by"])
+            statistic = _with_guess(statistic, guess)
         yield statistic
     yield Statistic(
         ("thresholds", repr(threshold), "undefined"),
@@ -77,24 +69,13 @@ def _probabilities(sample: Sample, threshold: float) -> Iterator[Statistic]:
     )
 
 
-def _by_kaplan_meier(plain: Statistic, sample: CountedRows, threshold: float) -> Statistic:
+def _with_guess(plain: Statistic, guess: Statistic) -> Statistic:
     """Return a probability that censored rows leave open, with its Kaplan-Meier estimate."""
-    guess = sample.ended_by(threshold)[plain.falls]
     label = f"{plain.label}, if" if plain.falls else ""  # a terminal shows one side only
-    small = (plain.estimate.reason, f"by Kaplan-Meier, assuming {guess.assumes}", guess.reason)
-    by = (CountedRows.ended_by, kaplan_meier, CountedRows.survival)
+    assumed = f"by Kaplan-Meier, assuming {guess.estimate.assumes}"
+    small = (plain.estimate.reason, assumed, guess.estimate.reason)
     return replace(
         plain,
-        otherwise=replace(plain, label=label, estimate=guess, by=by),
+        otherwise=replace(guess, label=label),
         more="; ".join(filter(None, small)) if plain.falls else "",
     )
-
-
-def _hits(threshold: float, side: str) -> Callable[[Element], SelectedRows | None]:
-    def sample(element: Element) -> SelectedRows | None:
-        if element.law is None and element.unknown_sides(threshold).any():
-            return None
-        numbers = (element.above if side == "above" else element.below)(threshold)
-        return SelectedRows(~element.failed, numbers)
-
-    return sample
