@@ -21,7 +21,7 @@ def status(path: Path, json: bool) -> None:
 
 def _show_status(run: RunStatus) -> None:
     writer = run.process
-    by = f" (process {writer.pid} on {writer.host})" if writer else ""
+    by = f" (process {writer['pid']} on {writer['host']})" if writer else ""
     heading(f"{run.output}: {run.state}{by}")
     rate, left = run.rate, run.seconds_left
     time_left = (duration(left) or f"{left:.0f} s") if left else ""

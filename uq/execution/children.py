@@ -60,12 +60,18 @@ class Children:
             self._busy.append(child)
             if self._closed:
                 child.close()
+        sound, surplus = False, [child]
         try:
             yield child
-        except BaseException:
-            self._returned(child, whole=False)
-            raise
-        self._returned(child, whole=True)
+            sound = True
+        finally:
+            with self._lock:
+                self._busy.remove(child)
+                if sound and not self._closed:
+                    self._idle.append(child)
+                    surplus = [self._idle.pop(0)] if len(self._idle) > _KEPT else []
+            for discarded in surplus:
+                discarded.close()
 
     def end_idle(self) -> None:
         """End those that nobody uses."""
@@ -82,12 +88,3 @@ class Children:
             self._idle = []
         for child in every:
             child.close()
-
-    def _returned(self, child: Isolated, whole: bool) -> None:
-        with self._lock:
-            self._busy.remove(child)
-            keep = whole and not self._closed
-            self._idle += [child] * keep
-            over = [self._idle.pop(0)] if len(self._idle) > _KEPT else []
-        for discarded in over if keep else [child]:
-            discarded.close()

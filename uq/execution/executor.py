@@ -35,9 +35,9 @@ def in_one_process(workers: int | None, seconds: float) -> bool:
 
 def processes(workload: Workload, workers: int | None) -> int:
     """Return how many processes compute at the same time, if the work is worth starting workers."""
-    from uq.execution.local_cluster import CORES
+    from dask.system import CPU_COUNT  # within affinity and container limits
 
-    return min(1 if workers == 0 else workers or CORES, workload.total // workload.group)
+    return min(1 if workers == 0 else workers or CPU_COUNT, workload.total // workload.group)
 
 
 def first_rows_alone(workload: Workload, workers: int | None) -> bool:
@@ -129,11 +129,13 @@ class Executor:
             if self._options.scheduler is not None:
                 from uq.execution.remote_cluster import remote_workers
 
-                crew = remote_workers(self._options.scheduler)
+                crew = remote_workers(
+                    self._options.scheduler, self._workload, self._options.row_limit
+                )
             else:
                 count = processes(dispatcher.workload, self._options.workers)
                 self._begin(count)  # they import while dask does
-                crew = local_workers(count, self._children)
+                crew = local_workers(count, self._children, self._workload, self._options.row_limit)
             self._crew = self._stack.enter_context(crew)
         return self._crew
 

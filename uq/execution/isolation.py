@@ -52,20 +52,6 @@ def spec_of(workload: "Workload") -> child.ModelSpec:
     )
 
 
-@contextmanager
-def isolated(
-    spec: child.ModelSpec,
-    limit: float | None = None,
-    compiling: Action = lambda: None,
-    prints: int = subprocess.DEVNULL,
-) -> Iterator[Evaluate]:
-    """Yield a function that computes rows in a separate process; parameters as of `Isolated`."""
-    process = Isolated(spec, limit, compiling, prints)
-    with undone(process.close):
-        process.begin()
-        yield process.evaluate
-
-
 class Isolated:
     """A process that computes rows, and is replaced when it dies.
 
@@ -93,8 +79,15 @@ class Isolated:
         self._prints = prints
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._ready: child.Ready | None = None
+        self._loaded = self._stops_rows = self._loads_first = False
         self._closed = threading.Event()
+
+    @contextmanager
+    def running(self) -> Iterator[Evaluate]:
+        """Start the process, yield `evaluate`, and end the process."""
+        with undone(self.close):
+            self.begin()
+            yield self.evaluate
 
     def evaluate(self, x: Floats, seed: NDArray[np.uint64], start: int = 0) -> Chunk:
         """Run some rows; parameters and exceptions as in `uq.study.evaluate.evaluate`.
@@ -142,8 +135,7 @@ class Isolated:
             answer = self._answer(connection, self._patience(len(x)))
         except (EOFError, OSError):
             return RowFailure(Status.CRASHED, f"killed its process ({self._end()})")
-        if self._ready:
-            self._ready = self._ready._replace(loads_first=False)
+        self._loads_first = False
         if answer is None:
             self._end(at_once=True)
             return RowFailure(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
@@ -154,11 +146,11 @@ class Isolated:
 
     def _patience(self, rows: int) -> float | None:
         """Return how long rows that are computed together may take [s]."""
-        if self.limit is None or self._ready is None:
+        if self.limit is None:
             return None
-        if self._ready.stops_rows:
+        if self._stops_rows:
             return rows * self.limit + _STUCK_SECONDS
-        return self.limit + (child.FIRST_SECONDS if self._ready.loads_first else 0.0)
+        return self.limit + (child.FIRST_SECONDS if self._loads_first else 0.0)
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
         """Return the answer of the process, or None when its time is over."""
@@ -187,7 +179,7 @@ class Isolated:
         RunError
             When it cannot start, or was closed.
         """
-        if self._connection and self._ready:
+        if self._connection and self._loaded:
             return self._connection
         for _ in range(_STARTS):
             if self._closed.is_set():
@@ -201,7 +193,7 @@ class Isolated:
             if kind == child.REFUSED:
                 self._end()
                 raise value
-            self._ready = child.Ready(*value)
+            self._loaded, (self._stops_rows, self._loads_first) = True, value
             return connection
         raise RunError(f"a process for the rows could not start: {reason}")
 
@@ -209,7 +201,7 @@ class Isolated:
         """End the process, unless it is already dying; return how it ended."""
         process, connection = self._process, self._connection
         self._process = self._connection = None
-        self._ready = None
+        self._loaded = False
         if connection:
             connection.close()
         if not process:

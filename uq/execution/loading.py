@@ -16,7 +16,7 @@ import numpy as np
 
 from uq.contract import Model
 from uq.errors import InputError, first_fault_alone
-from uq.execution.child import FIRST_SECONDS, REFUSED, Action, answer_of
+from uq.execution.child import FIRST_SECONDS, RAISED, REFUSED, RETURNED, Action, answer_of
 from uq.execution.environment import started
 from uq.execution.options import Say, ignore
 from uq.files.paths import cache_path
@@ -137,8 +137,6 @@ def _observed_outputs(
     code = f"{__version__}\n{reference}\n{code_of(reference)}"
     key = hashlib.sha256(code.encode() + numbers).hexdigest()
     kept = cache_path(DISTRIBUTION) / "returns" / f"{key}.json"
-    if not kept.is_absolute():  # there is no home: the path begins with "~"
-        return joined(list(_returned(reference, tried, say, limit)))
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()
@@ -160,8 +158,6 @@ def _returned(
     InputError
         When the nominal row fails.
     """
-    from uq.execution import probe
-
     todo, done = iter(tried), 0
     began, announced = time.monotonic(), False
 
@@ -181,7 +177,7 @@ def _returned(
     while done < len(tried):
         for outcome, value in _in_process(reference, todo, limit, waiting):
             done += 1
-            if outcome == probe.RETURNED:
+            if outcome == RETURNED:
                 yield from_plain(value)
             elif done == 1:
                 raise InputError(f"model '{reference}': its nominal row {value}")
@@ -197,9 +193,7 @@ def _in_process(
     InputError
         When the process has no such model.
     """
-    from uq.execution import probe
-
-    process, connection = started("uq.execution.probe")
+    process, connection = started("uq.execution.child")
     grace: float | None = None
     try:
         connection.send(reference)
@@ -213,10 +207,10 @@ def _in_process(
                 connection.send(row)
                 answer = answer_of(connection, limit and limit + grace, waiting=waiting)
             except (EOFError, OSError):
-                yield probe.RAISED, "killed its process"
+                yield RAISED, "killed its process"
                 return
             if answer is None:
-                yield probe.RAISED, f"did not end within {limit:g} s"
+                yield RAISED, f"did not end within {limit:g} s"
                 return
             yield answer
             grace = 0.0
