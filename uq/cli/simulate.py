@@ -110,9 +110,10 @@ def as_json(row: Row) -> dict[str, Any]:
     """
     status, meaning = row.ending
     names: dict[str, list[str]] = {"never": [], "censored": [], "undefined": []}
-    for element, _, state in (entry for name in row.model.outputs for entry in _states(row, name)):
-        if state:
-            names[state].append(element)
+    for name in row.model.outputs:
+        for element, _, state in _states(row, name):
+            if state:
+                names[state].append(element)
     return {
         "model": row.model.name,
         "inputs": row.values,

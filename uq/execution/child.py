@@ -39,6 +39,8 @@ class ModelSpec(NamedTuple):
         The cheap output to be computed alone; "" for all outputs.
     code : str
         `uq.study.installed_models.code_of` the wanted model; "" for any.
+    probed : bool
+        Whether single rows are to be run, of a function that does not declare its outputs.
     """
 
     model: str
@@ -46,6 +48,7 @@ class ModelSpec(NamedTuple):
     settings: tuple[tuple[str, Any], ...]
     output: str = ""
     code: str = ""
+    probed: bool = False
 
     def load(self) -> tuple[Model, Any]:
         """Return the model, as far as it is wanted, and its settings.
@@ -78,9 +81,6 @@ READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "d
 The last two come with a chunk or an exception; the first with two flags: whether the process stops
 rows itself when their time is over, and whether its first call may take longer.
 """
-
-RETURNED, RAISED = "returned", "raised"
-"""Messages on a row of a function that is probed, with its outputs as plain data or a sentence."""
 
 Action = Callable[[], object]
 Answer = Callable[..., tuple[str, Any]]
@@ -174,33 +174,36 @@ def _evaluation(spec: ModelSpec, limit: float | None) -> tuple[tuple[bool, bool]
     return flags, answer
 
 
-def _probe(reference: str) -> tuple[tuple[bool, bool], Answer]:
-    """Return the same for single rows of a function that does not declare its outputs."""
-    batch: Any = model_at(reference).batch
+def _probe(spec: ModelSpec) -> tuple[tuple[bool, bool], Answer]:
+    """Return the same for single rows of a function that does not declare its outputs.
+
+    The answer is what a row returns, as plain data, or a sentence on how it failed.
+    """
+    batch: Any = model_at(spec.model).batch
 
     def answer(row: list[float], seed: int) -> tuple[str, Any]:
         try:
-            return RETURNED, as_plain(seen_in(batch.row(row, seed)))
+            return DONE, as_plain(seen_in(batch.row(row, seed)))
         except WrongReturnError as error:
-            return RAISED, str(error)
+            return DONE, str(error)
         except BaseException as error:
-            return RAISED, f"raised {described(error)}"
+            return DONE, f"raised {described(error)}"
 
     return (False, True), answer
 
 
 def main(handle: str) -> None:
-    """Answer requests until the connection closes.
+    """Answer requests until the connection closes; first comes what the process is for.
 
-    First comes a `ModelSpec` with the time limit of a row, whose rows are computed, or the
-    reference of a function that is probed.
+    That is a `ModelSpec`, with the time limit of a row.
     """
     _end_with_parent()
     os.dup2(1, 2)  # warnings of the model go where its prints go
     connection = Connection(int(handle))
-    request = connection.recv()
+    spec: ModelSpec
+    spec, limit = connection.recv()
     try:
-        flags, answer = _probe(request) if isinstance(request, str) else _evaluation(*request)
+        flags, answer = _probe(spec) if spec.probed else _evaluation(spec, limit)
     except Exception as error:
         connection.send((REFUSED, error))
         return

@@ -7,7 +7,7 @@ message, the others the same values as anywhere.
 import signal
 import subprocess
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from math import ceil
@@ -64,6 +64,8 @@ class Isolated:
         Called when the process starts to compile.
     prints : int
         File descriptor for what the model prints.
+    waiting : callable
+        Called several times a second while rows are computed.
     """
 
     def __init__(
@@ -72,11 +74,13 @@ class Isolated:
         limit: float | None = None,
         compiling: Action = lambda: None,
         prints: int = subprocess.DEVNULL,
+        waiting: Action = lambda: None,
     ) -> None:
         self.spec = spec
         self.limit = limit
         self._compiling = compiling
         self._prints = prints
+        self._waiting = waiting
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
         self._loaded = self._stops_rows = self._loads_first = False
@@ -97,9 +101,9 @@ class Isolated:
         RunError
             When the process cannot start, or was closed from another thread.
         """
-        chunk = self._ask(x, seed, start)
-        if isinstance(chunk, Chunk):
-            return chunk
+        chunk = self.ask(x, seed, start)
+        if not isinstance(chunk, RowFailure):
+            return cast(Chunk, chunk)
         if len(x) == 1:
             return self._single(x, seed, start)
         # Waiting for the time limit costs more than computing rows one by one.
@@ -111,9 +115,9 @@ class Isolated:
     def _single(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row by itself, to find out whether it is guilty."""
         for _ in range(TRIES - 1):  # that of its chunk was the first
-            outcome = self._ask(x, seed, start)
-            if isinstance(outcome, Chunk):
-                return outcome
+            outcome = self.ask(x, seed, start)
+            if not isinstance(outcome, RowFailure):
+                return cast(Chunk, outcome)
             if outcome.status is not Status.CRASHED:
                 break
         fault = cast(RowFailure, outcome)
@@ -128,10 +132,11 @@ class Isolated:
         self._closed.set()
         self._end(at_once=True)
 
-    def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | RowFailure:
+    def ask(self, x: Sequence[float] | Floats, *others: Any) -> Any | RowFailure:
+        """Return the answer of the process on some rows, or how they ended it."""
         try:
             connection = self.start()
-            connection.send((x, seed, start))
+            connection.send((x, *others))
             answer = self._answer(connection, self._patience(len(x)))
         except (EOFError, OSError):
             return RowFailure(Status.CRASHED, f"killed its process ({self._end()})")
@@ -142,7 +147,7 @@ class Isolated:
         kind, value = answer
         if kind == child.REFUSED:
             raise value
-        return cast(Chunk, value)
+        return value
 
     def _patience(self, rows: int) -> float | None:
         """Return how long rows that are computed together may take [s]."""
@@ -154,7 +159,7 @@ class Isolated:
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
         """Return the answer of the process, or None when its time is over."""
-        return child.answer_of(connection, limit, self._compiling)
+        return child.answer_of(connection, limit, self._compiling, self._waiting)
 
     def begin(self) -> None:
         """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
