@@ -26,7 +26,7 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     grid([(level, ", ".join(decomposition.inputs_on(level)) or "-") for level in LEVELS])
     for name, shares in decomposition.outputs.items():
         heading(f"\n{NumberTarget(opened, name).name}", "shares of the variance")
-        grid(_lines(shares), header=("", "share", "95 % interval", ""))
+        grid(_share_lines(shares), header=("", "share", "95 % interval", ""))
         for text in shares.sentences:
             paragraph(text, indent=2)
     if (another := decomposition.another_regime) is not None:
@@ -41,7 +41,7 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
         note("the solver's share is contained in the others")
 
 
-def _lines(level_shares: LevelShares) -> Iterator[tuple[str, str, str, str]]:
+def _share_lines(level_shares: LevelShares) -> Iterator[tuple[str, str, str, str]]:
     for name, share in level_shares.shares.items():
         assumes = share.assumes.removeprefix("that ")
         yield name, S1.text(share.value), S1.interval(share), assumes

@@ -4,8 +4,8 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from uq.execution.child import ModelSpec
-from uq.execution.isolation import Action, Isolated
+from uq.execution.child import Action, ModelSpec
+from uq.execution.isolation import Isolated
 
 _KEPT = 64  # idle processes at most
 

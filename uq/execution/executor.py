@@ -122,19 +122,18 @@ class Executor:
         self._seconds += dispatcher.row_seconds * dispatcher.rows
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
-        from uq.execution.local_cluster import local_workers
-
         if self._crew is None:
+            how = self._workload, self._options.row_limit
             if self._options.scheduler is not None:
                 from uq.execution.remote_cluster import remote_workers
 
-                crew = remote_workers(
-                    self._options.scheduler, self._workload, self._options.row_limit
-                )
+                crew = remote_workers(self._options.scheduler, *how)
             else:
                 count = processes(dispatcher.workload, self._options.workers)
                 self._begin(count)  # they import while dask does
-                crew = local_workers(count, self._children, self._workload, self._options.row_limit)
+                from uq.execution.local_cluster import local_workers
+
+                crew = local_workers(count, self._children, *how)
             self._crew = self._stack.enter_context(crew)
         return self._crew
 

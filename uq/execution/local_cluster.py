@@ -9,15 +9,15 @@ import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+
+import dask
+from distributed import Client, LocalCluster
 
 from uq.execution.children import Children
 from uq.execution.dask_task import named
+from uq.execution.workers import Workers, quiet
 from uq.files.interrupts import undone
 from uq.result.workload import Workload
-
-if TYPE_CHECKING:
-    from uq.execution.workers import Workers
 
 _UNUSED = "127.0.0.1:0"
 """Some free port of this computer, with nothing behind it: dask wants one."""
@@ -26,7 +26,7 @@ _UNUSED = "127.0.0.1:0"
 @contextmanager
 def local_workers(
     count: int, children: Children, workload: Workload, row_limit: float | None
-) -> "Iterator[Workers]":
+) -> Iterator[Workers]:
     """Start `count` workers with one thread each, and end them.
 
     Parameters
@@ -41,11 +41,6 @@ def local_workers(
     ------
     Workers
     """
-    import dask
-    from distributed import Client, LocalCluster
-
-    from uq.execution.workers import Workers, quiet
-
     settings = {
         "distributed.scheduler.http.routes": [],
         "distributed.worker.http.routes": [],
@@ -75,8 +70,6 @@ def local_workers(
 @contextmanager
 def scratch() -> Iterator[None]:
     """Have dask's folders removed at once: workers without a limit of memory keep nothing there."""
-    import dask
-
     places = sys.path.copy()
     with (
         TemporaryDirectory(prefix="uq-") as folder,
