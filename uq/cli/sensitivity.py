@@ -38,8 +38,8 @@ def show(result: Result, sensitivities: Sensitivities) -> None:
         if noise := target_indices.indices.noise:
             share = (S1.text(noise.value), S1.interval(noise))
             grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
-        for note in target_indices.indices.notes:
-            paragraph(note, indent=2)
+        for text in target_indices.indices.notes:
+            paragraph(text, indent=2)
 
 
 def _is_effect(kind: IndexKind) -> bool:

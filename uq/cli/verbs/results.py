@@ -164,9 +164,9 @@ def levels(
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
-    from uq.cli import levels
+    from uq.cli.levels import levels as show_levels
 
-    levels.levels(result, output, plain, json)
+    show_levels(result, output, plain, json)
 
 
 def fleet(
