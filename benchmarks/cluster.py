@@ -128,12 +128,13 @@ def used(*processes):
 def costs(address, scheduler, crew, rows, chunk_rows, folder):
     """Run some rows; return the CPU time of driver, scheduler and workers [s], and the time."""
     study = free_study(rows)
+    workload = workload_of(study)
     with (
-        remote_workers(address) as workers,
-        resuming.keep(study, Path(folder) / "rates.nc", fresh=True) as kept,
+        remote_workers(address, workload) as workers,
+        resuming.keep(study, Path(folder) / "rates.nc", RunOptions(fresh=True)) as kept,
     ):
         options = RunOptions(chunk_rows=chunk_rows)
-        dispatcher = Dispatcher(workload_of(study), options, kept, None)
+        dispatcher = Dispatcher(workload, options, kept, None)
         parts = [psutil.Process()], [scheduler], crew
         before, began = [used(*part) for part in parts], time.perf_counter()
         dispatcher.finish_on(workers)
@@ -185,7 +186,7 @@ def measured(title, arguments):
 def drive(rows, method, path):
     """Compute a study of free rows in this process, kept on disk as they arrive."""
     study = free_study(int(rows), method)
-    with resuming.keep(study, Path(path), fresh=True) as kept:
+    with resuming.keep(study, Path(path), RunOptions(fresh=True)) as kept:
         dispatcher = Dispatcher(
             workload_of(study), RunOptions(), kept, partial(evaluate, study.model, study.settings)
         )

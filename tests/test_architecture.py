@@ -152,7 +152,6 @@ GIVEN_BY_USERS = {
     "uq.execution.single_row",
     "uq.execution.child",
     "uq.execution.loading",
-    "uq.execution.probe",
     "uq.study.definition",
 }
 """Modules that load a model by what a user gave, or by a `Study` made from it."""

@@ -226,7 +226,7 @@ def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch,
     for text, action in ((first, row), (second, number)):
         named = {(path, f) for path, f in FUNCTION.findall(text) if path.startswith("uq/")}
         passed = functions_called(action)
-        elsewhere = {"isolation", "sent_chunks", "dask_task"}  # in other processes
+        elsewhere = {"isolation", "workers", "dask_task"}  # in other processes
         lacking = {(file, f) for file, f in named - passed if Path(file).stem not in elsewhere}
         assert {f for _, f in lacking if f[0].islower()} == set()  # classes are not called
 

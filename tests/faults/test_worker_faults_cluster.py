@@ -14,7 +14,8 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.errors import InputError, RunError
-from uq.execution import remote_cluster, runner, sent_chunks
+from uq.execution import remote_cluster, runner
+from uq.execution.workers import Workers
 
 
 class Cluster:
@@ -127,9 +128,9 @@ def test_workers_come_and_go(start, study, injected):
 def test_a_chunk_that_loses_its_worker_too_often_is_halved(start, study_of, monkeypatch, injected):
     study = study_of(seconds=0.1, samples=60)
     failed = []
-    real = sent_chunks.SentChunks._failed
+    real = Workers._failed
     monkeypatch.setattr(
-        sent_chunks.SentChunks,
+        Workers,
         "_failed",
         lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
     )

@@ -28,7 +28,6 @@ Reading order; each part imports only those above it:
     run              output of the verbs that compute rows of a result
     what_if          the output of ``uq what-if``
     row              terminal output of ``uq row``
-    changed_file     a warning where a result has changed since it was written
     learning         terminal output of ``uq update``
     verbs            the verbs of ``uq``: what each takes, and what it calls
     app              the command ``uq``: its verbs, in the order of ``uq --help``

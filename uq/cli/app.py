@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from uq.cli.verbs import learning, results, studies
+from uq.cli.verbs import results, studies
+from uq.cli.verbs.learning import next_inspection, update
 
 VERBS = (
     studies.models,
@@ -27,8 +28,8 @@ VERBS = (
     results.convergence,
     results.compare,
     results.what_if,
-    learning.update,
-    learning.next_inspection,
+    update,
+    next_inspection,
     results.twin,
     results.trace,
     studies.rare_event,

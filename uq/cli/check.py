@@ -54,10 +54,10 @@ def check(path: str, model: str | None) -> None:
     laws = [(name, law(stated), _unit(study, name)) for name, stated in study.uncertain.items()]
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
     header = ("parameter", "distribution", "unit")
-    if design.rows_of_a_sample > 1 or set(study.levels) != {OWN}:
-        grid([(*line, study.level(line[0])) for line in laws + ties], header=(*header, "level"))
-    else:
-        grid(laws + ties, header=header)
+    by_level = design.rows_of_a_sample > 1 or set(study.levels) != {OWN}
+    levels = [(study.level(line[0]),) * by_level for line in laws + ties]
+    lines = [line + level for line, level in zip(laws + ties, levels, strict=True)]
+    grid(lines, header=header + ("level",) * by_level)
     _show_sampled(study)
     if lacking := hints(study):
         heading("\nBefore you run it")

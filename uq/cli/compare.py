@@ -1,19 +1,18 @@
 """The output of ``uq compare``."""
 
 from collections.abc import Iterator
-from itertools import chain
 from math import isfinite
 from pathlib import Path
 
 from uq.assess.comparison import Comparison, Side, comparison
 from uq.assess.differences import ComparedOutput, ComparedStatistic
 from uq.assess.summary_json import comparison_facts
-from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.printing import cells, grid, heading, note, paragraph, print_json
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import interval_text, value_text
+from uq.stats.estimate_text import interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, in_unit, number, percent
-from uq.text.units import ReadableUnit, typical, unit_of
+from uq.text.units import typical, unit_of
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -47,13 +46,11 @@ def _show(differences: Comparison, first: Path, second: Path) -> None:
         heading(f"\n{name}")
         grid([(label, *_cells(statistic)) for label, statistic in shares.items()], header=_HEADER)
     for name, output in differences.outputs.items():
-        unit = _unit(output)
+        quantiles = (statistic.first.estimate.value for statistic in output.parts["quantiles"])
+        unit = unit_of(output.units, typical(quantiles))
         heading(f"\n{name}{in_brackets(unit)}")
         variable = compared(name, output.declared.is_angle)
-        parts = (
-            _lines(statistic, output.units, unit.size, variable) for statistic in output.statistics
-        )
-        grid(chain.from_iterable(parts), _HEADER)
+        grid(_lines(output, unit.size, variable), _HEADER)
     note("*: the interval excludes no difference. " + _POINTWISE)
     for text in (*bought(differences), *differences.notes):
         note(text)
@@ -72,28 +69,19 @@ def _about(side: Side) -> str:
     return f"{side.title} ({rows}{f'; {lost}' if lost else ''})"
 
 
-def _unit(output: ComparedOutput) -> ReadableUnit:
-    """Return the unit in which an output is shown."""
-    return unit_of(
-        output.units,
-        typical(statistic.first.estimate.value for statistic in output.parts["quantiles"]),
-    )
-
-
 Line = tuple[str, ...]
 
 
-def _lines(statistic: ComparedStatistic, units: str, per: float, variable: str) -> Iterator[Line]:
-    scale = per if statistic.first.unit == units else 1.0
-    asked = () if statistic.first.at is None else (statistic.first.at,)
-    yield estimated(statistic.first.label, units, variable, asked), *_cells(statistic, scale)
-    if statistic.ratio is not None and isfinite(statistic.ratio.value):
-        yield (
-            f"{statistic.first.label}, B over A",
-            "",
-            "",
-            *_apart(statistic, statistic.ratio, 1.0, 1.0),
-        )
+def _lines(output: ComparedOutput, size: float, variable: str) -> Iterator[Line]:
+    """Yield the statistics of an output, in a unit of some size, and ratios of them."""
+    for statistic in output.statistics:
+        first = statistic.first
+        per = size if first.unit == output.units else 1.0
+        asked = () if first.at is None else (first.at,)
+        yield estimated(first.label, output.units, variable, asked), *_cells(statistic, per)
+        if statistic.ratio is not None and isfinite(statistic.ratio.value):
+            ratio = _apart(statistic, statistic.ratio, 1.0, 1.0)
+            yield f"{first.label}, B over A", "", "", *ratio
 
 
 def _cells(statistic: ComparedStatistic, per: float = 1.0) -> Line:
@@ -104,10 +92,12 @@ def _cells(statistic: ComparedStatistic, per: float = 1.0) -> Line:
 def _apart(statistic: ComparedStatistic, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
     """Return value and interval of a difference, and a mark where it excludes `nothing`."""
     sure = apart.low > nothing or apart.high < nothing
-    ends = "identical rows" if statistic.identical else interval_text(apart, per)
+    value, ends = cells(apart, per)
+    if statistic.identical:
+        ends = "identical rows"
     if statistic.no_row_changes_sides:
         ends = f"no row changes sides (at most {percent(apart.high)} do)"
-    return value_text(apart, per=per), ends, "*" if sure else ""
+    return value, ends, "*" if sure else ""
 
 
 def bought(differences: Comparison) -> list[str]:

@@ -9,7 +9,7 @@ from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.assess.running_estimates import convergence_facts, converging
 from uq.assess.two_fidelities import twin_facts, with_twin
-from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.printing import CELLS, grid, heading, note, paragraph, print_json
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import failed_bounds_text, interval_text, value_text
@@ -19,37 +19,27 @@ from uq.text.units import typical, unit_of
 _SHOWN = 6  # sizes of each estimate on a terminal
 
 
-class _Block:
-    """How the estimates of one target are shown: its name, and their unit."""
+def _show_target(
+    result: Result, name: str, estimates: Mapping[str, Estimate]
+) -> tuple[NumberTarget, dict[str, float]]:
+    """Print the name of a target, its unit and meaning.
 
-    def __init__(self, result: Result, name: str, estimates: Mapping[str, Estimate]):
-        self._target = NumberTarget(result, name)
-        values = (estimate.value for label, estimate in estimates.items() if _is_value(label))
-        self._unit = unit_of(self._target.units, typical(values))
-
-    def show_heading(self) -> None:
-        """Print the name, with its unit and meaning."""
-        heading(f"\n{self._target.name}{in_brackets(self._unit)}", self._target.meaning)
-
-    def label(self, label: str) -> str:
-        """Return the name of an estimate."""
-        return self._target.label(label)
-
-    def cells(self, label: str, estimate: Estimate) -> tuple[str, str]:
-        """Return value and interval of an estimate in the unit of the block."""
-        return value_text(estimate, per=self._per(label)), self.ends(label, estimate)
-
-    def ends(self, label: str, estimate: Estimate) -> str:
-        """Return the interval of an estimate in the unit of the block; "" without one."""
-        return interval_text(estimate, self._per(label)) if estimate.has_interval else ""
-
-    def _per(self, label: str) -> float:
-        return self._unit.size if _is_value(label) else 1.0
+    Returns
+    -------
+    target : NumberTarget
+    sizes : dict of str to float
+        Label of an estimate -> size of the unit in which it is shown.
+    """
+    target = NumberTarget(result, name)
+    values = [label for label in estimates if label.startswith(("mean", "quantile"))]
+    unit = unit_of(target.units, typical(estimates[label].value for label in values))
+    heading(f"\n{target.name}{in_brackets(unit)}", target.meaning)
+    return target, {label: unit.size if label in values else 1.0 for label in estimates}
 
 
-def _is_value(label: str) -> bool:
-    """Return whether an estimate is in the unit of the output."""
-    return label.startswith(("mean", "quantile"))
+def _ends(estimate: Estimate, per: float) -> str:
+    """Return an interval in a unit of size `per`; "" without one."""
+    return interval_text(estimate, per) if estimate.has_interval else ""
 
 
 def twin(result: Path, model: str | None, json: bool) -> None:
@@ -64,30 +54,27 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         f"{fidelities.rows} rows, and {fidelities.cheap_rows} of the twin alone",
     )
     for name, estimates in fidelities.outputs.items():
-        block = _Block(
-            opened,
-            name,
-            {label: twin_estimate.estimate for label, twin_estimate in estimates.items()},
-        )
-        block.show_heading()
+        sharpened = {label: sharper.estimate for label, sharper in estimates.items()}
+        target, sizes = _show_target(opened, name, sharpened)
         grid(
             [
                 (
-                    block.label(label),
-                    *block.cells(label, twin_estimate.estimate),
-                    block.ends(label, twin_estimate.plain),
-                    f"{twin_estimate.reduction:.3g}",
+                    target.label(label),
+                    value_text(sharper.estimate, per=sizes[label]),
+                    _ends(sharper.estimate, sizes[label]),
+                    _ends(sharper.plain, sizes[label]),
+                    f"{sharper.reduction:.3g}",
                 )
-                for label, twin_estimate in estimates.items()
+                for label, sharper in estimates.items()
             ],
-            header=("", "value", "95 % interval", "without twin", "worth"),
+            header=(*CELLS, "without twin", "worth"),
         )
-        for label, twin_estimate in estimates.items():
-            if twin_estimate.note:
-                paragraph(f"{block.label(label)}: {twin_estimate.note}", indent=2)
-            if worst := failed_bounds_text(twin_estimate.failed):
+        for label, sharper in estimates.items():
+            if sharper.note:
+                paragraph(f"{target.label(label)}: {sharper.note}", indent=2)
+            if worst := failed_bounds_text(sharper.failed):
                 both = "with failed rows at best and worst"
-                paragraph(f"{block.label(label)}, {both}: {worst}", indent=2)
+                paragraph(f"{target.label(label)}, {both}: {worst}", indent=2)
     note(
         "worth: without twin, so many times the rows would be as accurate. The twin's own rows are"
         " not counted: it pays if one of them takes less than (worth - 1) /"
@@ -108,18 +95,18 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
         if errors and errors["warning"]:
             paragraph(f"{name}: {errors['warning']}.", indent=0)
     for name, (estimates, errors) in outputs.items():
-        last = {label: sizes[-1][1].estimate for label, sizes in estimates.items()}
-        block = _Block(opened, name, last)
-        block.show_heading()
-        for label, sizes in estimates.items():
+        last = {label: lines[-1][1].estimate for label, lines in estimates.items()}
+        target, sizes = _show_target(opened, name, last)
+        for label, lines in estimates.items():
+            per = sizes[label]
             grid(
                 [
-                    (str(samples), *block.cells(label, line.estimate))
-                    for samples, line in sizes[-_SHOWN:]
+                    (str(samples), value_text(line.estimate, per=per), _ends(line.estimate, per))
+                    for samples, line in lines[-_SHOWN:]
                 ],
-                header=("samples", block.label(label), "95 % interval"),
+                header=("samples", target.label(label), "95 % interval"),
             )
         if errors and isfinite(errors["own"]):
             kinds = (Estimate(errors[kind]) for kind in ("sampling", "own"))
-            sampling, rows = (block.cells("mean", error)[0] for error in kinds)
+            sampling, rows = (value_text(error, per=sizes["mean"]) for error in kinds)
             paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", indent=2)

@@ -6,9 +6,9 @@ from pathlib import Path
 from uq.assess.fleet import fleet_of, reasons, the_life
 from uq.assess.fleet_json import fleet_facts
 from uq.assess.fleet_numbers import Banded
-from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.printing import CELLS, cells, grid, heading, note, paragraph, print_json, title
 from uq.result.result import Result
-from uq.stats.estimate_text import failed_bounds_text, interval_text, value_text
+from uq.stats.estimate_text import failed_bounds_text
 from uq.text.numbers import in_brackets, threshold
 from uq.text.quantities import read_threshold
 from uq.text.units import typical, unit_of
@@ -31,9 +31,7 @@ def fleet(
     if json:
         print_json(fleet_facts(first_ends).json)
         return
-    heading(
-        str(opened.dataset.attrs["title"]), f"{opened.dataset.attrs['source']}, {first_ends.design}"
-    )
+    title(opened, first_ends.design)
     unit = unit_of(
         first_ends.units, typical(banded.estimate.value for banded in first_ends.first.values())
     )
@@ -51,10 +49,7 @@ def fleet(
 
 
 def _show(lines: Sequence[tuple[str, Banded]], per: float = 1.0) -> None:
-    grid(
-        [line for label, banded in lines for line in _lines(label, banded, per)],
-        header=("", "value", "95 % interval"),
-    )
+    grid([line for label, banded in lines for line in _lines(label, banded, per)], CELLS)
     for reason in dict.fromkeys(reason for _, banded in lines for reason in reasons(banded)):
         paragraph(reason, indent=2)
 
@@ -62,6 +57,6 @@ def _show(lines: Sequence[tuple[str, Banded]], per: float = 1.0) -> None:
 def _lines(label: str, banded: Banded, per: float) -> Iterator[tuple[str, str, str]]:
     ends = (("5 % of samples", banded.low), ("95 % of samples", banded.high))
     for name, end in ((label, banded.estimate), *(("  " + text, end) for text, end in ends)):
-        yield name, value_text(end, per=per), interval_text(end, per)
+        yield name, *cells(end, per)
     if worst := failed_bounds_text(banded.failed, per):
         yield "  with failed rows", "", worst

@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 
 from uq.cli import progress, say_when_interrupted
-from uq.cli.printing import console, grid, heading, note, paragraph, print_json
+from uq.cli.printing import console, grid, heading, note, paragraph, print_json, title
 from uq.cli.run import carried_out, loaded
 from uq.execution.options import RunOptions
 from uq.execution.runner import output_path, run_study
@@ -70,7 +70,7 @@ def update(
 
 
 def _show(result: Result, answer: Learnt) -> None:
-    heading(str(result.dataset.attrs["title"]), str(result.dataset.attrs["source"]))
+    title(result)
     of_unit: dict[str, list[InputLearnt]] = {}
     for learnt_input in answer.inputs:
         of_unit.setdefault(learnt_input.unit, []).append(learnt_input)
@@ -103,15 +103,12 @@ def _show(result: Result, answer: Learnt) -> None:
 
 def _inspection_label(taught: Taught) -> str:
     inspection = taught.inspection
-    when = (
-        f" at {beside(number(inspection.time), taught.time_unit)}"
-        if inspection.time is not None
-        else ""
-    )
-    value = (
-        f" {beside(number(inspection.value), taught.units)}" if inspection.value is not None else ""
-    )
-    return f"{inspection.unit}: {inspection.output} {inspection.kind}{value}{when}"
+    text = f"{inspection.unit}: {inspection.output} {inspection.kind}"
+    if inspection.value is not None:
+        text += f" {beside(number(inspection.value), taught.units)}"
+    if inspection.time is not None:
+        text += f" at {beside(number(inspection.time), taught.time_unit)}"
+    return text
 
 
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
@@ -138,17 +135,14 @@ def _show_lives(lives: Sequence[Remaining]) -> None:
     heading(f"\n{lives[0].output}", f"remaining life{in_brackets(unit)} of units that run")
     times = list(dict.fromkeys(time for remaining in lives for time in remaining.by))
     ends = (f"P(by {number(time / unit.size)})" for time in times)
-    header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
-    grid(
-        [_line(remaining, unit.size, times) for remaining in lives if remaining.life], header=header
-    )
+    running = [_line(remaining, unit.size, times) for remaining in lives if remaining.life]
+    grid(running, header=("unit", "from", "median", "5 % ends within", "rows", *ends))
     for time, points in (pair for remaining in lives for pair in remaining.over_shared.items()):
         span = " to ".join(map(percent, points.values()))
         text = f"P(by {number(time / unit.size)}) of units not inspected: {span} (95 %)"
         paragraph(f"{text}, depending on what units share", indent=2)
-    if gone := [
-        remaining.unit for remaining in lives if not remaining.life and remaining.unit != ANY
-    ]:
+    ended = (remaining.unit for remaining in lives if not remaining.life)
+    if gone := [unit_name for unit_name in ended if unit_name != ANY]:
         paragraph(f"hardly any row in which it still runs: {', '.join(gone)}", indent=2)
 
 

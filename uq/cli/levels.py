@@ -8,7 +8,7 @@ from uq.assess.answer.number_targets import NumberTarget
 from uq.assess.level_shares import by_level
 from uq.assess.summary_json import levels_facts
 from uq.assess.variance_by_level import SOLVER, LevelShares
-from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.printing import grid, heading, note, paragraph, print_json, title
 from uq.indices.index import S1
 from uq.result.result import Result
 from uq.sampling.levels import LEVELS
@@ -22,14 +22,11 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     if json:
         print_json(levels_facts(decomposition).json)
         return
-    heading(
-        str(opened.dataset.attrs["title"]),
-        f"{opened.dataset.attrs['source']}, {decomposition.size}",
-    )
+    title(opened, decomposition.size)
     grid([(level, ", ".join(decomposition.inputs_on(level)) or "-") for level in LEVELS])
     for name, shares in decomposition.outputs.items():
         heading(f"\n{NumberTarget(opened, name).name}", "shares of the variance")
-        grid(_lines(shares), header=("", "share", "95 % interval", ""))
+        grid(_share_lines(shares), header=("", "share", "95 % interval", ""))
         for text in shares.sentences:
             paragraph(text, indent=2)
     if (another := decomposition.another_regime) is not None:
@@ -40,14 +37,11 @@ def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
             paragraph(another.reason, indent=2)
     if decomposition.weights is not None:
         note(worth_in_words(decomposition.weights))
-    if any(
-        isfinite(level_shares.shares[SOLVER].value)
-        for level_shares in decomposition.outputs.values()
-    ):
+    if any(isfinite(shares.shares[SOLVER].value) for shares in decomposition.outputs.values()):
         note("the solver's share is contained in the others")
 
 
-def _lines(level_shares: LevelShares) -> Iterator[tuple[str, str, str, str]]:
+def _share_lines(level_shares: LevelShares) -> Iterator[tuple[str, str, str, str]]:
     for name, share in level_shares.shares.items():
         assumes = share.assumes.removeprefix("that ")
         yield name, S1.text(share.value), S1.interval(share), assumes

@@ -5,7 +5,7 @@ from math import exp
 from pathlib import Path
 from typing import Any
 
-from uq.cli.printing import grid, heading, note, print_json
+from uq.cli.printing import grid, heading, note, print_json, title
 from uq.learning.next_inspection import Worth, unit_of_time, worth
 from uq.result.result import Result
 from uq.stats import estimate_json
@@ -29,12 +29,14 @@ def next_inspection(
     if json:
         print_json(_as_json(expected))
         return
-    heading(str(opened.dataset.attrs["title"]), f"{opened.dataset.attrs['source']}")
+    title(opened)
     heading(f"\n{expected.life}", f"expected narrowing by inspecting {expected.output}")
-    grid(
-        [(_when(expected, t), *(_share(expected, t, n) for n in units)) for t in at or (None,)],
-        header=("", *(counted(n, "unit") for n in units)),
-    )
+    lines = []
+    for time in at or (None,):
+        when = "at any time" if time is None else f"at {threshold(time, expected.time_unit)}"
+        shares = (expected.narrowing[time, count] for count in units)
+        lines.append((when, *(percent(share) if share == share else "-" for share in shares)))
+    grid(lines, header=("", *(counted(count, "unit") for count in units)))
     note(
         f"What units share scatters this life by a factor of {exp(expected.spread):.3g} (one"
         " standard deviation); each cell is the share by which the logarithm of that factor is"
@@ -42,15 +44,6 @@ def next_inspection(
     )
     for text in expected.notes:
         note(text)
-
-
-def _when(expected: Worth, time: float | None) -> str:
-    return "at any time" if time is None else f"at {threshold(time, expected.time_unit)}"
-
-
-def _share(expected: Worth, time: float | None, units: int) -> str:
-    share = expected.narrowing[time, units]
-    return percent(share) if share == share else "-"
 
 
 def _as_json(expected: Worth) -> dict[str, Any]:

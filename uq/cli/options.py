@@ -54,4 +54,9 @@ Mixed = Annotated[
     bool, typer.Option("--mixed", help="Keep rows computed by other code of the model.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
+OnlyOutput = Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")]
+Times = Annotated[
+    list[str] | None,
+    typer.Option(metavar="T", help='Time in the unit of the life, or such as "30 days".'),
+]
 Regime = Annotated[str | None, typer.Option(metavar="NAME", help="Only the rows in this regime.")]

@@ -89,17 +89,12 @@ def _show_widths(widths: Mapping[str, Widths], independent: bool) -> None:
     expected = "Expected width" if independent else "Largest width to expect"
     heading(f"\n{expected} of the 95 % intervals of mean and quantiles")
     grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
-    others = [
-        (label, _short(value))
-        for name, width in widths.items()
-        for label, value in (
-            *(
-                (f"P({name} > {threshold(t, width.units)})", share)
-                for t, share in width.thresholds.items()
-            ),
-            *((f"{kind} of {name}, the widest", index) for kind, index in width.indices.items()),
-        )
-    ]
+    others = []
+    for name, width in widths.items():
+        for t, share in width.thresholds.items():
+            others.append((f"P({name} > {threshold(t, width.units)})", _short(share)))
+        for kind, index in width.indices.items():
+            others.append((f"{kind} of {name}, the widest", _short(index)))
     if others:
         heading("\nand of")
         grid(others)
@@ -110,24 +105,21 @@ def _show_widths(widths: Mapping[str, Widths], independent: bool) -> None:
 def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:
     """Yield a line for each output, or one with its name and then one for each element."""
     before = ""
+    numbers_of: dict[str, list[float]] = {}
+    for name, width in widths.items():
+        numbers = (
+            number for number in (width.mean, *width.quantiles.values()) if number is not None
+        )
+        numbers_of.setdefault(name.partition("[")[0], []).extend(numbers)
     for name, width in widths.items():
         output, _, place = name.partition("[")
-        siblings = [
-            sibling for other, sibling in widths.items() if other.partition("[")[0] == output
-        ]
-        values = (
-            w
-            for sibling in siblings
-            for w in (sibling.mean, *sibling.quantiles.values())
-            if w is not None
-        )
-        unit = unit_of(width.units, typical(values))
+        unit = unit_of(width.units, typical(numbers_of[output]))
         label = f"{output}{in_brackets(unit)}"
         if place and output != before:
             yield label, *[""] * (1 + len(width.quantiles))
         before = output
-        numbers = (_short(value, unit.size) for value in (width.mean, *width.quantiles.values()))
-        yield f"  {place.removesuffix(']')}" if place else label, *numbers
+        cells = (_short(value, unit.size) for value in (width.mean, *width.quantiles.values()))
+        yield f"  {place.removesuffix(']')}" if place else label, *cells
 
 
 def _short(width: float | None, per: float = 1.0) -> str:

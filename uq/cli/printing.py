@@ -13,12 +13,19 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import interval_text, value_text
 from uq.text.literals import plain
 from uq.text.numbers import duration as duration
 from uq.text.numbers import number as number
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
+
+    from uq.result.result import Result
+
+CELLS = ("", "value", "95 % interval")
+"""Header of a table of estimates."""
 
 
 class _Terminal(Console):
@@ -65,6 +72,17 @@ def heading(text: str, more: str = "") -> None:
     console.print(Text.assemble((text, "bold"), f"  {more}" if more and fits else ""))
     if more and not fits:
         paragraph(more, indent=2)
+
+
+def title(result: "Result", more: str = "") -> None:
+    """Print the title of a result, with its source and an explanation."""
+    attrs = result.dataset.attrs
+    heading(str(attrs["title"]), ", ".join(filter(None, (str(attrs["source"]), more))))
+
+
+def cells(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
+    """Return value and interval of an estimate, in a unit of size `per`."""
+    return value_text(estimate, per=per), interval_text(estimate, per)
 
 
 def paragraph(text: str, indent: int = 4) -> None:

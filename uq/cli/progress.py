@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache, partial
 from math import isinf
@@ -89,10 +89,10 @@ def say(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
-def say_each(sentences: Iterable[str]) -> None:
-    """Tell the user sentences on standard error, a line each, without control characters."""
-    for sentence in sentences:
-        say(plain_line(sentence))
+def say_plain(*lines: str) -> None:
+    """Tell the user lines on standard error, without control characters."""
+    for line in lines:
+        say(plain_line(line))
 
 
 def _moving() -> Iterator[Report]:

@@ -1,6 +1,5 @@
 """Terminal output of ``uq rare-event``."""
 
-import sys
 from math import isfinite
 from typing import Any
 
@@ -8,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from uq.cli.printing import grid, heading, note, number, print_json
-from uq.cli.progress import say_each
+from uq.cli.progress import say, say_plain
 from uq.contract import Model
 from uq.errors import InputError
 from uq.study.definition import Study
@@ -32,7 +31,7 @@ def warn(study: Study, output: str) -> None:
     """Print on standard error if an output has the name of a life, but is not declared as one."""
     name = output.partition("[")[0]
     if name in study.model.outputs:
-        say_each(undeclared_lives(study.model, (name,)))
+        say_plain(*undeclared_lives(study.model, (name,)))
 
 
 def show(ds: xr.Dataset, json: bool, study: Study, threshold: float) -> int:
@@ -43,7 +42,7 @@ def show(ds: xr.Dataset, json: bool, study: Study, threshold: float) -> int:
     if failed <= max_failed:
         return 0
     allowed = f"more than max_failed = {max_failed:g} allows"
-    print(f"{failed:.0%} of the rows failed, {allowed}", file=sys.stderr)
+    say(f"{failed:.0%} of the rows failed, {allowed}")
     return 1
 
 

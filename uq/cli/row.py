@@ -82,14 +82,9 @@ def _show(recomputed: RowAgain, rows: int) -> None:
         grid([(recomputed.choice.words,)])
     grid([(", ".join(f"{name} {place}" for name, place in recomputed.place.items()),)])
     heading("\ninputs")
-    grid(
-        [
-            (name, quantity(value, unit))
-            for name, value in stored.values.items()
-            if recomputed.stored.dataset[name].attrs.get("role") == "input"
-            for unit in [recomputed.stored.dataset[name].attrs["units"]]
-        ]
-    )
+    attributes = {name: recomputed.stored.dataset[name].attrs for name in stored.values}
+    inputs = [name for name in attributes if attributes[name].get("role") == "input"]
+    grid([(name, quantity(stored.values[name], attributes[name]["units"])) for name in inputs])
     show_outputs(stored)
     note(_in_words(recomputed))
 

@@ -1,7 +1,6 @@
 """Output of the verbs that compute rows of a result."""
 
 import shlex
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,13 +15,11 @@ from uq.contract import Status
 from uq.execution import runner
 from uq.execution.amending import study_of
 from uq.execution.loading import load_study
-from uq.execution.options import Progress, RunOptions
+from uq.execution.options import Progress, RunOptions, ignore
 from uq.execution.row_folder import folder_of
 from uq.result.commands import with_model
 from uq.result.result import Result
 from uq.study.definition import Study
-from uq.study.hints import hints
-from uq.text.literals import plain_line
 from uq.text.numbers import counted
 
 
@@ -32,11 +29,6 @@ def loaded(
     """Return a study, with another number of samples if one is given."""
     study = load_study(path, model, progress.say, row_limit)
     return study if samples is None else study.with_samples(samples)
-
-
-def warn(study: Study) -> None:
-    """Print what a study will lack, on standard error."""
-    progress.say_each(hints(study))
 
 
 def amended(
@@ -69,10 +61,7 @@ def carried_out(
                 )
             show(so_far)
 
-        def say(line: str) -> None:
-            if not quiet:
-                print(plain_line(line), file=sys.stderr)
-
+        say = ignore if quiet else progress.say_plain
         say_when_interrupted("interrupted; nothing was written")
         ds = action(replace(options, progress=report, say=say))
     before = f"; {reused} computed before" if reused else ""
@@ -87,7 +76,7 @@ def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixe
     """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
     if not mixed and (line := runner.line_on_other_code(study, target, result.dataset)):
-        print(plain_line(line), file=sys.stderr)
+        progress.say_plain(line)
     if not quiet:
         from uq.assess.findings import Findings
 
@@ -107,9 +96,8 @@ def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixe
         for status in Status
         if (text := result.dataset["status"].attrs.get(f"example_{status.name.lower()}"))
     ]
-    print(
-        f"{failed} of {result.dataset.sizes['row']} rows failed, more than max_failed = "
-        f"{study.analysis.max_failed:g} allows ({plain_line('; '.join(examples))})",
-        file=sys.stderr,
+    progress.say_plain(
+        f"{failed} of {len(result)} rows failed, more than max_failed = "
+        f"{study.analysis.max_failed:g} allows ({'; '.join(examples)})"
     )
     return 1

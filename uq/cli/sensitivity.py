@@ -20,13 +20,10 @@ def show(result: Result, sensitivities: Sensitivities) -> None:
     heading(f"Sensitivity by {sensitivities.method}", more)
     for name, target_indices in sensitivities.targets.items():
         target = NumberTarget(result, name)
-        effects = [
-            e.value
-            for kind, estimates in target_indices.kinds().items()
-            if _is_effect(kind)
-            for e in estimates.values()
-        ]
-        unit = unit_of(target.units if effects else "1", typical(effects))
+        kinds = target_indices.kinds().items()
+        effects = [estimates for kind, estimates in kinds if _is_effect(kind)]
+        values = [index.value for estimates in effects for index in estimates.values()]
+        unit = unit_of(target.units if values else "1", typical(values))
         heading(f"\n{target.name}{in_brackets(unit)}", target.meaning)
         if target_indices.refused:
             paragraph(target_indices.refused, indent=2)
@@ -41,8 +38,8 @@ def show(result: Result, sensitivities: Sensitivities) -> None:
         if noise := target_indices.indices.noise:
             share = (S1.text(noise.value), S1.interval(noise))
             grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
-        for note in target_indices.indices.notes:
-            paragraph(note, indent=2)
+        for text in target_indices.indices.notes:
+            paragraph(text, indent=2)
 
 
 def _is_effect(kind: IndexKind) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uq.cli.printing import duration, grid, heading, number, print_json
-from uq.cli.progress import say_compiling, say_each
+from uq.cli.progress import say_compiling, say_plain
 from uq.contract import Model, Status
 from uq.errors import InputError
 from uq.execution.loading import load_model
@@ -42,7 +42,7 @@ def simulate(
         row = run_alone(reference, given, chosen, compiling=say_compiling)
         if output or plot:
             _keep(row, output, plot)
-    say_each(undeclared_lives(row.model))
+    say_plain(*undeclared_lives(row.model))
     print_json(as_json(row)) if json else _show(row)
     return 1 if row.failed else 0
 
@@ -110,9 +110,10 @@ def as_json(row: Row) -> dict[str, Any]:
     """
     status, meaning = row.ending
     names: dict[str, list[str]] = {"never": [], "censored": [], "undefined": []}
-    for element, _, state in (entry for name in row.model.outputs for entry in _states(row, name)):
-        if state:
-            names[state].append(element)
+    for name in row.model.outputs:
+        for element, _, state in _states(row, name):
+            if state:
+                names[state].append(element)
     return {
         "model": row.model.name,
         "inputs": row.values,

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from uq.cli import progress
 from uq.cli.printing import console, duration, grid, heading, print_json
-from uq.execution import verification
 from uq.execution.recomputed_row import other_versions
 from uq.execution.status import RunStatus, run_status
+from uq.execution.verification import checksum_holds, recompute
 from uq.machines.compilation import compilation
 from uq.result import result_file
 from uq.text.numbers import counted
@@ -21,7 +21,7 @@ def status(path: Path, json: bool) -> None:
 
 def _show_status(run: RunStatus) -> None:
     writer = run.process
-    by = f" (process {writer.pid} on {writer.host})" if writer else ""
+    by = f" (process {writer['pid']} on {writer['host']})" if writer else ""
     heading(f"{run.output}: {run.state}{by}")
     rate, left = run.rate, run.seconds_left
     time_left = (duration(left) or f"{left:.0f} s") if left else ""
@@ -42,7 +42,7 @@ def _show_status(run: RunStatus) -> None:
 
 def verify(path: Path, model: str | None) -> int:
     """Check a result and print what was found; return the exit code."""
-    holds = verification.checksum_holds(path)
+    holds = checksum_holds(path)
     words = {True: "right", False: "WRONG: the file has changed since it was written", None: "none"}
     console.print(f"checksum  {words[holds]}")
     ds = result_file.open_result(path)
@@ -52,7 +52,7 @@ def verify(path: Path, model: str | None) -> int:
     if not others:
         console.print("versions  the same as here")
     with compilation(progress.say_compiling):
-        rows, differences = verification.recompute(path, model)
+        rows, differences = recompute(path, model)
     for line in differences:
         console.print(f"recomputed, differs in {line}")
     if differences and holds and not others:

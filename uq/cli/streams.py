@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, TextIO
 
-from uq.cli import encodings
+from uq.cli.encodings import HANDLER
 from uq.text.literals import plain_line
 
 _PLACES = ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY))
@@ -62,7 +62,7 @@ def watch() -> None:
 def _watched(stream: io.TextIOWrapper | None, number: int) -> Watched:
     if stream is None:
         return Watched(open(number, "wb", closefd=False), "utf-8")
-    how = (stream.encoding, encodings.HANDLER, None, stream.line_buffering, stream.write_through)
+    how = (stream.encoding, HANDLER, None, stream.line_buffering, stream.write_through)
     return Watched(stream.detach(), *how)
 
 

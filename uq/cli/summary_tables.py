@@ -14,7 +14,7 @@ from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import REGIME, Described, Summary
 from uq.assess.targets import split_name
-from uq.cli.printing import console, grid, heading, note, paragraph
+from uq.cli.printing import CELLS, console, grid, heading, note, paragraph, title
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import failed_bounds_text, interval_text
@@ -36,14 +36,11 @@ def show_findings(findings: Findings) -> None:
 def show_summary(result: Result, summary: Summary, boundary: Statistic | None = None) -> None:
     """Print a summary, and how intermingled its regimes are."""
     design = f"{result.design_name}, {counted(summary.samples, 'row')}"
-    if summary.rows_used < summary.samples:
-        independent = summary.rows_used
-        design += (
-            f", statistics from the {independent} independent ones"
-            if independent
-            else ", none independent"
-        )
-    heading(str(result.dataset.attrs["title"]), f"{result.dataset.attrs['source']}, {design}")
+    if not summary.rows_used:
+        design += ", none independent"
+    elif summary.rows_used < summary.samples:
+        design += f", statistics from the {summary.rows_used} independent ones"
+    title(result, design)
     grid([(label, str(count), _example(result, label)) for label, count in summary.status.items()])
     regimes = {REGIME: summary.regimes} if summary.regimes else {}
     for name, shares in (regimes | summary.categories).items():
@@ -55,9 +52,12 @@ def show_summary(result: Result, summary: Summary, boundary: Statistic | None = 
             paragraph(f"{stated}: {in_words(boundary)}", indent=2)
     for name, output in summary.outputs.items():
         meaning = readable(result.dataset[name.partition("[")[0]].attrs["long_name"])
-        block = _block(result, name, output)
+        quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
+        unit = unit_of(output.units, typical(quantiles))
+        is_angle = result.outputs[name.partition("[")[0]].is_angle
+        block = Block(unit, output.units, compared(name, is_angle))
         heading(f"\n{name}{in_brackets(block.unit)}", meaning)
-        grid(_lines(output, block), header=("", "value", "95 % interval", ""))
+        grid(_lines(output, block), header=(*CELLS, ""))
         for text in _reasons(output, block):
             paragraph(text, indent=2)
         for statistic in output.statistics:
@@ -74,19 +74,12 @@ def show_answer(answer: Answer) -> None:
     lead = answer.lead
     if answer.failed or lead is None:
         paragraph(answer.rows_sentence, indent=0)
-    of_lead = (
-        [] if lead is None else [*lead.head, *(quantity.with_cause for quantity in lead.others)]
-    )
+    of_lead = [*lead.head, *(quantity.with_cause for quantity in lead.others)] if lead else []
     sampling_lines = [*answer.level_lines, answer.enough.sentence]
     if answer.regimes_first:
         causes = (cause.named_cause for cause in answer.regime_causes)
-        lines = [
-            answer.regimes_sentence,
-            answer.mixing.sentence,
-            *sampling_lines,
-            *causes,
-            *of_lead,
-        ]
+        regimes = answer.regimes_sentence, answer.mixing.sentence
+        lines = [*regimes, *sampling_lines, *causes, *of_lead]
     else:
         lines = [*of_lead, *sampling_lines, answer.regimes_sentence]
     for line in filter(None, lines):
@@ -126,13 +119,6 @@ class Block(NamedTuple):
         return estimated(statistic.label, self.units, self.compared, asked)
 
 
-def _block(result: Result, name: str, output: Described) -> Block:
-    quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
-    unit = unit_of(output.units, typical(quantiles))
-    is_angle = result.outputs[name.partition("[")[0]].is_angle
-    return Block(unit, output.units, compared(name, is_angle))
-
-
 def _share(statistic: Statistic) -> tuple[str, ...]:
     share = (statistic.label, statistic.words(), interval_text(statistic.estimate))
     return *share, str(statistic.facts["count"]), failed_bounds_text(statistic.failed)
@@ -141,24 +127,28 @@ def _share(statistic: Statistic) -> tuple[str, ...]:
 def _lines(output: Described, block: Block) -> Iterator[Line]:
     """Yield label, value and interval in the unit of the block, and a long time in seconds."""
     for part in output.parts.values():
-        shown = [
-            statistic
-            for statistic in part
-            if statistic.is_read_by(Reader.TERMINAL) and statistic.words()
-        ]
+        shown = [statistic for statistic in part if _is_shown(statistic)]
         for statistic in shown:
-            yield _line(statistic, block)
-            yield from _failed(statistic, block)
-            if statistic.otherwise and statistic.otherwise.label:
-                yield _line(statistic.otherwise, block)
-                yield from _failed(statistic.otherwise, block)
-                yield "", statistic.otherwise.estimate.assumes.removeprefix("that "), "", ""
+            yield from _of_statistic(statistic, block)
+            if otherwise := _otherwise(statistic):
+                yield from _of_statistic(otherwise, block)
+                yield "", otherwise.estimate.assumes.removeprefix("that "), "", ""
         for assumed in dict.fromkeys(statistic.estimate.assumes for statistic in shown):
             if assumed:
                 yield "", f"{shown[0].kind.name} assume", assumed.removeprefix("that "), ""
 
 
-def _line(statistic: Statistic, block: Block) -> Line:
+def _is_shown(statistic: Statistic) -> bool:
+    return statistic.is_read_by(Reader.TERMINAL) and bool(statistic.words())
+
+
+def _otherwise(statistic: Statistic) -> Statistic | None:
+    """Return the same by another estimator, where it has a label of its own."""
+    otherwise = statistic.otherwise
+    return otherwise if otherwise and otherwise.label else None
+
+
+def _of_statistic(statistic: Statistic, block: Block) -> Iterator[Line]:
     per, more = block.per(statistic), ""
     if statistic.unit == "s" and per >= _LONG and isfinite(statistic.estimate.value):
         more = f"{number(statistic.estimate.value)} s"
@@ -168,11 +158,8 @@ def _line(statistic: Statistic, block: Block) -> Line:
         more = f"of its {form}"
     elif undefined := statistic.facts.get("undefined"):
         more = f"{percent(undefined)} undefined"
-    return block.label(statistic), statistic.words(per), statistic.interval(per), more
-
-
-def _failed(statistic: Statistic, block: Block) -> Iterator[Line]:
-    if worst := failed_bounds_text(statistic.failed, block.per(statistic)):
+    yield block.label(statistic), statistic.words(per), statistic.interval(per), more
+    if worst := failed_bounds_text(statistic.failed, per):
         yield "  with failed rows", "", worst, ""
 
 
@@ -181,20 +168,17 @@ def _reasons(output: Described, block: Block) -> Iterator[str]:
     lacking: dict[str, list[str]] = {}
     noted = {text for statistic in output.statistics for text in statistic.notes}
     for statistic in output.statistics:
-        if not (statistic.is_read_by(Reader.TERMINAL) and statistic.words()):
+        if not _is_shown(statistic):
             continue
-        both = [
-            statistic,
-            *([statistic.otherwise] if statistic.otherwise and statistic.otherwise.label else []),
-        ]
-        alone = (
-            isnan(statistic.estimate.value)
-            and statistic.rows_needed is None
-            and not statistic.otherwise
-        )
-        for missing in both if len(both) > 1 else both * alone:
-            if missing.estimate.reason and missing.estimate.reason not in noted:
-                lacking.setdefault(missing.estimate.reason, []).append(block.label(missing))
+        candidates = []
+        if otherwise := _otherwise(statistic):
+            candidates = [statistic, otherwise]
+        elif isnan(statistic.estimate.value) and statistic.rows_needed is None:
+            candidates = [statistic] * (not statistic.otherwise)
+        for missing in candidates:
+            reason = missing.estimate.reason
+            if reason and reason not in noted:
+                lacking.setdefault(reason, []).append(block.label(missing))
     for reason, labels in lacking.items():
         yield f"{', '.join(labels)}: {reason}"
 
@@ -213,8 +197,8 @@ def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
     for name in (*parameters, *B_LIVES):
         extrapolated = any(name in fit.extrapolated for fit in accepted.values())
         per = 1.0 if name in ("shape", "sigma") else block.unit.size
-        cells = chain(*(_cells(law.get(name), per) for law in laws))
-        lines.append((f"{name}, extrapolated" if extrapolated else name, *cells))
+        numbers = chain(*(_cells(law.get(name), per) for law in laws))
+        lines.append((f"{name}, extrapolated" if extrapolated else name, *numbers))
     grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
     assumed = next(iter(accepted.values())).assumes
     paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)

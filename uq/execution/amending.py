@@ -42,26 +42,22 @@ def study_of(path: Path, model: str | None = None) -> Study:
     InputError
         When there is nothing, or the model here differs from the one that computed it.
     """
-    identity, text, version, samples = _recorded(path)
-    study, change = study_here(text, identity, version, samples, str(path), model)
+    if not os.path.isfile(path) and (run_history := history(folder_of(path))):
+        run = run_history.run
+        recorded = run.study, run.identity, run.model_version, run.samples
+    else:
+        ds = result_file.open_result(path)
+        refuse_weights(ds, "rows computed again or added")
+        names = ("study", "study_identity", "model_version", "samples")
+        text, identity, version, samples = (ds.attrs[name] for name in names)
+        recorded = text, identity, version, int(samples)
+    study, change = study_here(*recorded, str(path), model)
     if change:
         raise InputError(
             f"{path}: was computed with another model ({change}); rerun the study, into another"
             " output or with --fresh"
         )
     return study
-
-
-def _recorded(path: Path) -> tuple[str, str, str, int]:
-    """Return identity, text, version of the model and samples of the study of a result."""
-    if not os.path.isfile(path) and (run_history := history(folder_of(path))):
-        run = run_history.run
-        return run.identity, run.study, run.model_version, run.samples
-    ds = result_file.open_result(path)
-    refuse_weights(ds, "rows computed again or added")
-    attrs = ds.attrs
-    samples = int(attrs["samples"])
-    return attrs["study_identity"], attrs["study"], attrs["model_version"], samples
 
 
 def extend(
@@ -144,6 +140,6 @@ def rerun_failed(
     new, old = asdict(changed), asdict(study.settings)
     differing = {name: new[name] for name in settings if new[name] != old[name]}
     plain = json.loads(json.dumps(differing))  # as read back later
-    with resuming.keep(study, path, options.fresh, plain, options.say, options.mixed) as kept:
+    with resuming.keep(study, path, options, plain) as kept:
         workload = workload_of(study)._replace(settings=changed)
         return runner.carry_out(workload, options, kept)

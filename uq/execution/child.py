@@ -1,23 +1,24 @@
 """A process that computes rows for its parent: ``python -m uq.execution.child HANDLE``.
 
-A kernel may crash it or never return; then the parent ends it and starts another.
+A kernel may crash it or never return; then the parent ends it and starts another. Where a function
+does not declare what it returns, such a process runs a few of its rows to find out.
 """
 
 import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from uq.contract import Model
-from uq.errors import InputError
+from uq.errors import InputError, described
 from uq.machines.child_processes import adopt, end_descendants
 from uq.machines.compilation import compilation
+from uq.machines.returned import WrongReturnError, as_plain, seen_in
 from uq.machines.row_by_row import RowByRow
 from uq.study.evaluate import evaluate
 from uq.study.installed_models import code_of, model_at
@@ -38,6 +39,8 @@ class ModelSpec(NamedTuple):
         The cheap output to be computed alone; "" for all outputs.
     code : str
         `uq.study.installed_models.code_of` the wanted model; "" for any.
+    probed : bool
+        Whether single rows are to be run, of a function that does not declare its outputs.
     """
 
     model: str
@@ -45,6 +48,7 @@ class ModelSpec(NamedTuple):
     settings: tuple[tuple[str, Any], ...]
     output: str = ""
     code: str = ""
+    probed: bool = False
 
     def load(self) -> tuple[Model, Any]:
         """Return the model, as far as it is wanted, and its settings.
@@ -72,24 +76,14 @@ class ModelSpec(NamedTuple):
 
 
 READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
-"""Messages of a child; the last two come with a chunk or an exception, the first with `Ready`."""
+"""Messages of a child.
+
+The last two come with a chunk or an exception; the first with two flags: whether the process stops
+rows itself when their time is over, and whether its first call may take longer.
+"""
 
 Action = Callable[[], object]
-
-
-class Ready(NamedTuple):
-    """How a process keeps to the time limit of a row.
-
-    Attributes
-    ----------
-    stops_rows : bool
-        Whether it stops rows itself when their time is over.
-    loads_first : bool
-        Whether its first call may take longer.
-    """
-
-    stops_rows: bool = False
-    loads_first: bool = True
+Answer = Callable[..., tuple[str, Any]]
 
 
 FIRST_SECONDS = 5.0
@@ -137,72 +131,90 @@ def answer_of(
             return kind, value
 
 
-@contextmanager
-def telling_of_compilation(connection: Connection) -> Iterator[None]:
-    """Send a message whenever this process starts and ends compiling."""
-    compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
-    with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
-        yield
-
-
-def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.Thread:
+def _end_with_parent() -> None:
     """End this process, from a thread, when the pipe at its standard input closes.
 
     It closes when the process at the other end stops, for whatever reason.
-
-    Parameters
-    ----------
-    cleanup : callable
-        Called first.
-
-    Returns
-    -------
-    threading.Thread
     """
 
     def wait() -> None:
         # From the file descriptor: a thread inside sys.stdin would never release its lock.
         while os.read(0, 1024):
             pass
-        cleanup()
+        end_descendants()
         os._exit(0)
 
     sys.stdin = Path(os.devnull).open()  # for a model that asks something
-    thread = threading.Thread(target=wait, daemon=True)
-    thread.start()
-    return thread
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def _evaluation(spec: ModelSpec, limit: float | None) -> tuple[tuple[bool, bool], Answer]:
+    """Return the flags of `READY`, and the function that computes rows.
+
+    Parameters
+    ----------
+    spec : ModelSpec
+    limit : float or None
+        Time limit of a row [s].
+    """
+    adopt()
+    model, settings = spec.load()
+    batch, flags = model.batch, (False, True)
+    if isinstance(batch, RowByRow):
+        flags = batch.stops_rows, batch.loads_first
+        if limit is not None and batch.stops_rows:
+            model = replace(model, batch=batch.limited(limit))
+
+    def answer(*rows: Any) -> tuple[str, Any]:
+        try:
+            return DONE, evaluate(model, settings, *rows)
+        except Exception as error:
+            return REFUSED, error
+
+    return flags, answer
+
+
+def _probe(spec: ModelSpec) -> tuple[tuple[bool, bool], Answer]:
+    """Return the same for single rows of a function that does not declare its outputs.
+
+    The answer is what a row returns, as plain data, or a sentence on how it failed.
+    """
+    batch: Any = model_at(spec.model).batch
+
+    def answer(row: list[float], seed: int) -> tuple[str, Any]:
+        try:
+            return DONE, as_plain(seen_in(batch.row(row, seed)))
+        except WrongReturnError as error:
+            return DONE, str(error)
+        except BaseException as error:
+            return DONE, f"raised {described(error)}"
+
+    return (False, True), answer
 
 
 def main(handle: str) -> None:
-    """Answer requests, each the arguments of `evaluate`, until the connection closes."""
-    adopt()
-    end_with_parent(end_descendants)
+    """Answer requests until the connection closes; first comes what the process is for.
+
+    That is a `ModelSpec`, with the time limit of a row.
+    """
+    _end_with_parent()
     os.dup2(1, 2)  # warnings of the model go where its prints go
     connection = Connection(int(handle))
     spec: ModelSpec
-    limit: float | None
     spec, limit = connection.recv()
     try:
-        model, settings = spec.load()
+        flags, answer = _probe(spec) if spec.probed else _evaluation(spec, limit)
     except Exception as error:
         connection.send((REFUSED, error))
         return
-    batch = model.batch
-    ready = Ready()
-    if isinstance(batch, RowByRow):
-        ready = Ready(batch.stops_rows, batch.loads_first)
-        if limit is not None and batch.stops_rows:
-            model = replace(model, batch=batch.limited(limit))
-    connection.send((READY, tuple(ready)))  # plain: this module is __main__
-    with telling_of_compilation(connection):
+    connection.send((READY, flags))
+    with compilation(
+        lambda: connection.send((COMPILING, None)), lambda: connection.send((COMPILED, None))
+    ):
         while True:
-            rows = connection.recv()
-            try:
-                answer: Any = DONE, evaluate(model, settings, *rows)
-            except Exception as error:
-                answer = REFUSED, error
+            reply = answer(*connection.recv())
             sys.stdout.flush()  # this process is killed in the end
-            connection.send(answer)
+            connection.send(reply)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from uq.execution.child import ModelSpec
-from uq.execution.isolation import Action, Isolated
+from uq.execution.child import Action, ModelSpec
+from uq.execution.isolation import Isolated
 
 _KEPT = 64  # idle processes at most
 
@@ -43,8 +43,8 @@ class Children:
                 for _ in range(count - len(self._idle) - len(self._busy))
             ]
             self._idle += new
-        for child in new:
-            child.begin()
+        for process in new:
+            process.begin()
 
     @contextmanager
     def reserved(self, spec: ModelSpec, limit: float | None) -> Iterator[Isolated]:
@@ -55,24 +55,30 @@ class Children:
                 for candidate in self._idle
                 if (candidate.spec, candidate.limit) == (spec, limit)
             ]
-            child = fitting[0] if fitting else Isolated(spec, limit)
-            self._idle = [other for other in self._idle if other is not child]
-            self._busy.append(child)
+            process = fitting[0] if fitting else Isolated(spec, limit)
+            self._idle = [other for other in self._idle if other is not process]
+            self._busy.append(process)
             if self._closed:
-                child.close()
+                process.close()
+        sound, surplus = False, [process]
         try:
-            yield child
-        except BaseException:
-            self._returned(child, whole=False)
-            raise
-        self._returned(child, whole=True)
+            yield process
+            sound = True
+        finally:
+            with self._lock:
+                self._busy.remove(process)
+                if sound and not self._closed:
+                    self._idle.append(process)
+                    surplus = [self._idle.pop(0)] if len(self._idle) > _KEPT else []
+            for discarded in surplus:
+                discarded.close()
 
     def end_idle(self) -> None:
         """End those that nobody uses."""
         with self._lock:
             idle, self._idle = self._idle, []
-        for child in idle:
-            child.close()
+        for process in idle:
+            process.close()
 
     def close(self) -> None:
         """End all, whatever they are doing; those who use one see a `RunError`."""
@@ -80,14 +86,5 @@ class Children:
             self._closed = True
             every = [*self._idle, *self._busy]
             self._idle = []
-        for child in every:
-            child.close()
-
-    def _returned(self, child: Isolated, whole: bool) -> None:
-        with self._lock:
-            self._busy.remove(child)
-            keep = whole and not self._closed
-            self._idle += [child] * keep
-            over = [self._idle.pop(0)] if len(self._idle) > _KEPT else []
-        for discarded in over if keep else [child]:
-            discarded.close()
+        for process in every:
+            process.close()

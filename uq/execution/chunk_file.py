@@ -45,15 +45,13 @@ def pack(
     return data
 
 
-def columns_in(data: NDArray[Any]) -> dict[str, NDArray[Any]]:
-    """Return the outputs of packed rows, not copied."""
-    return {name: data["columns"][name] for name in data.dtype["columns"].names or ()}
-
-
 def unpack(data: NDArray[Any]) -> tuple[Rows, dict[str, NDArray[Any]], NDArray[np.int8]]:
     """Return the parts that `pack` put together."""
     rows = Rows(*(np.ascontiguousarray(data["rows"][field]) for field in Rows._fields))
-    columns = {name: np.ascontiguousarray(part) for name, part in columns_in(data).items()}
+    columns = {
+        name: np.ascontiguousarray(data["columns"][name])
+        for name in data.dtype["columns"].names or ()
+    }
     return rows, columns, np.ascontiguousarray(data["status"])
 
 

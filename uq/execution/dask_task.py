@@ -19,8 +19,8 @@ from uq.execution.children import Children
 from uq.study.evaluate import Chunk
 from uq.study.provenance import differences
 
-_shared = Children()
-_of_runs: dict[str, Children] = {}
+_of_runs = {"": Children()}
+"""Processes that compute rows for each run in this process; of a worker under ""."""
 
 
 def evaluate_rows(
@@ -51,7 +51,7 @@ def evaluate_rows(
     """
     if wrong := differences(versions):
         raise InputError(f"a worker {wrong}")
-    with (_of_runs[run] if run else _shared).reserved(spec, limit) as child:
+    with _of_runs[run].reserved(spec, limit) as child:
         child.start()
         began = time.perf_counter()
         return child.evaluate(x, seed, start), time.perf_counter() - began
@@ -70,4 +70,4 @@ def named(children: Children) -> Iterator[str]:
 
 def end_children() -> None:
     """End the idle processes of this worker."""
-    _shared.end_idle()
+    _of_runs[""].end_idle()

@@ -12,13 +12,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.errors import RunError
-from uq.execution.chunk_file import Block, columns_in, in_order, load, pack, save, unpack
-from uq.execution.merge import merge
+from uq.execution.chunk_file import Block, in_order, load, pack, save, unpack
+from uq.execution.merge import define, made_by, place, rerun, variants_of
 from uq.execution.records import RowsRecord, RunRecord, missing
 from uq.execution.row_folder import JOURNAL, clear, folder_of
-from uq.execution.tally import Failures, Tally, joined_failures
+from uq.execution.tally import Failures, MemoryStore, joined_failures
 from uq.files.journal import Journal
-from uq.files.whole_files import reason
+from uq.files.seal import seal
+from uq.files.whole_files import reason, whole
 from uq.result import result_file
 from uq.result.workload import workload_of
 from uq.study.definition import Study
@@ -34,7 +35,7 @@ Origin = tuple[dict[str, str], dict[str, Any]]
 """Processor and versions that computed rows, and their settings that differ from the study's."""
 
 
-class DiskStore(Tally):
+class DiskStore(MemoryStore):
     """The rows of one run, in the folder beside its result; the caller holds its lock.
 
     Parameters
@@ -58,7 +59,6 @@ class DiskStore(Tally):
         self._path = path
         self._journal = Journal(self.folder / JOURNAL)
         self._records: list[RowsRecord] = []
-        self._pending: list[tuple[int, NDArray[Any]]] = []
         self._pending_failures: Failures = {}
         self._made = made_here(study.model_reference)
         self._written = time.monotonic()
@@ -112,20 +112,10 @@ class DiskStore(Tally):
         self.note(self._run.model_copy(update=size | {"time": time.time()}))
 
     def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
-        """Count the rows from `start` on; `keep_up` writes them.
-
-        Parameters
-        ----------
-        start : int
-        rows : Rows
-        chunk : Chunk
-        """
-        data = pack(self.row_type, rows, chunk.columns, chunk.status)
-        counts = self.counts(chunk.columns, chunk.status)
+        """Count and keep the rows from `start` on; `keep_up` writes them."""
         # Rows last: if a signal ends the process in between, they are not kept without these.
         self._pending_failures = joined_failures(self._pending_failures, chunk.failures)
-        self._pending.append((start, data))
-        self.count(*counts, chunk.failures)
+        super().add(start, rows, chunk)
 
     def keep_up(self) -> None:
         """Write what has arrived, unless that would exceed the share of time for writing.
@@ -150,6 +140,9 @@ class DiskStore(Tally):
     def dataset(self) -> xr.Dataset:
         """Write the result of a complete run, and remove what it was made from.
 
+        It depends on the rows alone, not on how they are split into chunk files, which are read one
+        at a time: memory does not grow with the rows.
+
         Raises
         ------
         RunError
@@ -157,15 +150,29 @@ class DiskStore(Tally):
         """
         self._write()
         try:
-            merge(
-                self._study, self._records, self._loaded(), self.examples, self._path, self.folder
-            )
+            with whole(self._path, self.folder) as temporary:
+                self._merge(temporary)
+                seal(temporary)
         except RunError as error:
             raise RunError(
                 f"{error}; the rows are kept, and the same command resumes the run"
             ) from None
         clear(self.folder)
         return result_file.open_result(self._path)
+
+    def _merge(self, path: Path) -> None:
+        import netCDF4
+
+        attributes, variants = made_by(self._records), variants_of(self._records)
+        with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+            for record, data in self._loaded():
+                ds = result_file.build(self._study, *unpack(data), self.examples, record.numbers)
+                ds = ds.assign_attrs(attributes)
+                if len(variants) > 1:
+                    ds["rerun"] = rerun(variants, variants.index(record.settings), record.rows)
+                if not file.variables:
+                    define(file, ds, self.total)
+                place(file, ds, record.blocks)
 
     def close(self) -> None:
         """Write what has arrived, if possible, and remove useless files."""
@@ -196,7 +203,7 @@ class DiskStore(Tally):
         """Write a chunk file, then its line in the journal."""
         failed, status = 0, Counter[str]()
         for data in pieces:
-            _, failed_rows, by_label = self.counts(columns_in(data), data["status"])
+            _, failed_rows, by_label = self.counts(data)
             failed += failed_rows
             status.update(by_label)
         record = RowsRecord(

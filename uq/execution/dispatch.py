@@ -7,12 +7,10 @@ computes them changes no bit of the result.
 import time
 from collections import deque
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from uq.execution.disk_store import DiskStore
 from uq.execution.isolation import Evaluate
 from uq.execution.options import DEFAULTS, Progress, RunOptions
-from uq.execution.sent_chunks import SentChunks
 from uq.execution.tally import MemoryStore, row_bytes
 from uq.result.workload import Workload
 from uq.study.evaluate import Chunk, KernelError
@@ -29,67 +27,58 @@ _CHUNKS_PER_SECOND = 50
 
 # Longest chunk that is a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
+GROWTH = 4
+"""Ratio of the rows of successive chunks, until they are good ones."""
+
 _FIRST_ROWS = 16
 _SENT_CHUNKS = 4  # at least, also while workers start
 _SENT_PER_THREAD = 2  # one under way, the next at hand
 _LONG_SECONDS = 1.0  # of a chunk, which is reported before it has come back
 _SENT_BYTES = 2_000_000_000  # inputs of all chunks sent: the scheduler keeps them, too
 _LAST_SHARE = 1 / 8  # of a chunk: smaller chunks at the end would waste work
-_GROWTH = 4  # of the first chunks
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
 _ENOUGH_ROWS = 32  # to blame the model rather than the rows
 
 
-class ChunkSizes(NamedTuple):
-    """How many rows of a workload are computed together: whole groups of its design.
+def first_chunk(workload: Workload, options: RunOptions = DEFAULTS) -> int:
+    """Return the rows of the first chunk, before the cost of a row is known."""
+    few = min(_FIRST_ROWS, workload.model.block)  # a row alone may take minutes
+    return _whole_groups(workload, options.chunk_rows or few)
 
-    Attributes
+
+def good_chunk(
+    workload: Workload, options: RunOptions = DEFAULTS, row_seconds: float = 0.0, threads: int = 1
+) -> int:
+    """Return the rows of a good chunk: whole groups of the design.
+
+    Parameters
     ----------
     workload : Workload
-    options : RunOptions
+    options : RunOptions, optional
+    row_seconds : float
+        Cost of a row [s], 0 if unknown.
+    threads : int, optional
+        How many chunks are computed at the same time.
     """
+    limit, wish = options.row_limit, options.chunk_rows
+    inputs = 8 * len(workload.model.parameter_names)
+    sent = _SENT_BYTES // (_SENT_PER_THREAD * threads * inputs)
+    most = max(1, min(_CHUNK_BYTES // row_bytes(workload), sent))
+    if limit and row_seconds:  # chunks of sound rows must not be stopped
+        most = max(1, min(most, int(_LIMIT_SHARE * limit / row_seconds)))
+    if wish:
+        most = min(wish, most) if limit else wish
+    elif row_seconds:
+        block = min(workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+        seconds = max(CHUNK_SECONDS, threads / _CHUNKS_PER_SECOND)
+        most = min(most, block * max(1, round(seconds / (row_seconds * block))))
+    return _whole_groups(workload, most)
 
-    workload: Workload
-    options: RunOptions = DEFAULTS
 
-    @property
-    def first(self) -> int:
-        """Rows of the first chunk, before the cost of a row is known."""
-        few = min(_FIRST_ROWS, self.workload.model.block)  # a row alone may take minutes
-        return self.whole_groups(self.options.chunk_rows or few)
-
-    def following(self, size: int, row_seconds: float) -> int:
-        """Return the rows of the chunk after one of `size` rows, while chunks grow."""
-        return min(_GROWTH * size, self.good(row_seconds))
-
-    def good(self, row_seconds: float, threads: int = 1) -> int:
-        """Return the rows of a good chunk.
-
-        Parameters
-        ----------
-        row_seconds : float
-            Cost of a row [s], 0 if unknown.
-        threads : int, optional
-            How many chunks are computed at the same time.
-        """
-        limit, wish = self.options.row_limit, self.options.chunk_rows
-        inputs = 8 * len(self.workload.model.parameter_names)
-        sent = _SENT_BYTES // (_SENT_PER_THREAD * threads * inputs)
-        most = max(1, min(_CHUNK_BYTES // row_bytes(self.workload), sent))
-        if limit and row_seconds:  # chunks of sound rows must not be stopped
-            most = max(1, min(most, int(_LIMIT_SHARE * limit / row_seconds)))
-        if wish:
-            return self.whole_groups(min(wish, most) if limit else wish)
-        if row_seconds:
-            block = min(self.workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
-            seconds = max(CHUNK_SECONDS, threads / _CHUNKS_PER_SECOND)
-            most = min(most, block * max(1, round(seconds / (row_seconds * block))))
-        return self.whole_groups(most)
-
-    def whole_groups(self, rows: int) -> int:
-        """Round a number of rows up to whole groups of the design."""
-        return self.workload.group * ceil(rows / self.workload.group)
+def _whole_groups(workload: Workload, rows: int) -> int:
+    """Round a number of rows up to whole groups of the design."""
+    return workload.group * ceil(rows / workload.group)
 
 
 class Dispatcher:
@@ -99,7 +88,7 @@ class Dispatcher:
     ----------
     workload : Workload
     options : RunOptions
-    store : MemoryStore or DiskStore
+    store : MemoryStore
         Keeps the rows; missing rows are computed.
     evaluate : callable
         Computes rows on this computer.
@@ -108,7 +97,7 @@ class Dispatcher:
 
     Attributes
     ----------
-    store : MemoryStore or DiskStore
+    store : MemoryStore
         The rows that have arrived.
     rows, left : int
         Rows to be computed, and those of them that have not arrived.
@@ -120,14 +109,13 @@ class Dispatcher:
         self,
         workload: Workload,
         options: RunOptions,
-        store: MemoryStore | DiskStore,
+        store: MemoryStore,
         evaluate: Evaluate,
         stop: int | None = None,
     ) -> None:
         self.workload = workload
         self.store = store
         self._options = options
-        self._sizes = ChunkSizes(workload, options)
         self._evaluate = evaluate
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
@@ -143,33 +131,32 @@ class Dispatcher:
         The first call may compile, so only later ones show the cost of a row. At most about `share`
         of all rows to be computed run here.
         """
-        size = self._sizes.first
+        size = first_chunk(self.workload, self._options)
         least_left = (1 - share) * self._untaken
         self._here(size)
         spent = 0.0
         while spent < CHUNK_SECONDS and self._untaken > least_left:
-            size = self._sizes.following(size, self.row_seconds)
+            size = min(GROWTH * size, self._good_chunk())
             spent += self._here(size)
 
     def finish_here(self) -> None:
         """Run the remaining rows without workers."""
         while self.left:
-            self._here(self._sizes.good(self.row_seconds))
+            self._here(self._good_chunk())
 
     def finish_on(self, crew: "Workers") -> None:
         """Run the remaining rows on workers."""
         self._dashboard = crew.dashboard
-        sent = SentChunks(self.workload, crew, self._options.row_limit)
         while self.left:
             threads = crew.threads
             sharing = max(1, threads)
             # Only as many chunks are sent as keep the workers busy.
-            while self._untaken and len(sent) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
-                sent.send(*self._take(self._shared(sharing)))
-            before, self._under_way = self._under_way, sent.begun(threads)
+            while self._untaken and len(crew) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
+                crew.send(*self._take(self._shared(sharing)))
+            before, self._under_way = self._under_way, crew.begun(threads)
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
-            for start, rows, chunk, seconds in sent.returned():
+            for start, rows, chunk, seconds in crew.returned():
                 if seconds:  # unknown for a row that was given up
                     self.row_seconds = seconds / len(rows.x)
                 self._keep(start, rows, chunk)
@@ -220,10 +207,14 @@ class Dispatcher:
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""
-        row_seconds = self.row_seconds
-        size = self._sizes.good(row_seconds, threads) if row_seconds else self._sizes.first
+        size = first_chunk(self.workload, self._options)
+        if self.row_seconds:
+            size = self._good_chunk(threads)
         least = int(_LAST_SHARE * size)
         share = max(ceil(self._untaken / threads), least)
         if self._untaken - share < least:  # too few for another chunk
             share = self._untaken
-        return min(size, self._sizes.whole_groups(share))
+        return min(size, _whole_groups(self.workload, share))
+
+    def _good_chunk(self, threads: int = 1) -> int:
+        return good_chunk(self.workload, self._options, self.row_seconds, threads)

@@ -1,7 +1,7 @@
 """Who computes rows: this computer, and dask workers if the work is worth starting them."""
 
 from contextlib import ExitStack
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -11,7 +11,7 @@ from uq.contract import Floats
 from uq.execution.child import ModelSpec
 from uq.execution.children import Children
 from uq.execution.dispatch import Dispatcher
-from uq.execution.isolation import Action, Evaluate, spec_of
+from uq.execution.isolation import Action, spec_of
 from uq.execution.options import RunOptions
 from uq.files.interrupts import in_background, undone
 from uq.machines.compilation import compilation
@@ -35,9 +35,9 @@ def in_one_process(workers: int | None, seconds: float) -> bool:
 
 def processes(workload: Workload, workers: int | None) -> int:
     """Return how many processes compute at the same time, if the work is worth starting workers."""
-    from uq.execution.local_cluster import CORES
+    from dask.system import CPU_COUNT  # within affinity and container limits
 
-    return min(1 if workers == 0 else workers or CORES, workload.total // workload.group)
+    return min(1 if workers == 0 else workers or CPU_COUNT, workload.total // workload.group)
 
 
 def first_rows_alone(workload: Workload, workers: int | None) -> bool:
@@ -61,18 +61,11 @@ class Executor:
     compiling : callable
         Called when compilation of the model starts.
 
-    Attributes
-    ----------
-    evaluate : Evaluate
-        Computes rows on this computer, in a separate process unless the user wants none.
-
     Raises
     ------
     InputError
         When options exclude each other.
     """
-
-    evaluate: Evaluate
 
     def __init__(
         self, workload: Workload, options: RunOptions, compiling: Action = lambda: None
@@ -88,17 +81,23 @@ class Executor:
     def __enter__(self) -> Self:
         if self._options.workers == 0:
             self._stack.enter_context(compilation(self._compiling))
-            self.evaluate = partial(_in_process, self._workload)
         else:
             self._stack.enter_context(undone(self._children.close))
             self._begin(1)
-            self.evaluate = self._in_a_child
         return self
 
     def __exit__(self, *exception: object) -> None:
         self._stack.close()
         if isinstance(self._workload.model.batch, RowByRow):
             self._workload.model.batch.leave()  # after the processes that were stopped
+
+    def evaluate(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
+        """Compute rows on this computer, in a separate process unless the user wants none."""
+        if self._options.workers == 0:
+            model, settings = self._workload.model, self._workload.settings
+            return in_background(lambda: evaluate(model, settings, x, seed, start))
+        with self._children.reserved(self._spec, self._options.row_limit) as child:
+            return child.evaluate(x, seed, start)
 
     def finish(self, dispatcher: Dispatcher) -> None:
         """Have all rows of a dispatcher computed."""
@@ -123,33 +122,24 @@ class Executor:
         self._seconds += dispatcher.row_seconds * dispatcher.rows
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
-        from uq.execution.local_cluster import local_workers
-
         if self._crew is None:
+            how = self._workload, self._options.row_limit
             if self._options.scheduler is not None:
                 from uq.execution.remote_cluster import remote_workers
 
-                crew = remote_workers(self._options.scheduler)
+                crew = remote_workers(self._options.scheduler, *how)
             else:
                 count = processes(dispatcher.workload, self._options.workers)
                 self._begin(count)  # they import while dask does
-                crew = local_workers(count, self._children)
+                from uq.execution.local_cluster import local_workers
+
+                crew = local_workers(count, self._children, *how)
             self._crew = self._stack.enter_context(crew)
         return self._crew
 
     @cached_property
-    def _wanted(self) -> tuple[ModelSpec, float | None]:
-        """What processes compute, with the time limit of a row [s]."""
-        return spec_of(self._workload), self._options.row_limit
+    def _spec(self) -> ModelSpec:
+        return spec_of(self._workload)
 
     def _begin(self, count: int) -> None:
-        self._children.begin(count, *self._wanted, self._compiling)
-
-    def _in_a_child(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
-        with self._children.reserved(*self._wanted) as child:
-            return child.evaluate(x, seed, start)
-
-
-def _in_process(workload: Workload, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
-    """Compute rows in this process, which nothing protects from them."""
-    return in_background(lambda: evaluate(workload.model, workload.settings, x, seed, start))
+        self._children.begin(count, self._spec, self._options.row_limit, self._compiling)

@@ -7,7 +7,7 @@ message, the others the same values as anywhere.
 import signal
 import subprocess
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from math import ceil
@@ -52,20 +52,6 @@ def spec_of(workload: "Workload") -> child.ModelSpec:
     )
 
 
-@contextmanager
-def isolated(
-    spec: child.ModelSpec,
-    limit: float | None = None,
-    compiling: Action = lambda: None,
-    prints: int = subprocess.DEVNULL,
-) -> Iterator[Evaluate]:
-    """Yield a function that computes rows in a separate process; parameters as of `Isolated`."""
-    process = Isolated(spec, limit, compiling, prints)
-    with undone(process.close):
-        process.begin()
-        yield process.evaluate
-
-
 class Isolated:
     """A process that computes rows, and is replaced when it dies.
 
@@ -78,6 +64,8 @@ class Isolated:
         Called when the process starts to compile.
     prints : int
         File descriptor for what the model prints.
+    waiting : callable
+        Called several times a second while rows are computed.
     """
 
     def __init__(
@@ -86,15 +74,24 @@ class Isolated:
         limit: float | None = None,
         compiling: Action = lambda: None,
         prints: int = subprocess.DEVNULL,
+        waiting: Action = lambda: None,
     ) -> None:
         self.spec = spec
         self.limit = limit
         self._compiling = compiling
         self._prints = prints
+        self._waiting = waiting
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._ready: child.Ready | None = None
+        self._loaded = self._stops_rows = self._loads_first = False
         self._closed = threading.Event()
+
+    @contextmanager
+    def running(self) -> Iterator[Evaluate]:
+        """Start the process, yield `evaluate`, and end the process."""
+        with undone(self.close):
+            self.begin()
+            yield self.evaluate
 
     def evaluate(self, x: Floats, seed: NDArray[np.uint64], start: int = 0) -> Chunk:
         """Run some rows; parameters and exceptions as in `uq.study.evaluate.evaluate`.
@@ -104,9 +101,9 @@ class Isolated:
         RunError
             When the process cannot start, or was closed from another thread.
         """
-        chunk = self._ask(x, seed, start)
-        if isinstance(chunk, Chunk):
-            return chunk
+        chunk = self.ask(x, seed, start)
+        if not isinstance(chunk, RowFailure):
+            return cast(Chunk, chunk)
         if len(x) == 1:
             return self._single(x, seed, start)
         # Waiting for the time limit costs more than computing rows one by one.
@@ -118,9 +115,9 @@ class Isolated:
     def _single(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row by itself, to find out whether it is guilty."""
         for _ in range(TRIES - 1):  # that of its chunk was the first
-            outcome = self._ask(x, seed, start)
-            if isinstance(outcome, Chunk):
-                return outcome
+            outcome = self.ask(x, seed, start)
+            if not isinstance(outcome, RowFailure):
+                return cast(Chunk, outcome)
             if outcome.status is not Status.CRASHED:
                 break
         fault = cast(RowFailure, outcome)
@@ -135,34 +132,34 @@ class Isolated:
         self._closed.set()
         self._end(at_once=True)
 
-    def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | RowFailure:
+    def ask(self, x: Sequence[float] | Floats, *others: Any) -> Any | RowFailure:
+        """Return the answer of the process on some rows, or how they ended it."""
         try:
             connection = self.start()
-            connection.send((x, seed, start))
+            connection.send((x, *others))
             answer = self._answer(connection, self._patience(len(x)))
         except (EOFError, OSError):
             return RowFailure(Status.CRASHED, f"killed its process ({self._end()})")
-        if self._ready:
-            self._ready = self._ready._replace(loads_first=False)
+        self._loads_first = False
         if answer is None:
             self._end(at_once=True)
             return RowFailure(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
         kind, value = answer
         if kind == child.REFUSED:
             raise value
-        return cast(Chunk, value)
+        return value
 
     def _patience(self, rows: int) -> float | None:
         """Return how long rows that are computed together may take [s]."""
-        if self.limit is None or self._ready is None:
+        if self.limit is None:
             return None
-        if self._ready.stops_rows:
+        if self._stops_rows:
             return rows * self.limit + _STUCK_SECONDS
-        return self.limit + (child.FIRST_SECONDS if self._ready.loads_first else 0.0)
+        return self.limit + (child.FIRST_SECONDS if self._loads_first else 0.0)
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
         """Return the answer of the process, or None when its time is over."""
-        return child.answer_of(connection, limit, self._compiling)
+        return child.answer_of(connection, limit, self._compiling, self._waiting)
 
     def begin(self) -> None:
         """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
@@ -187,7 +184,7 @@ class Isolated:
         RunError
             When it cannot start, or was closed.
         """
-        if self._connection and self._ready:
+        if self._connection and self._loaded:
             return self._connection
         for _ in range(_STARTS):
             if self._closed.is_set():
@@ -201,7 +198,7 @@ class Isolated:
             if kind == child.REFUSED:
                 self._end()
                 raise value
-            self._ready = child.Ready(*value)
+            self._loaded, (self._stops_rows, self._loads_first) = True, value
             return connection
         raise RunError(f"a process for the rows could not start: {reason}")
 
@@ -209,7 +206,7 @@ class Isolated:
         """End the process, unless it is already dying; return how it ended."""
         process, connection = self._process, self._connection
         self._process = self._connection = None
-        self._ready = None
+        self._loaded = False
         if connection:
             connection.close()
         if not process:

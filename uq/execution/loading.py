@@ -10,19 +10,19 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from uq.contract import Model
+from uq.contract import Model, Status
 from uq.errors import InputError, first_fault_alone
-from uq.execution.child import FIRST_SECONDS, REFUSED, Action, answer_of
-from uq.execution.environment import started
+from uq.execution.child import ModelSpec
+from uq.execution.isolation import Isolated
 from uq.execution.options import Say, ignore
 from uq.files.paths import cache_path
-from uq.machines.child_processes import end_with_descendants
 from uq.machines.returned import Returned, as_plain, from_plain, joined
 from uq.machines.row_by_row import RowByRow
+from uq.study.evaluate import RowFailure
 from uq.study.installed_models import code_of, located, model_at, with_returns
 from uq.study.sources import DISTRIBUTION
 from uq.text.numbers import counted, duration
@@ -137,8 +137,6 @@ def _observed_outputs(
     code = f"{__version__}\n{reference}\n{code_of(reference)}"
     key = hashlib.sha256(code.encode() + numbers).hexdigest()
     kept = cache_path(DISTRIBUTION) / "returns" / f"{key}.json"
-    if not kept.is_absolute():  # there is no home: the path begins with "~"
-        return joined(list(_returned(reference, tried, say, limit)))
     with suppress(OSError, ValueError):
         return from_plain(json.loads(kept.read_text()))
     began = time.monotonic()
@@ -160,10 +158,7 @@ def _returned(
     InputError
         When the nominal row fails.
     """
-    from uq.execution import probe
-
-    todo, done = iter(tried), 0
-    began, announced = time.monotonic(), False
+    done, began, announced = 0, time.monotonic(), False
 
     def waiting() -> None:
         nonlocal announced
@@ -178,49 +173,15 @@ def _returned(
             " in @uq.machine states it"
         )
 
-    while done < len(tried):
-        for outcome, value in _in_process(reference, todo, limit, waiting):
+    process = Isolated(ModelSpec(reference, "", (), probed=True), limit, waiting=waiting)
+    with process.running():
+        for row, seed in tried:
+            outcome = process.ask(row, seed)
+            if isinstance(outcome, RowFailure):
+                killed = outcome.status is Status.CRASHED
+                outcome = "killed its process" if killed else outcome.message
             done += 1
-            if outcome == probe.RETURNED:
-                yield from_plain(value)
+            if not isinstance(outcome, str):
+                yield from_plain(outcome)
             elif done == 1:
-                raise InputError(f"model '{reference}': its nominal row {value}")
-
-
-def _in_process(
-    reference: str, todo: Iterator[Row], limit: float | None, waiting: Action
-) -> Iterator[tuple[str, Any]]:
-    """Yield the outcome of each row, until one ends the process or must be stopped.
-
-    Raises
-    ------
-    InputError
-        When the process has no such model.
-    """
-    from uq.execution import probe
-
-    process, connection = started("uq.execution.probe")
-    grace: float | None = None
-    try:
-        connection.send(reference)
-        for row in todo:
-            try:
-                if grace is None:
-                    outcome, value = connection.recv()
-                    if outcome == REFUSED:
-                        raise value
-                    grace = FIRST_SECONDS
-                connection.send(row)
-                answer = answer_of(connection, limit and limit + grace, waiting=waiting)
-            except (EOFError, OSError):
-                yield probe.RAISED, "killed its process"
-                return
-            if answer is None:
-                yield probe.RAISED, f"did not end within {limit:g} s"
-                return
-            yield answer
-            grace = 0.0
-    finally:
-        connection.close()
-        end_with_descendants(process.pid)
-        process.communicate()
+                raise InputError(f"model '{reference}': its nominal row {outcome}")

@@ -9,26 +9,24 @@ import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
-from dask.system import CPU_COUNT
+import dask
+from distributed import Client, LocalCluster
 
 from uq.execution.children import Children
 from uq.execution.dask_task import named
+from uq.execution.workers import Workers, quiet
 from uq.files.interrupts import undone
-
-if TYPE_CHECKING:
-    from uq.execution.workers import Workers
-
-CORES = CPU_COUNT
-"""Cores that this process may use, within affinity and container limits."""
+from uq.result.workload import Workload
 
 _UNUSED = "127.0.0.1:0"
 """Some free port of this computer, with nothing behind it: dask wants one."""
 
 
 @contextmanager
-def local_workers(count: int, children: Children) -> "Iterator[Workers]":
+def local_workers(
+    count: int, children: Children, workload: Workload, row_limit: float | None
+) -> Iterator[Workers]:
     """Start `count` workers with one thread each, and end them.
 
     Parameters
@@ -36,16 +34,13 @@ def local_workers(count: int, children: Children) -> "Iterator[Workers]":
     count : int
     children : Children
         Which compute the rows; ended with the workers.
+    workload, row_limit
+        As for `uq.execution.workers.Workers`.
 
     Yields
     ------
     Workers
     """
-    import dask
-    from distributed import Client, LocalCluster
-
-    from uq.execution.workers import Workers, quiet
-
     settings = {
         "distributed.scheduler.http.routes": [],
         "distributed.worker.http.routes": [],
@@ -69,14 +64,12 @@ def local_workers(count: int, children: Children) -> "Iterator[Workers]":
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False))
         stack.enter_context(undone(children.close))  # first: workers wait for their rows
-        yield Workers(client, run=stack.enter_context(named(children)))
+        yield Workers(client, workload, row_limit, run=stack.enter_context(named(children)))
 
 
 @contextmanager
 def scratch() -> Iterator[None]:
     """Have dask's folders removed at once: workers without a limit of memory keep nothing there."""
-    import dask
-
     places = sys.path.copy()
     with (
         TemporaryDirectory(prefix="uq-") as folder,

@@ -1,73 +1,18 @@
-"""From chunk files to one result, one file at a time: memory does not grow with the rows."""
+"""Result that is written in parts: its variables, then rows in their places."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from uq.contract import Mask
-from uq.execution.chunk_file import Block, unpack
+from uq.execution.chunk_file import Block
 from uq.execution.records import RowsRecord
-from uq.files.seal import seal
-from uq.files.whole_files import whole
-from uq.result import result_file
-from uq.study.definition import Study
-from uq.study.row_sampling import rows
 from uq.text.literals import read_toml, toml
 
-Loaded = Iterable[tuple[RowsRecord, NDArray[Any]]]
 
-
-def merge(
-    study: Study,
-    records: Sequence[RowsRecord],
-    loaded: Loaded,
-    failures: Mapping[str, str],
-    path: Path,
-    folder: Path,
-) -> None:
-    """Write the result of a complete study.
-
-    The file depends on the rows alone, not on how they are split into chunk files.
-
-    Parameters
-    ----------
-    study : Study
-    records : sequence of RowsRecord
-    loaded : iterable of (RowsRecord, ndarray)
-        The same records in any order, each with its rows.
-    failures : dict of str to str
-        As for `uq.result.result_file.build`.
-    path : Path
-    folder : Path
-        Of the temporary file.
-
-    Raises
-    ------
-    RunError
-        When it cannot be written; `path` is unchanged then.
-    """
-    import netCDF4
-
-    made = _made(records)
-    variants = _variants(records)
-    with whole(path, folder) as temporary:
-        with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            for record, data in loaded:
-                parts = unpack(data)
-                ds = result_file.build(study, *parts, failures, record.numbers).assign_attrs(made)
-                if len(variants) > 1:
-                    ds["rerun"] = _rerun(variants, variants.index(record.settings), record.rows)
-                if not file.variables:
-                    _define(file, ds, rows(study))
-                _place(file, ds, record.blocks)
-        seal(temporary)
-
-
-def _define(file: Any, ds: xr.Dataset, total: int) -> None:
+def define(file: Any, ds: xr.Dataset, total: int) -> None:
     """Write everything in a result but the rows."""
     variables, attributes = xr.conventions.encode_dataset_coordinates(ds)
     file.setncatts(attributes)
@@ -84,7 +29,7 @@ def _define(file: Any, ds: xr.Dataset, total: int) -> None:
             made[...] = variable.values.astype(object) if kind is str else variable.values
 
 
-def _place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
+def place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
     """Write rows to their places."""
     for name, variable in ds.variables.items():
         if "row" in variable.dims:
@@ -94,7 +39,7 @@ def _place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
                 done += stop - start
 
 
-def _made(records: Sequence[RowsRecord]) -> dict[str, str]:
+def made_by(records: Sequence[RowsRecord]) -> dict[str, str]:
     """Return the processors and versions that computed the rows, as attributes of the result."""
     names = dict.fromkeys(name for record in records for name in record.made)
     return {
@@ -103,7 +48,7 @@ def _made(records: Sequence[RowsRecord]) -> dict[str, str]:
     }
 
 
-def _variants(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
+def variants_of(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
     """Return the sets of settings that differ from the study's, ordered by first row."""
     variants: list[dict[str, Any]] = [{}]
     for record in sorted(records, key=lambda record: record.blocks):
@@ -112,7 +57,8 @@ def _variants(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
     return variants
 
 
-def _rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.Variable:
+def rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.Variable:
+    """Return which of these settings some rows were computed with, as a variable of a result."""
     labels = ["no", *(f"changed-{i}" for i in range(1, len(variants)))]
     attrs: dict[str, Any] = {
         "role": "rerun",

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq.execution.dispatch import CHUNK_SECONDS, ChunkSizes
+from uq.execution.dispatch import CHUNK_SECONDS, GROWTH, first_chunk, good_chunk
 from uq.execution.environment import command, inherited
 from uq.execution.executor import first_rows_alone, in_one_process, processes
-from uq.execution.isolation import Action, Evaluate, isolated, spec_of
+from uq.execution.isolation import Action, Evaluate, Isolated, spec_of
 from uq.execution.options import RunOptions, Say, ignore
 from uq.execution.tally import row_bytes
 from uq.result import result_file
@@ -102,7 +102,7 @@ def pilot(
     RunOptions(workers).check()
     workload = workload_of(study)
     total, count = workload.total, processes(workload, workers)
-    compiled = Event()
+    spec, compiled = spec_of(workload), Event()
 
     def when_compiling() -> None:
         compiled.set()
@@ -110,12 +110,12 @@ def pilot(
 
     with ExitStack() as stack:
         evaluators = [
-            stack.enter_context(isolated(spec_of(workload), None, when_compiling))
+            stack.enter_context(Isolated(spec, None, when_compiling).running())
             for _ in range(count)
         ]
         load_seconds = _load_seconds()
         row_seconds, first_seconds = _warm_up(workload, evaluators, compiled)
-        size = ChunkSizes(workload).good(row_seconds)
+        size = good_chunk(workload, row_seconds=row_seconds)
         least = _CHUNKS_AT_LEAST * count
         if size * row_seconds > _LONG_SECONDS:
             least = max(_CHUNKS_AT_LEAST, count)
@@ -174,8 +174,7 @@ def _warm_up(
     time of a row, and of all those rows. Slow rows of a model that is not compiled are known at
     once.
     """
-    sizes = ChunkSizes(workload)
-    size, seconds = min(workload.total, sizes.first), 0.0
+    size, seconds = min(workload.total, first_chunk(workload)), 0.0
     first, *others = evaluators
     *_, last = _timed(first, workload, 0, size)
     if last > _SLOW_SECONDS and not compiled.is_set():
@@ -185,7 +184,8 @@ def _warm_up(
     while True:
         *_, last = _timed(first, workload, 0, size)
         seconds += last
-        grown = min(sizes.following(size, last / size), workload.total)
+        good = good_chunk(workload, row_seconds=last / size)
+        grown = min(GROWTH * size, good, workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
             return last / size, seconds
         size = grown

@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.contract import Status, censored_name
 from uq.errors import InputError, first_fault_alone
-from uq.execution.isolation import isolated, spec_of
+from uq.execution.isolation import Isolated, spec_of
 from uq.execution.loading import study_of_text
 from uq.execution.merge import by_settings
 from uq.result.one_row import Row, computed
@@ -119,7 +119,8 @@ def computed_again(study: Study, settings: Any, number: int, status: int = Statu
     seed = int(rows.seed[0])
     if status != Status.CRASHED:
         return computed(study.model, settings, values, seed)
-    with isolated(spec_of(workload_of(study)._replace(settings=settings))) as batch:
+    spec = spec_of(workload_of(study)._replace(settings=settings))
+    with Isolated(spec).running() as batch:
         return computed(study.model, settings, values, seed, lambda x, seeds: batch(x, seeds, 0))
 
 

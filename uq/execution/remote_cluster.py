@@ -11,6 +11,7 @@ from distributed.security import Security
 from uq.errors import InputError, RunError, one_line
 from uq.execution.dask_task import end_children
 from uq.execution.workers import Workers, quiet
+from uq.result.workload import Workload
 from uq.study.provenance import differences, versions
 
 _REMOTE_SECONDS = 10
@@ -18,13 +19,17 @@ _WORKERLESS_SECONDS = 120.0
 
 
 @contextmanager
-def remote_workers(address: str) -> Iterator[Workers]:
+def remote_workers(
+    address: str, workload: Workload, row_limit: float | None = None
+) -> Iterator[Workers]:
     """Connect to a running dask scheduler.
 
     Parameters
     ----------
     address : str
         Such as ``tcp://host:8786``.
+    workload, row_limit
+        As for `uq.execution.workers.Workers`.
 
     Yields
     ------
@@ -63,7 +68,7 @@ def remote_workers(address: str) -> Iterator[Workers]:
                 )
 
         try:
-            yield Workers(client, watch)
+            yield Workers(client, workload, row_limit, watch)
         finally:
             if client.status == "running":
                 client.run(end_children, on_error="ignore")

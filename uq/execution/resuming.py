@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from uq.errors import InputError
 from uq.execution.chunk_file import blocks_of
 from uq.execution.disk_store import DiskStore
 from uq.execution.merge import by_settings
+from uq.execution.options import RunOptions, Say
 from uq.execution.records import History, RunRecord, without_overlap
 from uq.execution.row_folder import clear, folder_of, history, locked
 from uq.execution.tally import Failures, row_bytes
@@ -36,12 +37,7 @@ _REMEDY = "choose another output, or start over with --fresh"
 
 @contextmanager
 def keep(
-    study: Study,
-    path: Path,
-    fresh: bool = False,
-    again: Mapping[str, Any] | None = None,
-    say: Callable[[str], object] = lambda _: None,
-    mixed: bool = False,
+    study: Study, path: Path, options: RunOptions, again: Mapping[str, Any] | None = None
 ) -> Iterator[DiskStore]:
     """Keep the rows of a run on disk, with those already there.
 
@@ -51,15 +47,12 @@ def keep(
     path : Path
         Of the result. An existing result is of this study, with as many samples or fewer: its
         rows are reused.
-    fresh : bool
-        Drop the rows kept so far, and the result.
+    options : RunOptions
+        With ``fresh``, the rows kept so far and the result are dropped; with ``mixed``, rows
+        computed by other code of the model are reused, too.
     again : dict, optional
         Reuse only rows that did not fail, and compute the others with these settings instead of
         the study's.
-    say : callable
-        Called with a line for the user: what was found.
-    mixed : bool
-        Also reuse rows computed by other code of the model.
 
     Yields
     ------
@@ -77,23 +70,40 @@ def keep(
     kept = sum(file.stat().st_size for file in folder.iterdir()) if os.path.isdir(folder) else 0
     check_target(path, 2 * row_bytes(study) * rows(study) - kept)  # rows, and the result of them
     with locked(folder):
-        run_history = None if fresh else _usable(folder, study, again)
+        run_history = None if options.fresh else _usable(folder, study, again)
         if run_history is None:
             clear(folder)
-        if not fresh and not mixed:
-            _check_code(study, path, run_history)
+        existing = None
+        if run_history is None and not options.fresh and path.is_file():
+            existing = result_file.open_result(path)
+        origins = [record.made for record in run_history.chunks] if run_history else []
+        if not options.mixed:
+            _check_code(study, path, origins if existing is None else [existing.attrs])
         store = DiskStore(study, path)
         with undone(store.close):
             if run_history is not None:
-                _find(store, run_history, say)
-            elif path.is_file() and not fresh:
-                _adopt(store, study, path, all_rows=again is None)
-            store.note(_run_record(study, store, again is not None))
+                _find(store, run_history, options.say)
+            elif existing is not None:
+                _adopt(store, study, path, existing, all_rows=again is None)
+            store.note(
+                RunRecord(
+                    time=time.time(),
+                    host=os.uname().nodename,
+                    pid=os.getpid(),
+                    identity=study.identity,
+                    study=study.text,
+                    model_version=study.model.version,
+                    samples=study.design.samples,
+                    rows=store.total,
+                    row_type=str(store.row_type),
+                    again=again is not None,
+                )
+            )
             store.settings = dict(again or {})
             if store.reused:
-                say(f"{path}: {store.reused} of {store.total} rows were already done")
+                options.say(f"{path}: {store.reused} of {store.total} rows were already done")
             for line in _other_versions(study, store):
-                say(f"{path}: {line}")
+                options.say(f"{path}: {line}")
             yield store
 
 
@@ -129,7 +139,7 @@ def _usable(folder: Path, study: Study, again: Mapping[str, Any] | None) -> Hist
     return run_history
 
 
-def _find(store: DiskStore, run_history: History, say: Callable[[str], object]) -> None:
+def _find(store: DiskStore, run_history: History, say: Say) -> None:
     if run_history.run.row_type != str(store.row_type):
         raise InputError(
             f"{store.folder}: the model's outputs have changed since its rows were computed; "
@@ -140,29 +150,9 @@ def _find(store: DiskStore, run_history: History, say: Callable[[str], object]) 
         say(f"{store.folder}: {rows} damaged and will be computed again")
 
 
-def _run_record(study: Study, store: DiskStore, again: bool) -> RunRecord:
-    return RunRecord(
-        time=time.time(),
-        host=os.uname().nodename,
-        pid=os.getpid(),
-        identity=study.identity,
-        study=study.text,
-        model_version=study.model.version,
-        samples=study.design.samples,
-        rows=store.total,
-        row_type=str(store.row_type),
-        again=again,
-    )
-
-
-def _check_code(study: Study, path: Path, run_history: History | None) -> None:
+def _check_code(study: Study, path: Path, origins: Sequence[Mapping[str, object]]) -> None:
     """Refuse to resume with rows computed by other code of the model."""
-    made: list[Mapping[str, object]] = (
-        [record.made for record in run_history.chunks] if run_history else []
-    )
-    if run_history is None and path.is_file():
-        made = [result_file.open_result(path).attrs]
-    if any(is_other_code(origin, study.model_reference) for origin in made):
+    if any(is_other_code(made, study.model_reference) for made in origins):
         raise InputError(
             f"{path}: has rows that other code of model '{study.model.name}' computed, although "
             "its version is the same; start over with uq run --fresh, or continue with --mixed"
@@ -178,7 +168,7 @@ def _other_versions(study: Study, store: DiskStore) -> Iterator[str]:
             yield f"some rows were computed with {pairs}"
 
 
-def _adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
+def _adopt(store: DiskStore, study: Study, path: Path, ds: xr.Dataset, all_rows: bool) -> None:
     """Copy the rows of a result into a store.
 
     Parameters
@@ -186,11 +176,10 @@ def _adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
     store : DiskStore
     study : Study
         The result's own, perhaps with more samples.
-    path : Path
+    path, ds : Path, xarray.Dataset
     all_rows : bool
         Whether to include failed rows.
     """
-    ds = result_file.open_result(path)
     if fault := _incomplete(ds, study):
         raise InputError(f"{path}: not a sound result: {fault}")
     here = made_here(study.model_reference)

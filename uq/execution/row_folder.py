@@ -3,7 +3,6 @@
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,26 +15,6 @@ from uq.files.whole_files import flush, reason, remove_empty
 
 JOURNAL, LOCK = "journal", "lock"
 _LOCK_SECONDS = 0.5  # some disks need a second attempt to take a lock over
-
-
-@dataclass(frozen=True)
-class Holder:
-    """The process that holds the lock of a folder.
-
-    Attributes
-    ----------
-    host : str
-        As filelock names it, in a container with its process namespace: "name?pidns-number".
-    pid : int
-    """
-
-    host: str
-    pid: int
-
-    @property
-    def computer(self) -> str:
-        """Name of the computer only."""
-        return self.host.partition("?")[0]
 
 
 def folder_of(path: Path) -> Path:
@@ -52,13 +31,22 @@ def history(folder: Path) -> History | None:
         raise InputError(f"{folder / JOURNAL}: cannot be read: {error.strerror}") from None
 
 
-def holder(folder: Path) -> Holder | None:
-    """Return who wrote the lock of a folder, alive or not."""
+def holder(folder: Path) -> tuple[str, int] | None:
+    """Return host and number of the process that wrote the lock of a folder, alive or not.
+
+    The host is as filelock names it, in a container with its process namespace:
+    "name?pidns-number".
+    """
     try:
         pid, host = (folder / LOCK).read_text("utf-8", "replace").splitlines()[:2]
-        return Holder(host, int(pid))
+        return host, int(pid)
     except (OSError, ValueError):
         return None
+
+
+def computer(host: str) -> str:
+    """Return the name of the computer alone of a host, as filelock names it."""
+    return host.partition("?")[0]
 
 
 def is_held(folder: Path) -> bool:
@@ -125,18 +113,15 @@ def _held(folder: Path) -> str:
     held = holder(folder)
     if held is None:
         return f"{folder}: in use by another process; if there is none, remove {folder / LOCK}"
-    line = f"{folder}: in use by process {held.pid} on {held.computer}"
-    if held.host != _this_host():
-        line += f"; if that has ended, remove {folder / LOCK}"
-    return line
-
-
-def _this_host() -> str:
     from filelock import SoftFileLock
 
+    host, pid = held
     with TemporaryDirectory(prefix="uq-") as place, SoftFileLock(Path(place) / LOCK):
-        held = holder(Path(place))
-        return held.host if held else ""
+        here = holder(Path(place))
+    line = f"{folder}: in use by process {pid} on {computer(host)}"
+    if here is None or host != here[0]:
+        line += f"; if that has ended, remove {folder / LOCK}"
+    return line
 
 
 def clear(folder: Path) -> None:

@@ -113,7 +113,7 @@ def run_study(study: Study, path: Path, options: RunOptions) -> xr.Dataset:
     _check_budget(study)
     if not options.fresh and (existing := finished(study, path)) is not None:
         return existing
-    with resuming.keep(study, path, options.fresh, None, options.say, options.mixed) as kept:
+    with resuming.keep(study, path, options) as kept:
         for sentence in hints(study):
             options.say(sentence)
         return carry_out(workload_of(study), options, kept, study)

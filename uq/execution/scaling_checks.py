@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model, Output, Status, censored_name
 from uq.errors import InputError
-from uq.execution.isolation import isolated, spec_of
+from uq.execution.isolation import Isolated, spec_of
 from uq.files.paths import cache_path
 from uq.machines.row_by_row import RowByRow
 from uq.result.workload import workload_of
@@ -62,7 +62,7 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
     kept = _kept(study, x, seed)
     if kept.exists():
         return
-    with isolated(spec_of(workload_of(study)), row_limit) as batch:
+    with Isolated(spec_of(workload_of(study)), row_limit).running() as batch:
         chunk = batch(x, seed, 0)
     faults = [
         fault for name, output in scaled.items() for fault in _faults(model, name, output, x, chunk)
@@ -70,9 +70,8 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
     if faults:
         raise InputError(*(f"machine '{model.name}': {fault}" for fault in faults))
     with suppress(OSError):
-        if kept.is_absolute():  # else there is no home: the path begins with "~"
-            kept.parent.mkdir(parents=True, exist_ok=True)
-            kept.touch()
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.touch()
 
 
 def _at_ends(study: "Study", row: Floats) -> Floats:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from uq.execution.child import Action, ModelSpec
-from uq.execution.isolation import isolated
+from uq.execution.isolation import Isolated
 from uq.execution.loading import known_reference
 from uq.machines.row_by_row import RowByRow
 from uq.result.one_row import Row, run_row
@@ -36,5 +36,5 @@ def run_alone(
     if not isinstance(model.batch, RowByRow):
         return run_row(model, parameters, settings, seed)
     spec = ModelSpec(reference, model.version, (), code=code_of(reference))
-    with isolated(spec, None, compiling, prints=_STDERR) as batch:
+    with Isolated(spec, None, compiling, prints=_STDERR).running() as batch:
         return run_row(model, parameters, settings, seed, lambda x, seeds: batch(x, seeds, 0))

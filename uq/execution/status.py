@@ -2,13 +2,11 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from uq.execution.records import History
-from uq.execution.row_folder import Holder, folder_of, history, holder, is_held
+from uq.execution.row_folder import computer, folder_of, history, holder, is_held
 from uq.execution.tally import by_status
 from uq.result import result_file
 
@@ -30,8 +28,8 @@ class RunStatus:
         Of the latest run [rows/s]; None if unknown.
     seconds_left : float or None
         Until completion at this rate [s].
-    process : Holder or None
-        The process that is writing.
+    process : dict or None
+        ``host`` and ``pid`` of the process that is writing.
     complete_rows : int or None
         Rows of an existing result.
     """
@@ -45,7 +43,7 @@ class RunStatus:
     status: Mapping[str, int]
     rate: float | None
     seconds_left: float | None
-    process: Holder | None
+    process: dict[str, Any] | None
     complete_rows: int | None
 
 
@@ -64,27 +62,17 @@ def run_status(path: Path) -> RunStatus:
     """
     folder = folder_of(path)
     run_history = history(folder)
-    held = holder(folder)
-    process = replace(held, host=held.computer) if held and is_held(folder) else None
-    complete = _complete(path, process) if path.is_file() or not run_history else None
-    if complete and (not run_history or run_history.complete):
-        return complete
-    assert run_history is not None
-    return _under_way(path, process, run_history, complete.rows if complete else None)
-
-
-def _complete(path: Path, process: Holder | None) -> RunStatus:
-    ds = result_file.open_result(path)
-    rows, failed = ds.sizes["row"], int(np.count_nonzero(result_file.failed(ds)))
-    status = by_status(ds["status"].values)
-    return RunStatus(
-        str(path), "complete", rows, rows, failed, 0, status, None, None, process, rows
-    )
-
-
-def _under_way(
-    path: Path, process: Holder | None, run_history: History, complete_rows: int | None
-) -> RunStatus:
+    held, process = holder(folder), None
+    if held and is_held(folder):
+        process = {"host": computer(held[0]), "pid": held[1]}
+    complete_rows = None
+    if path.is_file() or not run_history:
+        ds = result_file.open_result(path)
+        complete_rows = ds.sizes["row"]
+        if not run_history or run_history.complete:
+            failed, status = int(result_file.failed(ds).sum()), by_status(ds["status"].values)
+            counts = complete_rows, complete_rows, failed, 0, status
+            return RunStatus(str(path), "complete", *counts, None, None, process, complete_rows)
     kept, latest = run_history.kept, run_history.latest
     # From the first rows on, if there are others: before them, the model may have been compiled.
     began, since = (latest[0].time, latest[1:]) if latest[1:] else (run_history.run.time, latest)
@@ -92,9 +80,9 @@ def _under_way(
     rate = sum(record.rows for record in since) / seconds if seconds > 0 else None
     total, done = run_history.run.rows, sum(record.rows for record in kept)
     failed, left = sum(record.failed for record in kept), total - done
-    status: Counter[str] = Counter()
+    by_label: Counter[str] = Counter()
     for record in kept:
-        status.update(record.status)
+        by_label.update(record.status)
     state, seconds_left = "running" if process else "interrupted", left / rate if rate else None
-    counts = total, done, failed, left, dict(status)
+    counts = total, done, failed, left, dict(by_label)
     return RunStatus(str(path), state, *counts, rate, seconds_left, process, complete_rows)

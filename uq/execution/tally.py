@@ -1,7 +1,6 @@
 """The rows of a run: counted wherever they are kept, or kept in memory as they arrive."""
 
 from collections import Counter
-from collections.abc import Mapping
 from math import prod
 from typing import Any
 
@@ -10,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Status
-from uq.execution.chunk_file import pack, row_type, unpack
+from uq.execution.chunk_file import Block, pack, row_type, unpack
 from uq.result.preview import Preview
 from uq.result.workload import Workload
 from uq.study.columns import columns_of, failed_rows
@@ -22,8 +21,8 @@ Failures = dict[str, tuple[int, str]]
 """Status label -> number of the first row with that status, and its message."""
 
 
-class Tally:
-    """Counts of rows by how they ended.
+class MemoryStore:
+    """The rows of one run, counted and kept in memory as they arrive.
 
     Parameters
     ----------
@@ -56,13 +55,12 @@ class Tally:
         self.status: Counter[str] = Counter()
         self.preview = Preview(workload)
         self.row_type = row_type(workload)
+        self._pending: list[tuple[int, NDArray[Any]]] = []
 
-    def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
-        """Count some rows."""
-        self.done += rows
-        self.failed += failed
-        self.status.update(status)
-        self.failures = joined_failures(self.failures, failures)
+    @property
+    def missing(self) -> list[Block]:
+        """Blocks of missing rows, before the first rows arrive."""
+        return [(0, self.total)]
 
     @property
     def shapes_all_wrong(self) -> str | None:
@@ -75,38 +73,8 @@ class Tally:
         """Status label -> message of the first row with that status."""
         return {label: f"row {row}: {text}" for label, (row, text) in self.failures.items()}
 
-    def counts(
-        self, columns: Mapping[str, NDArray[Any]], status: NDArray[np.int8]
-    ) -> tuple[int, int, dict[str, int]]:
-        """Return the number of some rows, of the failed ones, and of each status."""
-        required = (
-            (output, columns[name])
-            for name, output in self.workload.model.outputs.items()
-            if not output.may_be_undefined
-        )
-        return len(status), int(np.count_nonzero(failed_rows(status, required))), by_status(status)
-
-
-class MemoryStore(Tally):
-    """The rows of one run, as they arrive.
-
-    Parameters
-    ----------
-    workload : Workload
-
-    Attributes
-    ----------
-    missing : list of (int, int)
-        Blocks of rows that are missing at the start: all.
-    """
-
-    def __init__(self, workload: Workload) -> None:
-        super().__init__(workload)
-        self.missing = [(0, self.total)]
-        self._data = np.empty(self.total, self.row_type)
-
     def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
-        """Keep the rows from `start` on.
+        """Count and keep the rows from `start` on.
 
         Parameters
         ----------
@@ -115,20 +83,45 @@ class MemoryStore(Tally):
         chunk : Chunk
         """
         data = pack(self.row_type, rows, chunk.columns, chunk.status)
-        self._data[start : start + len(data)] = data
-        self.count(*self.counts(chunk.columns, chunk.status), chunk.failures)
+        self._pending.append((start, data))
+        self.count(*self.counts(data), chunk.failures)
 
     def keep_up(self) -> None:
         """Do nothing: these rows are written nowhere."""
 
+    def counts(self, data: NDArray[Any]) -> tuple[int, int, dict[str, int]]:
+        """Return the number of packed rows, of the failed ones, and of each status."""
+        required = (
+            (output, data["columns"][name])
+            for name, output in self.workload.model.outputs.items()
+            if not output.may_be_undefined
+        )
+        status = data["status"]
+        return len(data), int(np.count_nonzero(failed_rows(status, required))), by_status(status)
+
+    def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
+        """Count some rows."""
+        self.done += rows
+        self.failed += failed
+        self.status.update(status)
+        self.failures = joined_failures(self.failures, failures)
+
     def chunk(self) -> Chunk:
         """Return outputs and status of the rows of a complete run."""
-        return Chunk(*unpack(self._data)[1:], self.failures)
+        return Chunk(*self._unpacked()[1:], self.failures)
 
     def dataset(self) -> xr.Dataset:
         """Return the result of a complete run."""
         assert self.workload.finish is not None
-        return self.workload.finish(*unpack(self._data), self.examples)
+        return self.workload.finish(*self._unpacked(), self.examples)
+
+    def _unpacked(self) -> tuple[Rows, dict[str, NDArray[Any]], NDArray[np.int8]]:
+        """Return all rows in order; they are then kept no longer."""
+        rows = np.empty(self.total, self.row_type)
+        while self._pending:
+            start, data = self._pending.pop()
+            rows[start : start + len(data)] = data
+        return unpack(rows)
 
 
 def by_status(status: NDArray[np.int8]) -> dict[str, int]:

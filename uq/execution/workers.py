@@ -1,23 +1,53 @@
-"""Dask workers as a run sees them, whoever started them."""
+"""Dask workers, whoever started them, and the chunks of rows that they compute.
+
+The chunks of a killed worker are computed by another. A chunk that kills own workers `TRIES` times,
+or those of a cluster more often than dask's ``allowed-failures``, is halved until the guilty row is
+found, which is marked as crashed.
+"""
 
 import gc
 import logging
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from itertools import islice
+from typing import Any
 
-from distributed import Client
+from distributed import Client, Future, KilledWorker, as_completed
 from distributed.utils import silence_logging_cmgr
 
+from uq.contract import Status
+from uq.errors import InputError, RunError, one_line
+from uq.execution.dask_task import evaluate_rows
+from uq.execution.isolation import TRIES, spec_of
+from uq.result.workload import Workload
+from uq.study.evaluate import Chunk, RowFailure, lost_rows
+from uq.study.provenance import versions
+from uq.study.row_sampling import Rows
+
 _COUNT_SECONDS = 1.0
+_WAIT_SECONDS = 0.2
+
+_Sent = tuple[int, Rows, int]
+"""Number of the first row, the rows, and how often they have been sent."""
+
+Returned = tuple[int, Rows, Chunk, float]
+"""Number of the first row, the rows, their outputs, and what they cost [s], 0 if unknown."""
 
 
 class Workers:
-    """Workers that are connected, or about to be.
+    """Workers that are connected, or about to be, with the chunks that they have or will get.
 
-    Attributes
+    Parameters
     ----------
     client : distributed.Client
+    workload : Workload
+        With the model and settings of all rows.
+    row_limit : float or None
+        Time limit of a row [s].
+    watch : callable
+        Called regularly with the number of threads, and whether a chunk has arrived since the last
+        call; raises a `RunError` when no workers are to be expected.
     run : str
         Whose processes compute, as in `uq.execution.dask_task.evaluate_rows`; "" on an existing
         cluster.
@@ -26,26 +56,33 @@ class Workers:
     def __init__(
         self,
         client: Client,
+        workload: Workload,
+        row_limit: float | None = None,
         watch: Callable[[int, bool], None] = lambda *_: None,
         run: str = "",
     ) -> None:
-        self.client = client
-        self.run = run
+        self._client = client
+        self._workload = workload
+        self._spec = spec_of(workload)
+        self._row_limit = row_limit
         self._watch = watch
+        self._run = run
         self._threads, self._counted = 0, 0.0
+        self._under_way: dict[Future, _Sent] = {}
+        self._unsent: list[_Sent] = []  # the scheduler was out of reach
+        self._arrivals = as_completed(loop=client.loop, with_results=True, raise_errors=False)
 
-    @property
-    def connected(self) -> bool:
-        """Whether the scheduler can be reached."""
-        return bool(self.client.status == "running")
+    def __len__(self) -> int:
+        """Return the number of chunks that have not returned."""
+        return len(self._under_way) + len(self._unsent)
 
     @property
     def dashboard(self) -> str:
         """Address of the dashboard of an existing cluster, or ""."""
-        if self.run:  # nothing is behind the address that dask reports
+        if self._run:  # nothing is behind the address that dask reports
             return ""
         try:
-            return str(self.client.dashboard_link or "")
+            return str(self._client.dashboard_link or "")
         except (KeyError, OSError):  # no dashboard, or the scheduler has just gone
             return ""
 
@@ -55,30 +92,84 @@ class Workers:
 
         They are counted at most once a second, once there are any: the scheduler lists all workers.
         """
-        if not self.connected:
+        if not self._is_connected():
             return 0
         if not self._threads or time.monotonic() > self._counted + _COUNT_SECONDS:
             try:
-                self._threads = sum(self.client.nthreads().values())
+                self._threads = sum(self._client.nthreads().values())
             except OSError:  # the scheduler has just gone
                 return 0
             self._counted = time.monotonic()
         return self._threads
 
-    def watch(self, progress: bool = False) -> None:
-        """See whether there are workers; to be called regularly.
+    def _is_connected(self) -> bool:
+        return bool(self._client.status == "running")
 
-        Parameters
-        ----------
-        progress : bool
-            Whether a worker has delivered something since the last call.
+    def begun(self, threads: int) -> int:
+        """Return how many rows so many threads have begun; the others wait for their turn."""
+        return sum(len(rows.x) for _, rows, _ in islice(self._under_way.values(), threads))
+
+    def send(self, start: int, rows: Rows, tries: int = 1) -> None:
+        """Have some rows computed."""
+        how = self._spec, versions(), self._row_limit
+        data = rows.x, rows.seed, start, self._run
+        future = self._client.submit(evaluate_rows, *how, *data, pure=False)
+        self._under_way[future] = start, rows, tries
+        self._arrivals.add(future)
+
+    def returned(self) -> list[Returned]:
+        """Return what is back, after a short wait if there is nothing.
 
         Raises
         ------
+        InputError
+            When the workers or the model cannot be used.
         RunError
-            When no workers are to be expected.
+            When rows cannot be computed.
         """
-        self._watch(self.threads, progress)
+        condition = self._arrivals.thread_condition
+        with condition:
+            if not self._arrivals.has_ready():
+                condition.wait(_WAIT_SECONDS)
+        back: list[Returned] = []
+        for future, result in self._arrivals.next_batch(block=False):
+            sent = self._under_way.pop(future)
+            if future.status == "finished":
+                back.append((*sent[:2], *result))
+            elif future.status == "error":
+                back += self._failed(sent, result[1])
+            else:
+                self._unsent.append(sent)
+        self._watch(self.threads, bool(back))
+        if self._unsent and self._is_connected():
+            again, self._unsent = self._unsent, []
+            for sent in again:
+                self.send(*sent)
+        return back
+
+    def _failed(self, sent: _Sent, error: Any) -> list[Returned]:
+        """Send rows again that did not return, in halves if they killed their workers."""
+        start, rows, tries = sent
+        count = len(rows.x)
+        if isinstance(error, InputError):
+            raise error
+        if isinstance(error, KilledWorker):
+            if count == 1:
+                fault = RowFailure(Status.CRASHED, "killed every worker that computed it")
+                lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
+                return [(start, rows, lost, 0.0)]
+            half = count // 2
+            self.send(start, rows.part(0, half))
+            self.send(start + half, rows.part(half, count))
+        elif tries < TRIES:
+            self.send(start, rows, tries + 1)
+        else:
+            reason = one_line(error.__cause__ or error)
+            raise RunError(
+                f"no worker could compute rows {start} to {start + count - 1}: "
+                f"{type(error).__name__}: {reason}"
+            )
+        return []
 
 
 @contextmanager

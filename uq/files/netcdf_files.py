@@ -173,22 +173,19 @@ def _attributes(library: Any, file: int, name: bytes, most: int) -> int:
             library.H5Aget_name(attribute, len(called), called)
             label = called.value.decode(errors="replace")
             if label not in _OF_DIMENSIONS:
-                _values(library, attribute, library.H5Aget_space, library.H5Aget_type, label, most)
+                _values(library, attribute, "H5A", label, most)
     return kind
 
 
-def _values(
-    library: Any,
-    owner: int,
-    space_of: Callable[[int], int],
-    type_of: Callable[[int], int],
-    label: str,
-    most: int,
-) -> tuple[int, int]:
-    """Refuse values that are neither numbers nor text; return their number and size [bytes]."""
-    with _closing(space_of(owner), library.H5Sclose) as space:
+def _values(library: Any, owner: int, prefix: str, label: str, most: int) -> tuple[int, int]:
+    """Refuse values that are neither numbers nor text; return their number and size [bytes].
+
+    `prefix` begins the names of the library's functions for the owner: of an attribute "H5A", of a
+    dataset "H5D".
+    """
+    with _closing(getattr(library, f"{prefix}get_space")(owner), library.H5Sclose) as space:
         count = _done(library.H5Sget_simple_extent_npoints(space))
-    with _closing(type_of(owner), library.H5Tclose) as kind:
+    with _closing(getattr(library, f"{prefix}get_type")(owner), library.H5Tclose) as kind:
         size, type_class = library.H5Tget_size(kind), library.H5Tget_class(kind)
         if type_class not in _NUMBERS and type_class != _TEXT:
             raise ValueError(f"{label} has neither numbers nor text")
@@ -213,8 +210,7 @@ def _size_of(library: Any, dataset: int, label: str, most: int) -> int:
                 raise ValueError(f"{label} is packed in a way that needs a plugin")
         sides = (ctypes.c_uint64 * 32)()
         rank = _done(library.H5Pget_chunk(how, 32, sides)) if layout == _CHUNKED else 0
-    spaces, types = library.H5Dget_space, library.H5Dget_type
-    count, size = _values(library, dataset, spaces, types, label, most)
+    count, size = _values(library, dataset, "H5D", label, most)
     chunk = size
     for side in sides[:rank]:
         chunk *= side

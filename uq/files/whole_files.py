@@ -6,13 +6,15 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from uq.errors import InputError, RunError
 from uq.files.interrupts import undone
 from uq.files.paths import file_behind
 from uq.files.seal import seal
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def check_target(path: Path, size: int, option: str = "-o") -> None:
@@ -48,7 +50,7 @@ def check_target(path: Path, size: int, option: str = "-o") -> None:
         )
 
 
-def write(ds: xr.Dataset, path: Path) -> None:
+def write(ds: "xr.Dataset", path: Path) -> None:
     """Write a Dataset as netCDF4 under a temporary name, then rename it.
 
     Parameters
@@ -66,7 +68,7 @@ def write(ds: xr.Dataset, path: Path) -> None:
         ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
 
 
-def write_result(ds: xr.Dataset, path: Path) -> None:
+def write_result(ds: "xr.Dataset", path: Path) -> None:
     """Write a result as `write` does, with its checksum."""
     with whole(path) as temporary:
         ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")

@@ -105,16 +105,18 @@ def test_workers_are_started_for_longer_studies_only(
 ):
     monkeypatch.setattr(dispatch, "CHUNK_SECONDS", 0.05)
     monkeypatch.setattr("uq.execution.executor.SHORT_SECONDS", seconds)
-    monkeypatch.setattr(local_cluster, "CORES", 2)
+    monkeypatch.setattr("dask.system.CPU_COUNT", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = compute(load_study(path, "process_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
 
 
-def test_workers_are_not_counted_for_every_chunk():
+def test_workers_are_not_counted_for_every_chunk(write_study):
     counted = []
-    client = SimpleNamespace(status="running", nthreads=lambda: counted.append(1) or {"a": 2})
-    crew = Workers(client, lambda *_: None)
+    client = SimpleNamespace(
+        status="running", nthreads=lambda: counted.append(1) or {"a": 2}, loop=object()
+    )
+    crew = Workers(client, workload_of(load_study(write_study())))
     assert [crew.threads for _ in range(100)] == [2] * 100
     assert len(counted) < 100
     client.status = "closed"

@@ -26,10 +26,7 @@ def update(
         float | None,
         typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
     ] = None,
-    by: Annotated[
-        list[str] | None,
-        typer.Option(metavar="T", help='Time in the unit of the life, or such as "30 days".'),
-    ] = None,
+    by: given.Times = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
     model: given.ModelReference = None,
@@ -59,10 +56,7 @@ def next_inspection(
     inspect: Annotated[
         str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
     ],
-    at: Annotated[
-        list[str] | None,
-        typer.Option(metavar="T", help='Time in the unit of the life, or such as "30 days".'),
-    ] = None,
+    at: given.Times = None,
     units: Annotated[
         list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
     ] = None,

@@ -9,9 +9,12 @@ from typing import Annotated
 import typer
 
 from uq.cli import options as given
+from uq.cli import streams
 from uq.errors import InputError
 from uq.execution.options import RunOptions
 from uq.text.literals import plain_line
+
+_LARGEST = 20_000_000  # bytes: their checksum takes a small part of the time of a summary
 
 
 def status(result: given.ResultFile, json: given.Json = False) -> None:
@@ -110,7 +113,6 @@ def summary(
     from uq.assess.summary import summarise
     from uq.assess.summary_json import summary_facts
     from uq.cli import summary_tables
-    from uq.cli.changed_file import warn_if_altered
     from uq.cli.printing import print_json
     from uq.result.result import Result
 
@@ -119,20 +121,17 @@ def summary(
     answered = regime is None and not plain  # the answer is that of all rows
     if answered and not (fits or json):
         summary_tables.show_findings(findings)
-        warn_if_altered(result)
-        return
-    asked = regime is not None or fits or plain
-    statistics = (
-        summarise(opened, regime=regime, fits=fits, plain=plain) if asked else findings.summary
-    )
-    if not json:
-        summary_tables.show_summary(opened, statistics)
-        warn_if_altered(result)
-        return
-    answer = {"answer": conclude(findings).fact.json} if answered else {}
-    between = boundary_facts(opened, findings.boundary).json if answered else {}
-    print_json(summary_facts(statistics).json | between | answer)
-    warn_if_altered(result)
+    else:
+        statistics = findings.summary
+        if fits or not answered:
+            statistics = summarise(opened, regime=regime, fits=fits, plain=plain)
+        if json:
+            answer = {"answer": conclude(findings).fact.json} if answered else {}
+            between = boundary_facts(opened, findings.boundary).json if answered else {}
+            print_json(summary_facts(statistics).json | between | answer)
+        else:
+            summary_tables.show_summary(opened, statistics)
+    _warn_if_altered(result)
 
 
 def sensitivity(
@@ -159,14 +158,14 @@ def sensitivity(
 
 def levels(
     result: given.ResultFile,
-    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    output: given.OnlyOutput = None,
     plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
-    from uq.cli import levels
+    from uq.cli.levels import levels as show_levels
 
-    levels.levels(result, output, plain, json)
+    show_levels(result, output, plain, json)
 
 
 def fleet(
@@ -192,7 +191,7 @@ def fleet(
 
 def convergence(
     result: given.ResultFile,
-    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    output: given.OnlyOutput = None,
     json: given.Json = False,
 ) -> None:
     """Show estimates against rows, and if these are enough."""
@@ -276,13 +275,27 @@ def report(
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one self-contained page with everything."""
-    from uq.cli.changed_file import warn_if_altered
     from uq.render.html.dossier.chapters import dossier as in_order
     from uq.render.html.page import page, write_report
 
     path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
     write_report(result, path, in_order if dossier else page)
-    warn_if_altered(result)
+    _warn_if_altered(result)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
         print("no browser found; open this file yourself", file=sys.stderr)
+
+
+def _warn_if_altered(path: Path) -> None:
+    """Print a line if the checksum of a result is wrong; larger ones are left to `uq verify`."""
+    from uq.files.seal import is_intact
+    from uq.result.result_file import UNREADABLE
+
+    if path.stat().st_size > _LARGEST:
+        return
+    try:
+        altered = is_intact(path) is False
+    except UNREADABLE as error:
+        altered = not (isinstance(error, OSError) and (error.errno or 0) > 0)
+    if altered:
+        streams.complain(f"{path}: has changed since it was written: its checksum is wrong")

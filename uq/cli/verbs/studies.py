@@ -128,10 +128,12 @@ def plan(
 ) -> None:
     """Estimate what a study will take, from a few of its rows."""
     from uq.cli.plan import plan as show_plan
-    from uq.cli.run import loaded, warn
+    from uq.cli.progress import say_plain
+    from uq.cli.run import loaded
+    from uq.study.hints import hints
 
     asked = loaded(study, model, samples)
-    warn(asked)
+    say_plain(*hints(asked))
     show_plan(asked, workers, json)
 
 
