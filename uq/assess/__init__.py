@@ -52,14 +52,14 @@ Reading order; each part imports only those above it:
     level_table           variance shares by level as a Dataset
     fit_table             laws fitted to a lifetime as a table
     summary               the summary of a result
-    summary_json          the numbers of summaries, comparisons and levels as trees of facts
     convergence           convergence
     differences           differences between the statistics of two results
     fleet                 fleets
-    regime_boundary       the boundary between the regimes of a result
     summary_table         the summary of a result as a table
     running_estimates     running estimates of each output, and the errors of all rows
     comparison            two studies of one model
+    summary_json          the numbers of summaries, comparisons and levels as trees of facts
+    regime_boundary       the boundary between the regimes of a result
     findings              a result and what several tables and figures show of it
     regimes               the regimes of a result compared
     fleet_json            numbers of fleets as a tree of facts

@@ -281,7 +281,7 @@ def _output(output: "ComparedOutput") -> dict[str, Any]:
     return members
 
 
-def _compared(statistic: "ComparedStatistic") -> Fact:
+def _compared(statistic: "ComparedStatistic") -> dict[str, Any]:
     same = {"identical": True} if statistic.identical else {}
     if statistic.no_row_changes_sides:
         same = {"no_row_changes_sides": True}
@@ -289,7 +289,7 @@ def _compared(statistic: "ComparedStatistic") -> Fact:
     members["difference"] = estimate_json.numbers(statistic.difference) | same
     if statistic.ratio is not None:
         members["ratio"] = estimate_json.numbers(statistic.ratio) | same
-    return Fact(members, statistic.first.by)
+    return members
 
 
 def _alone(statistic: Statistic) -> Fact:
