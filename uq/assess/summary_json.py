@@ -6,7 +6,7 @@ from itertools import chain, groupby
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from uq.assess.fact import Fact
+from uq.assess.fact import Fact, Functions
 from uq.assess.input_changes import InputMoments, OnlyChange
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.regime_switching import switching
@@ -92,13 +92,17 @@ def _labels(shares: Mapping[str, Statistic]) -> dict[str, Fact]:
 def _described(described: Described, of_reports: bool) -> Fact:
     """Return the statistics of an element, each under its key."""
     members: dict[str, Any] = {"units": described.units}
+    by: dict[str, Functions] = {}
     for name in dict.fromkeys((*JSON_ORDER, *described.parts)):
         statistics = [s for s in described.parts[name] if of_reports or s.is_read_by(Reader.JSON)]
         if name in EMPTY:
             missing = not statistics and EMPTY[name] is None
             members[name] = Fact(None, (STATISTICS[name],)) if missing else {}
-        for (parent, form), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.form)):
-            _put(members, parent, _FORMS[form](list(group)))
+        for (parent, form), same in groupby(statistics, lambda s: (s.key[:-1], s.kind.form)):
+            group = list(same)
+            _put(members, parent, _FORMS[form](group))
+            by.setdefault(parent[0] if parent else "", group[0].by)
+    members |= {name: Fact(members[name], by[name]) for name in members if name in by}
     fits = {law: _fit(fit) for law, fit in described.fits.items()}
     return Fact(members | ({"fits": Fact(fits, (fits_of,))} if fits else {}))
 
@@ -147,13 +151,11 @@ def _numbers(group: list[Statistic]) -> dict[str, Fact]:
 
 def _counts(group: list[Statistic]) -> dict[str, Fact]:
     """Return numbers of rows; None where no number will do."""
-    counts = {statistic.key[-1]: statistic for statistic in group}
-    return {
-        name: Fact(
-            int(count) if isfinite(count := statistic.estimate.value) else None, statistic.by
-        )
-        for name, statistic in counts.items()
-    }
+    members = {}
+    for statistic in group:
+        count = statistic.estimate.value
+        members[statistic.key[-1]] = Fact(int(count) if isfinite(count) else None, statistic.by)
+    return members
 
 
 def _sides(group: list[Statistic]) -> dict[str, Any]:
