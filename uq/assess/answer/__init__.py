@@ -24,8 +24,8 @@ Reading order; each part imports only those above it:
     remedies            remedies: effects of a tighter tolerance, and each piece of advice
     tighter_tolerances  tighter tolerances
     sufficiency         sufficiency of the rows for the subject of a study
-    advice              advice by rules: mend, add rows, measure, tighten, or nothing
     facts               the answer as a whole: its parts in the order in which they are read
+    advice              advice by rules: mend, add rows, measure, tighten, or nothing
     answer              the answer of a study, computed once from what is known of its result
     verdict             verdict on the number of rows, in sentences
 """

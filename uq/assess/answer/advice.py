@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 from math import ceil, isfinite, isinf, isnan
-from typing import TYPE_CHECKING
 
 from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.facts import Answer
 from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.remedies import Advice
@@ -19,14 +19,11 @@ from uq.sampling.levels import CHANCE
 from uq.text.keys import key_of
 from uq.text.numbers import counted, grouped
 
-if TYPE_CHECKING:
-    from uq.assess.answer.facts import Answer
-
 _AS_SETTLED = ("known", "source", "tighten", "keep", "chance")
 """Rules of advice that is given even if everything is settled."""
 
 
-def advise(findings: Findings, answer: "Answer") -> Iterator[Advice]:
+def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
     """Yield advice, the most urgent first; none where inspections have weighted the rows.
 
     Parameters
@@ -94,14 +91,14 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
         )
 
 
-def _unknown(answer: "Answer") -> Iterator[Advice]:
+def _unknown(answer: Answer) -> Iterator[Advice]:
     """Yield the advice that no sample size settles an event without an estimate."""
     unknown = [event.sentence for event in answer.asked_events if isnan(event.share.value)]
     for text in [text for text in unknown if text][:1]:
         yield Advice("unknown", f"More rows would not help: {text[:1].lower()}{text[1:]}")
 
 
-def _leading(answer: "Answer") -> tuple[Contribution | None, Event | None]:
+def _leading(answer: Answer) -> tuple[Contribution | None, Event | None]:
     """Return the leading contribution to the subject of the study, and the event that it drives."""
     about = [(event.ranking, event) for event in answer.asked_events]
     lead_ranking = None if answer.lead is None or answer.regimes_first else answer.lead.ranking
@@ -111,7 +108,7 @@ def _leading(answer: "Answer") -> tuple[Contribution | None, Event | None]:
     return None, None
 
 
-def _measure(findings: Findings, answer: "Answer") -> Iterator[Advice]:
+def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
     leader, event = _leading(answer)
     if leader is None:
         return
@@ -161,7 +158,7 @@ def _measure(findings: Findings, answer: "Answer") -> Iterator[Advice]:
     )
 
 
-def _tighten(findings: Findings, answer: "Answer") -> Iterator[Advice]:
+def _tighten(findings: Findings, answer: Answer) -> Iterator[Advice]:
     leader, _ = _leading(answer)
     if leader is not None and any(
         mark_of(findings.result, name) != CHOSEN for name in leader.inputs
@@ -169,7 +166,7 @@ def _tighten(findings: Findings, answer: "Answer") -> Iterator[Advice]:
         yield from tighten(findings.result, answer.quantities[0], leader)
 
 
-def _keep(result: Result, answer: "Answer") -> Iterator[Advice]:
+def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
     """Yield the range to keep the leading input in, if the event differs significantly there."""
     _, event = _leading(answer)
     lead = answer.lead

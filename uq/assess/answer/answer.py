@@ -70,7 +70,7 @@ def without_advice(findings: Findings) -> Answer:
         regimes_first=bool(regimes) and result.analysis.outputs[:1] == (REGIME,),
         result=result,
         starts_alike=starts_alike(result) if regimes else "",
-        assumptions=assumptions(result),
+        unmeasured=assumptions(result),
     )
     with_levels = beside_levels(plain, _levels(findings, plain))
     about = with_levels.main_regimes if with_levels.regimes_first else ()

@@ -4,18 +4,25 @@ from collections.abc import Sized
 
 from uq.assess.answer.sources import ASSUMED, mark_of
 from uq.assess.answer.wording import called, joined
+from uq.assess.fact import Fact
 from uq.result.result import Result
 from uq.study.file import Tied
 from uq.text.numbers import counted
 
 
-def assumptions(result: Result) -> tuple[str, ...]:
-    """Return sentences on assumed laws and fixed values, and on laws without a source.
+def assumptions(result: Result) -> dict[str, Fact]:
+    """Return the assumed laws and fixed values, and the laws without a source.
 
     Parameters
     ----------
     result : Result
         A result.
+
+    Returns
+    -------
+    dict of str to Fact
+        ``assumed_laws``, ``assumed_values`` and ``laws_without_source``, as far as there are any:
+        the ``inputs``, and the number that they are ``of``.
     """
     study = result.study.uncertain
     tied = [name for name, law in study.items() if isinstance(law, Tied)]
@@ -28,16 +35,23 @@ def assumptions(result: Result) -> tuple[str, ...]:
         if not how and "initial" not in result.dataset[name].attrs
     ]
     values = [name for name, how in fixed.items() if how == ASSUMED]
-    groups = (
-        (f"{_counted_with_verb(assumed, laws, 'law')} assumed", assumed),
-        (f"{_counted_with_verb(values, fixed, 'fixed value')} assumed", values),
-        ("No source says how well these laws are known", unstated),
-    )
-    return tuple(
-        f"{clause}: {joined([called(name) for name in names])}."
-        for clause, names in groups
+    groups = {
+        "assumed_laws": (f"{_counted_with_verb(assumed, laws, 'law')} assumed", assumed, laws),
+        "assumed_values": (
+            f"{_counted_with_verb(values, fixed, 'fixed value')} assumed",
+            values,
+            fixed,
+        ),
+        "laws_without_source": ("No source says how well these laws are known", unstated, laws),
+    }
+    return {
+        key: Fact(
+            {"inputs": names, "of": len(total)},
+            words=f"{clause}: {joined([called(name) for name in names])}.",
+        )
+        for key, (clause, names, total) in groups.items()
         if names
-    )
+    }
 
 
 def _counted_with_verb(names: Sized, total: Sized, noun: str) -> str:

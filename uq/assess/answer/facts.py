@@ -1,5 +1,6 @@
 """The answer as a whole: its parts in the order in which they are read."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -12,6 +13,7 @@ from uq.assess.answer.wording import share_text
 from uq.assess.fact import Fact
 from uq.assess.summary import status_counts
 from uq.result.result import Result
+from uq.stats.variance_components import nested_shares
 from uq.text.numbers import grouped
 
 RARE = 0.01
@@ -42,8 +44,8 @@ class Answer:
         Sentence on a start that is equal in all rows but might decide the regime, or "".
     enough : Enough
         Sufficiency of the sample size.
-    assumptions : tuple of str
-        Sentences on assumed laws and fixed values.
+    unmeasured : dict of str to Fact
+        Assumed laws and fixed values, and laws without a source (`assumptions.assumptions`).
     ties : str
         Sentence on inputs tied to a leading input, or "".
     mixing : Fact
@@ -63,7 +65,7 @@ class Answer:
     levels: VarianceComponents | None = None
     starts_alike: str = ""
     enough: Enough = field(default_factory=Enough)
-    assumptions: tuple[str, ...] = ()
+    unmeasured: Mapping[str, Fact] = field(default_factory=dict)
     ties: str = ""
     mixing: Fact = field(default_factory=lambda: Fact({}))
     result: Result | None = None
@@ -98,8 +100,11 @@ class Answer:
             inputs explain alone, what is ``unexplained`` by any single one, with the ``totals`` of
             an expansion where interactions could change the order. The earliest rows have ``lives``
             (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of
-            them. Beyond the JSON: ``b_lives`` of a quantity, the assumed quantities that it is
-            ``scaled_by``, the ``unit`` of a promise, and whether the rows ``settled`` the question.
+            them. Beyond the JSON: ``title``; ``unmeasured``: assumed laws and fixed values, and
+            laws without a source; ``b_lives`` of a quantity, and the assumed quantities that it is
+            ``scaled_by``; the ``unit`` in which a promise, a range, a limit or a tolerance is
+            shown, and its length (``per``); ``settled``, whether the rows are enough for the
+            question of the study; ``asked``, the path of the quantity or the regimes that this is.
         """
         result = self.result
         members: dict[str, Any] = {
@@ -114,8 +119,25 @@ class Answer:
             members["intermingled"] = self.mixing
         members["levels"] = self.levels and self.levels.fact
         members["advice"] = Fact({advice.rule: advice.fact for advice in self.advice})
-        counts = (("rows",), ("failed",))
-        return Fact(members, (status_counts,), words=self.rows_sentence, mentions=counts)
+        of_lead = [] if self.lead is None else ["quantities", self.lead.name]
+        more = {
+            "title": self.title,
+            "asked": ["regimes"] if self.regimes_first else of_lead,
+            "unmeasured": Fact(self.unmeasured),
+        }
+        by_member = dict.fromkeys(("rows", "failed"), (status_counts,))
+        return Fact(
+            members,
+            by_member=by_member | {"levels": (nested_shares,)},
+            words=self.rows_sentence,
+            mentions=(("rows",), ("failed",)),
+            more=more,
+        )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Sentences on assumed laws and fixed values."""
+        return tuple(fact.sentence for fact in self.unmeasured.values())
 
     @property
     def rows_sentence(self) -> str:

@@ -84,7 +84,7 @@ class VarianceComponents:
         another = None
         if self.another is not None:
             numbers = estimate_json.numbers(self.another)
-            another = Fact(numbers, (switching,), words=self.switching, mentions=(("value",),))
+            another = Fact(numbers, words=self.switching, mentions=(("value",),))
         return Fact(
             {
                 "sentence": self.sentence,
@@ -93,6 +93,7 @@ class VarianceComponents:
                 "another_regime": another,
             },
             (nested_shares,),
+            {"another_regime": (switching,)},
             mentions=tuple(("shares", name, "value") for name in shares),
             more={"inputs": {level.name: list(level.inputs) for level in self.levels}},
         )

@@ -70,6 +70,7 @@ class Limit:
             | estimate_json.numbers(self.share),
             (limit_of, *CURVE_FUNCTIONS),
             mentions=(("value",),) if self.why else (("at",),),
+            more={"unit": self.unit.name, "per": self.unit.per},
         )
 
     @property

@@ -214,7 +214,7 @@ class Advice:
         if self.tolerances:
             members["tolerances"] = [tolerance.fact for tolerance in self.tolerances]
         mentions = (("rows",),) if self.rows is not None else ()
-        return Fact(members, by_member={"rows": (unsettled,)}, mentions=mentions)
+        return Fact(members, (unsettled,), mentions=mentions)
 
     @property
     def also(self) -> str:
