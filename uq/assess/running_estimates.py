@@ -40,13 +40,13 @@ def converging(result: Result, output: str | None = None) -> dict[str, Convergin
     running, errors = running_estimates(result, output), enough(result, output).to_dict("index")
     return {
         str(name): Converging(
-            {str(label): _sizes(group) for label, group in lines.groupby("estimate", sort=False)},
+            {str(label): _by_size(group) for label, group in lines.groupby("estimate", sort=False)},
             errors.get(name),
         )
         for name, lines in running.groupby("output", sort=False)
     }
 
 
-def _sizes(lines: pd.DataFrame) -> Sizes:
+def _by_size(lines: pd.DataFrame) -> Sizes:
     columns = (lines[name].tolist() for name in ("samples", "value", "low", "high"))
     return [(samples, Estimate(*numbers)) for samples, *numbers in zip(*columns, strict=True)]

@@ -7,7 +7,7 @@ from typing import Any
 
 from uq.assess.estimators import MEAN, SD
 from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.moments import Moments
