@@ -16,7 +16,7 @@ from uq.assess.pairing import Pair
 from uq.assess.scaling import population
 from uq.assess.summary import Summary, summarise
 from uq.errors import InputError
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.study.file import AnalysisTable
 

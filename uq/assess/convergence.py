@@ -15,7 +15,7 @@ from uq.assess.summary import Described, summarise
 from uq.assess.targets import split_name
 from uq.errors import InputError
 from uq.indices.methods import METHODS, indices_of, piloted_by
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.result.variables import error_name
 from uq.sampling.designs import DESIGNS
@@ -170,7 +170,9 @@ def compared(result: Result, element: Element, described: Described) -> Errors:
         if statistic and has_interval
         else np.nan
     )
-    numerical = _own_error(result, element)
+    error = stated_error(result, element)
+    sizes = np.abs(error.values[np.isfinite(error.values)]) if error else np.empty(0)
+    numerical = float(sizes.mean()) if len(sizes) else np.nan
     words = _WARNING.format(numerical=numerical, units=element.units, sampling=sampling)
     return Errors(label, sampling, numerical, words if numerical > sampling else "")
 
@@ -179,14 +181,6 @@ _WARNING = (
     "the rows' own error ({numerical:.3g} {units}) is larger than that of sampling"
     " ({sampling:.3g}): more rows do not help, finer settings or longer averages do"
 )
-
-
-def _own_error(result: Result, element: Element) -> float:
-    error = stated_error(result, element)
-    if error is None:
-        return np.nan
-    sizes = np.abs(error.values[np.isfinite(error.values)])
-    return float(sizes.mean()) if len(sizes) else np.nan
 
 
 def _sizes(result: Result) -> list[int]:

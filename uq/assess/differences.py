@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from itertools import chain
 from math import isnan
 
-from uq.assess import estimators
-from uq.assess.estimators import SelectedRows
+from uq.assess.estimators import SelectedRows, in_categories, whole
 from uq.assess.pairing import Pair
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.summary import REGIME, Shares, Summary
 from uq.contract import Output
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats import two_samples
 from uq.stats.estimate import NOTHING, Estimate
 
@@ -71,7 +70,7 @@ def compared_shares(
 
 
 def _shares(pair: Pair, shares: list[Shares], name: str) -> Iterator[tuple[str, ComparedStatistic]]:
-    members = [estimators.in_categories(rows, name) for rows in pair.rows]
+    members = [in_categories(rows, name) for rows in pair.rows]
     for label in shares[0]:
         both = [of_labels[label] for of_labels in shares if label in of_labels]
         occurs = name == REGIME or any(statistic.facts["count"] for statistic in both)
@@ -102,7 +101,7 @@ def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> 
     estimator = both[0].estimator
     samples = [] if estimator is None else [estimator.sample(element) for element in elements]
     present = [sample for sample in samples if sample is not None]
-    are_equal = pair.are_equal([estimators.whole(element) for element in elements])
+    are_equal = pair.are_equal([whole(element) for element in elements])
     return _compared(pair, [statistic.best for statistic in both], present, are_equal)
 
 

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from uq.assess.independent_inputs import independent_inputs
 from uq.contract import Floats
-from uq.result.elements import Element, flags
+from uq.result.element import Element
+from uq.result.elements import flags
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.contract import Status
-from uq.result.elements import Element, Floats, Mask, flags
+from uq.contract import Floats, Mask, Status
+from uq.result.element import Element
+from uq.result.elements import flags
 from uq.result.result import Result
 from uq.stats import order_statistics
 

@@ -11,14 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from uq.assess.targets import lightened, number_of
+from uq.contract import Floats
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, piloted_by
 from uq.indices.sample import DesignSample
-from uq.result.elements import (
-    Element,
-    Floats,
-    flags,
-)
+from uq.result.element import Element
+from uq.result.elements import flags
 from uq.result.result import Result
 from uq.stats.intervals import upper_probability
 from uq.stats.order_statistics import is_within

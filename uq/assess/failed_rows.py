@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uq.assess.statistic import Context, Maker, Statistic
-from uq.result.elements import Element, Floats, Mask
+from uq.contract import Floats, Mask
+from uq.result.element import Element
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import Replicates, replicates_of_some, share_interval
 

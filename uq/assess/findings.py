@@ -15,7 +15,7 @@ from uq.assess.statistic import Statistic
 from uq.assess.summary import Summary, summarise
 from uq.contract import Floats
 from uq.errors import InputError
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import Result
 
 if TYPE_CHECKING:

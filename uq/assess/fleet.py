@@ -13,7 +13,7 @@ from uq.assess.row_inputs import inputs_of
 from uq.assess.scaling import without_effect
 from uq.assess.summary import why_no_intervals
 from uq.errors import InputError, choices
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.nesting import Nesting, samples_have, size_in_words
 from uq.result.result import AnyResult, Result
 from uq.sampling.designs import several

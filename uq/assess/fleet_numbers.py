@@ -96,7 +96,11 @@ class FleetNumbers:
         """Return the probability that no more have ended before a time than allowed."""
         if self._allow >= self._size:
             return Banded(*3 * (Estimate(1.0, 1.0, 1.0),))
-        estimates = [_complement(times.probability_below(time)) for times in self._beyond]
+        estimates = [
+            replace(p, value=1 - p.value, low=1 - p.high, high=1 - p.low)
+            for times in self._beyond
+            for p in [times.probability_below(time)]
+        ]
 
         def band(share: float) -> Estimate:
             p = self._unit_at(time, 1 - share)
@@ -116,7 +120,8 @@ class FleetNumbers:
     ) -> Banded:
         estimate, *lost = estimates
         if self._varies and not isnan(estimate.value):
-            low, high = _in_order(band(LOW), band(HIGH))
+            # On a plateau the computed roots may cross.
+            low, high = sorted((band(LOW), band(HIGH)), key=lambda end: end.value)
         else:
             low = high = (
                 Estimate() if self._varies else replace(estimate, reason=estimate.reason or ALIKE)
@@ -225,15 +230,6 @@ def _around(estimate: Estimate) -> Estimate:
     )
 
 
-def _in_order(low: Estimate, high: Estimate) -> tuple[Estimate, Estimate]:
-    """Return the ends of a band in order: on a plateau the computed roots may cross."""
-    return (high, low) if low.value > high.value else (low, high)
-
-
 def _times(estimate: Estimate, factor: float) -> Estimate:
     value, low, high = (factor * number for number in estimate.numbers)
     return replace(estimate, value=value, low=low, high=high)
-
-
-def _complement(estimate: Estimate) -> Estimate:
-    return replace(estimate, value=1 - estimate.value, low=1 - estimate.high, high=1 - estimate.low)

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 
-from uq.result.elements import Floats
+from uq.contract import Floats
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.truncation import factor_of

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from uq.result.elements import Floats
+from uq.contract import Floats
 from uq.result.result import Result
 from uq.study.file import StudyFile, Tied
 from uq.text.literals import shown

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.result.elements import Element, Floats
+from uq.contract import Floats
+from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats import order_statistics
 from uq.study.file import USUAL, AnalysisTable

@@ -8,7 +8,8 @@ from math import nan
 import numpy as np
 
 from uq.assess.statistics.quantiles import B_LIVES
-from uq.result.elements import Element, Floats, Mask
+from uq.contract import Floats, Mask
+from uq.result.element import Element
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import CONFIDENCE, upper_probability
 from uq.stats.location_scale import FAMILIES, Family, anderson_darling, fit

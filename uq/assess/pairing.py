@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.assess.estimators import MEAN, SD, Estimator, SelectedRows
-from uq.result.elements import Floats
+from uq.contract import Floats
 from uq.result.result import Result
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate

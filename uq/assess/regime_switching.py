@@ -50,7 +50,9 @@ def switching(
     defined = np.isfinite(elsewhere)
     if not defined.any():
         return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), elsewhere
-    value, clusters = float(elsewhere[defined].mean()), _clusters(rows, place)
+    value, clusters = float(elsewhere[defined].mean()), rows.replicates
+    if not isinstance(clusters, Clusters):
+        clusters = Clusters(place.sample, place.samples)
     if weights is not None:
         return weighted_share(
             elsewhere[defined], weights[place.sample[defined]], clusters[defined]
@@ -60,11 +62,6 @@ def switching(
         value, means, rows=int(defined.sum()), samples=clusters.samples
     )
     return Estimate(value, float(low), float(high)), elsewhere
-
-
-def _clusters(rows: Result, place: Nesting) -> Clusters:
-    replicates = rows.replicates
-    return replicates if isinstance(replicates, Clusters) else Clusters(place.sample, place.samples)
 
 
 def _elsewhere(unit: NDArray[np.integer], codes: NDArray[np.integer]) -> Floats:

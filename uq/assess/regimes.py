@@ -9,14 +9,12 @@ from uq.assess.regime_boundary import EXPONENT, boundary
 from uq.assess.statistics.between_regimes import between_share
 from uq.assess.summary import REGIME, category_shares
 from uq.assess.targets import IndexTarget, category_targets, number_of
+from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.index import RefusedError
 from uq.indices.methods import KS, METHODS
 from uq.indices.sample import DesignSample
-from uq.result.elements import (
-    Floats,
-    flags,
-)
+from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
 from uq.stats.moments import moments
 from uq.stats.order_statistics import is_within

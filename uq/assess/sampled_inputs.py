@@ -8,7 +8,7 @@ import scipy  # which imports scipy.stats when it is first used
 
 from uq.assess.fact import Fact
 from uq.assess.independent_inputs import independent_inputs
-from uq.result.elements import Floats
+from uq.contract import Floats
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.law import Law

@@ -158,18 +158,14 @@ def sensitivities(
         )
         (whole if target_indices.refused else used).append(target_sample.whole)
     if nested:
-        targets = {name: _with_reason(target_indices) for name, target_indices in targets.items()}
+        targets = {
+            name: replace(indices, refused=f"{indices.refused}; {ONE_ROW}")
+            if indices.refused
+            else indices
+            for name, indices in targets.items()
+        }
     counts = _counts(*(used or whole), rows=len(sample.values))
     return Sensitivities(method, *counts, targets, result)
-
-
-def _with_reason(target_indices: TargetIndices) -> TargetIndices:
-    """Return indices of one row a sample, with that reason where there are none."""
-    return (
-        replace(target_indices, refused=f"{target_indices.refused}; {ONE_ROW}")
-        if target_indices.refused
-        else target_indices
-    )
 
 
 def indices_of_target(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from uq.contract import Mask
-from uq.result.elements import Element
+from uq.result.element import Element
 
 
 def off_by_error(element: Element, error: Element, sign: int) -> Element:

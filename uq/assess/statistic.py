@@ -11,7 +11,7 @@ from uq.assess.estimators import Estimator
 from uq.assess.joint_bounds import JointBound, joint_bounds
 from uq.assess.population import as_sample
 from uq.assess.sample import Sample
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_text import interval_text, value_text

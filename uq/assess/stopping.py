@@ -19,7 +19,7 @@ from uq.assess.scaling import population
 from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
 from uq.indices.methods import METHODS, kinds_with_intervals
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 from uq.sampling.layouts import PATHS

@@ -19,7 +19,7 @@ HOPELESS = 4.0
 """So many times the budget is out of reach; a width is known to a factor of two."""
 
 
-def sentence(design: "DesignTable", result: Result) -> str:
+def why_ended(design: "DesignTable", result: Result) -> str:
     """State why a run ended, and the estimate at that point.
 
     Parameters

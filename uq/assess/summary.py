@@ -6,7 +6,6 @@ from itertools import chain
 
 import numpy as np
 
-from uq.assess import stopping_status
 from uq.assess.estimators import in_categories, share
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.life_fit import Fit, fits_of
@@ -15,11 +14,10 @@ from uq.assess.sample import share_of
 from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
-from uq.result.elements import (
-    Element,
-    Mask,
-    flags,
-)
+from uq.assess.stopping_status import why_ended
+from uq.contract import Mask
+from uq.result.element import Element
+from uq.result.elements import flags
 from uq.result.nesting import size_in_words
 from uq.result.result import Result
 from uq.result.weights import ONLY_INSPECTED
@@ -307,7 +305,7 @@ def _notes(result: Result) -> list[str]:
     design = result.study.design
     notes = []
     if design.until is not None and not result.has_weights:
-        notes.append(stopping_status.sentence(design, result))
+        notes.append(why_ended(design, result))
     if result.is_nested:
         place = result.nesting
         size = size_in_words(place.samples, place.units, place.repeats)

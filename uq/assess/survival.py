@@ -9,7 +9,7 @@ from uq.assess.failed_rows import outer, with_failed_at
 from uq.assess.population import as_sample
 from uq.assess.sample import Sample
 from uq.assess.scaling import population
-from uq.result.elements import Floats
+from uq.contract import Floats
 from uq.result.result import AnyResult, Result
 from uq.stats.intervals import Ends
 from uq.stats.survival_band import simultaneous_band

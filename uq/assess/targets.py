@@ -9,7 +9,9 @@ import numpy as np
 
 from uq.assess.sample import censored_before
 from uq.assess.transforms import heaviness, logarithm, rank, rate
-from uq.result.elements import Element, Floats, flags
+from uq.contract import Floats
+from uq.result.element import Element
+from uq.result.elements import flags
 from uq.result.result import Result
 from uq.stats.intervals import sized
 from uq.text.numbers import counted

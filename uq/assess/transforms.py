@@ -6,8 +6,8 @@ about these rows.
 
 import numpy as np
 
-from uq.contract import LARGEST_VALUE
-from uq.result.elements import Element, Floats
+from uq.contract import LARGEST_VALUE, Floats
+from uq.result.element import Element
 from uq.stats.order_statistics import mid_ranks
 from uq.stats.tails import heavier_tail
 from uq.text.numbers import counted, percent

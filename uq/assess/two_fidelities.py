@@ -18,7 +18,7 @@ from uq.assess.sample import share_of
 from uq.assess.statistics.thresholds import SIDES
 from uq.contract import Floats
 from uq.errors import InputError, first_fault_alone
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.result.result_file import build_rows
 from uq.sampling.named_values import read_settings

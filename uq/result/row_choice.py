@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.errors import InputError
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.order_statistics import quantile, rows_to_reach
 from uq.text.numbers import counted

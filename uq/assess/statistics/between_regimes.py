@@ -9,17 +9,11 @@ from scipy import special
 
 from uq.assess.statistic import Context, Reader, Statistic, StatisticKind
 from uq.assess.targets import number_of
-from uq.result.elements import Element
+from uq.contract import Floats
+from uq.result.element import Element
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.intervals import (
-    CONFIDENCE,
-    UNKNOWN,
-    Floats,
-    Replicates,
-    scatter_interval,
-    upper_probability,
-)
+from uq.stats.intervals import CONFIDENCE, UNKNOWN, Replicates, scatter_interval, upper_probability
 from uq.stats.quantile_functions import normal
 from uq.stats.tails import lacks_variance
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from uq.assess.population import as_sample
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.result.result import Result
 from uq.result.variables import error_name
 from uq.stats.estimate import Estimate

@@ -7,7 +7,7 @@ from math import isfinite
 from uq.assess.scaling import why_not_integrated
 from uq.assess.statistic import FACT, Context, Reader, Statistic
 from uq.assess.statistics.quantiles import B_LIVES, LIFE
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats.estimate import Estimate
 from uq.stats.estimate_json import number
 

@@ -6,7 +6,7 @@ from math import isnan
 
 from uq.assess.estimators import MEAN, SD
 from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.moments import Moments
 from uq.stats.tails import heavier_tail

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from uq.assess.failed_rows import bounded
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats.estimate import NOTHING, Estimate
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}

@@ -7,7 +7,7 @@ from math import nan
 from uq.assess.failed_rows import bounded
 from uq.assess.sample import Sample
 from uq.assess.statistic import Context, Listing, Reader, Statistic, StatisticKind
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 
@@ -30,43 +30,40 @@ UNDEFINED = StatisticKind(
 @bounded(of_magnitude=True)
 def thresholds(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield P(above), P(below) and the share that is undefined for each threshold of an output."""
-    for threshold in context.analysis.thresholds.get(element.output, ()):
-        yield from _probabilities(context.sample(element), threshold)
-
-
-def _probabilities(sample: Sample, threshold: float) -> Iterator[Statistic]:
-    element = sample.element
-    kept = ~element.failed
+    sample, kept = context.sample(element), ~element.failed
     share_undefined = float(element.undefined[kept].mean()) if kept.any() else nan
     undefined = {"undefined": estimate_json.number(share_undefined)}
-    estimates = (sample.probability_above(threshold), sample.probability_below(threshold))
-    guesses = sample.ended_by(threshold)
-    for (side, sign), estimate in zip(SIDES.items(), estimates, strict=True):
-        statistic = Statistic(
-            ("thresholds", repr(threshold), side),
-            f"P({sign}{threshold!r})",
-            estimate,
-            kind=PROBABILITY,
-            heading=f"P({side})",
-            falls=side == "below",
+    for threshold in context.analysis.thresholds.get(element.output, ()):
+        key = ("thresholds", repr(threshold))
+        estimates = (sample.probability_above(threshold), sample.probability_below(threshold))
+        guesses = sample.ended_by(threshold)
+        for (side, sign), estimate in zip(SIDES.items(), estimates, strict=True):
+            statistic = Statistic(
+                (*key, side),
+                f"P({sign}{threshold!r})",
+                estimate,
+                kind=PROBABILITY,
+                heading=f"P({side})",
+                falls=side == "below",
+                at=threshold,
+                facts=undefined,
+                estimator=sample.share_estimator(threshold, side),
+                by=sample.by[f"probability_{side}"],
+            )
+            if guesses is not None:
+                guess = guesses[statistic.falls]
+                guessed = replace(statistic, estimate=guess, by=sample.by["ended_by"])
+                statistic = _with_guess(statistic, guessed)
+            yield statistic
+        yield Statistic(
+            (*key, "undefined"),
+            "",
+            Estimate(share_undefined),
+            kind=UNDEFINED,
+            heading="undefined",
             at=threshold,
             facts=undefined,
-            estimator=sample.share_estimator(threshold, side),
-            by=sample.by[f"probability_{side}"],
         )
-        if guesses is not None:
-            guess = replace(statistic, estimate=guesses[statistic.falls], by=sample.by["ended_by"])
-            statistic = _with_guess(statistic, guess)
-        yield statistic
-    yield Statistic(
-        ("thresholds", repr(threshold), "undefined"),
-        "",
-        Estimate(share_undefined),
-        kind=UNDEFINED,
-        heading="undefined",
-        at=threshold,
-        facts=undefined,
-    )
 
 
 def _with_guess(plain: Statistic, guess: Statistic) -> Statistic:

@@ -6,7 +6,7 @@ from math import isnan
 from typing import Any
 
 from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
-from uq.result.elements import Element
+from uq.result.element import Element
 from uq.stats.estimate import Estimate
 from uq.stats.order_statistics import (
     joint_bounds,
