@@ -45,8 +45,7 @@ def _watch() -> None:
 def _install() -> None:
     from numba.core.caching import FunctionCache
 
-    places: list[Any] = FunctionCache._impl_class._locator_classes
-    places.insert(0, SourcesLocator)
+    FunctionCache._impl_class._locator_classes.insert(0, SourcesLocator)
 
 
 @cache
@@ -84,7 +83,7 @@ class SourcesLocator:
         package = module.partition(".")[0]
         if package in own_packages() or (package not in _models and is_installed(package)):
             return None
-        if not sources_of(module).code:
+        if not sources_of(module)[0]:
             return None
         locator = cls(function, module)
         try:
@@ -121,8 +120,8 @@ def key_of(module: str) -> str:
     module : str
         Its full name.
     """
-    sources = sources_of(module)
-    whole = digest(sources.code)
-    for package in sorted({name.partition(".")[0] for name in sources.others}):
-        whole.update(repr(signature(package, sources.others)).encode())
+    code, others = sources_of(module)
+    whole = digest(code)
+    for package in sorted({name.partition(".")[0] for name in others}):
+        whole.update(repr(signature(package, others)).encode())
     return whole.hexdigest()[:16]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Status
 from uq.errors import InputError, described
-from uq.study.columns import Column, blank_rows, columns_of
+from uq.study.columns import columns_of
 
 _WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
 
@@ -71,7 +71,7 @@ def evaluate(
         When names or dtypes are wrong, or a status or category does not exist.
     """
     expected = columns_of(model, settings)
-    columns = blank_rows(expected, len(x))
+    columns = _blank_rows(expected, len(x))
     status = np.zeros(len(x), dtype=np.int8)
     messages: dict[int, str] = {}
     todo = [(0, len(x))]
@@ -94,7 +94,7 @@ def evaluate(
     _check_values(model, columns, status, messages)
     lost = ~np.isin(status, _WITH_OUTPUTS)
     for name, column in columns.items():
-        column[lost] = expected[name].blank
+        column[lost] = expected[name]
         if column.dtype.kind == "f":
             column[np.isnan(column)] = np.nan  # one bit pattern for NaN on all processors
     return Chunk(columns, status, _first_failures(status, messages, start))
@@ -103,8 +103,12 @@ def evaluate(
 def lost_rows(model: Model, settings: Any, rows: int, fault: RowFailure, start: int = 0) -> Chunk:
     """Return blank rows that one fault has cost; `start` as in `evaluate`."""
     status = np.full(rows, fault.status, dtype=np.int8)
-    columns = blank_rows(columns_of(model, settings), rows)
+    columns = _blank_rows(columns_of(model, settings), rows)
     return Chunk(columns, status, {fault.status.label: (start, fault.message)})
+
+
+def _blank_rows(columns: Mapping[str, NDArray[Any]], rows: int) -> dict[str, NDArray[Any]]:
+    return {name: np.full((rows, *blank.shape), blank) for name, blank in columns.items()}
 
 
 def joined(chunks: Sequence[Chunk]) -> Chunk:
@@ -122,7 +126,11 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
 
 
 def _call(
-    model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], expected: Mapping[str, Column]
+    model: Model,
+    settings: Any,
+    x: Floats,
+    seed: NDArray[np.uint64],
+    expected: Mapping[str, NDArray[Any]],
 ) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]] | RowFailure:
     try:
         with np.errstate(all="ignore"):
@@ -132,8 +140,13 @@ def _call(
     if not isinstance(returned, tuple) or len(returned) not in (2, 3):
         raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
     outputs, status, messages = (*returned, {})[:3]
-    _check_names(model, outputs, expected)
-    for name, column in (*expected.items(), ("status", _STATUS)):
+    faults = [
+        *(f"returned no output '{name}'" for name in expected if name not in outputs),
+        *(f"returned '{name}', which is not declared" for name in outputs if name not in expected),
+    ]
+    if faults:
+        raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
+    for name, column in (*expected.items(), ("status", np.int8(0))):
         array = status if name == "status" else outputs[name]
         if not isinstance(array, np.ndarray):
             raise KernelError(
@@ -151,20 +164,6 @@ def _call(
     if unknown.size:
         raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")
     return outputs, status, messages
-
-
-_STATUS = Column(np.dtype(np.int8), 0, ())
-
-
-def _check_names(
-    model: Model, outputs: Mapping[str, object], expected: Mapping[str, Column]
-) -> None:
-    faults = [
-        *(f"returned no output '{name}'" for name in expected if name not in outputs),
-        *(f"returned '{name}', which is not declared" for name in outputs if name not in expected),
-    ]
-    if faults:
-        raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
 
 
 def _check_values(

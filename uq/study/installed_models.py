@@ -23,11 +23,11 @@ from uq.errors import InputError, choices, described, nearest
 from uq.files.paths import node
 from uq.machines.function import is_machine, model_of
 from uq.machines.returned import Returned, as_plain, from_plain
-from uq.study.compiled_cache import keep_apart, own_packages
+from uq.study.compiled_cache import keep_apart
 from uq.study.model_files import file_with
-from uq.study.namesakes import found_at, hidden_beside, namesake
+from uq.study.namesakes import hidden_beside, namesake
 from uq.study.provenance import provenance
-from uq.study.sources import fingerprint
+from uq.study.sources import fingerprint, found_at, own_packages
 
 GROUP = "vibrolife.models"
 
