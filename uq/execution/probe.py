@@ -7,7 +7,7 @@ from typing import Any
 
 from uq.errors import InputError, described
 from uq.execution.child import READY, REFUSED, end_with_parent, telling_of_compilation
-from uq.machines.returned import WrongReturnError, as_plain, seen_in
+from uq.machines.returned import RowError, as_plain, seen_in
 from uq.study.installed_models import model_at
 
 RETURNED, RAISED = "returned", "raised"
@@ -31,7 +31,7 @@ def main(handle: str) -> None:
             row, seed = connection.recv()
             try:
                 answer: tuple[str, Any] = RETURNED, as_plain(seen_in(batch.row(row, seed)))
-            except WrongReturnError as error:
+            except RowError as error:
                 answer = RAISED, str(error)
             except BaseException as error:
                 answer = RAISED, f"raised {described(error)}"

@@ -62,10 +62,8 @@ class Compiled(RowByRow):
 
 
 def _illegal(declaration: Returned, values: Floats) -> NDArray[np.bool_]:
-    absent = declaration.output("").is_absent(values)
-    if declaration.may_be_undefined:
-        absent &= ~np.isnan(values)
-    return absent if declaration.life else absent | np.isposinf(values)
+    invalid = declaration.output("").is_invalid(values)
+    return invalid if declaration.life else invalid | np.isposinf(values)
 
 
 @cache

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.contract import Floats, Model, Parameter
+from uq.contract import Floats, Model, Parameter, Status
 from uq.errors import InputError, one_line
 from uq.machines.fmu_description import (
     bounds_of,
@@ -24,7 +24,7 @@ from uq.machines.fmu_description import (
 )
 from uq.machines.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable, read_fmu_file
 from uq.machines.machine_file import content_of, refuse
-from uq.machines.returned import Censored, NonFiniteError, Returned, censored, checked
+from uq.machines.returned import Censored, Returned, RowError, censored, checked
 from uq.machines.row_by_row import RowByRow, model_from
 from uq.machines.row_folders import Folders
 from uq.sampling.input_faults import InputFault, unknown
@@ -202,10 +202,9 @@ class _Fmu:
 
         Raises
         ------
-        FmuError, NonFiniteError
+        FmuError, RowError
         """
-        numbers = list(row.values())
-        with self.folders.row(numbers) as folder:
+        with self.folders.row(list(row.values())) as folder:
             os.chdir(folder)  # where it may write; the caller leaves it
             log = list[str]()
             try:
@@ -218,10 +217,10 @@ class _Fmu:
                 return outputs
             except Exception as error:
                 (folder / _LOG).write_text("\n".join(log), encoding="utf-8")
-                detail = f" ({log[-1]})" if log else ""
-                text = f"{one_line(error)}{detail}; see {self.folders.kept(numbers)}"
-                kind = NonFiniteError if isinstance(error, NonFiniteError) else FmuError
-                raise kind(text) from None
+                text = one_line(error) + (f" ({log[-1]})" if log else "")
+                if isinstance(error, RowError) and error.status == Status.NON_FINITE:
+                    raise RowError(text, error.status) from None
+                raise FmuError(text) from None
 
     def _history(self, unpacked: Path, row: Mapping[str, float], log: list[str]) -> Any:
         """Return the variables that are wanted over time, from an FMU unpacked for this row.

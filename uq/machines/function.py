@@ -2,7 +2,6 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import inf
 from numbers import Real
 from typing import Any, TypeVar, get_args, get_type_hints, overload
@@ -22,15 +21,6 @@ _UNFIT = (
 )
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-@dataclass(frozen=True)
-class Declared:
-    """What the decorator says of a function."""
-
-    returns: Mapping[str, Returned | str] | None = None
-    title: str = ""
-    version: str = "1"
 
 
 @overload
@@ -90,7 +80,7 @@ def machine(
             )
         if kind := next((word for test, word in _UNFIT if test(function)), ""):
             raise InputError(f"machine '{plain.__name__}': {kind}")
-        setattr(function, _MARK, Declared(returns, title, version))
+        setattr(function, _MARK, (returns, title, version))
         return function
 
     return mark if function is None else mark(function)
@@ -98,7 +88,7 @@ def machine(
 
 def is_machine(candidate: object) -> bool:
     """Whether something was declared by `machine`."""
-    return isinstance(getattr(candidate, _MARK, None), Declared)
+    return isinstance(getattr(candidate, _MARK, None), tuple)
 
 
 def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | None = None) -> Model:
@@ -115,16 +105,16 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     InputError
         When its arguments or declarations cannot be used.
     """
-    declared: Declared = getattr(function, _MARK)
+    returns, title, version = getattr(function, _MARK)
     plain = _plain(function)
     name = plain.__name__
     label = f"machine '{name}'"
     fields, wants_seed = _parameters(plain, label)
-    outputs = read_returns(label, declared.returns) or dict(returned or {})
-    title = declared.title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
+    outputs = read_returns(label, returns) or dict(returned or {})
+    title = title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
     kind = Compiled if is_compiled(function) else RowByRow
     batch = kind(function, tuple(fields), outputs, wants_seed)
-    return model_from(name, title, declared.version, fields, outputs, batch, wants_seed)
+    return model_from(name, title, version, fields, outputs, batch, wants_seed)
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Any]:

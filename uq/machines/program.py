@@ -15,7 +15,7 @@ from math import inf
 from pathlib import Path
 from typing import Any, Self
 
-from uq.contract import Model, Parameter
+from uq.contract import Model, Parameter, Status
 from uq.machines.child_processes import bound_files, end_descendants, ended_within
 from uq.machines.machine_file import (
     FOLDER,
@@ -28,8 +28,8 @@ from uq.machines.machine_file import (
     template_of,
 )
 from uq.machines.program_outputs import STDERR_FILE, STDOUT_FILE, value_in
-from uq.machines.returned import Returned, checked
-from uq.machines.row_by_row import SEED, OverdueError, RowByRow, model_from
+from uq.machines.returned import Returned, RowError, checked
+from uq.machines.row_by_row import SEED, RowByRow, model_from
 from uq.machines.row_folders import Folders, size_of
 
 _LAST = 300  # characters of what a failed program said
@@ -143,26 +143,20 @@ class _Program:
 
         Raises
         ------
-        ProgramError, WrongReturnError, NonFiniteError, OverdueError
+        ProgramError, RowError
         """
-        kept = self.folders.kept(list(row.values()))
         with self.folders.row(list(row.values())) as folder:
-            try:
-                for _ in range(_TRIES - 1):
-                    with suppress(_KilledError):
-                        self._run(folder, row)
-                        break
-                else:
+            for _ in range(_TRIES - 1):
+                with suppress(_KilledError):
                     self._run(folder, row)
-                outputs = {
-                    name: value_in(folder, name, output)
-                    for name, output in self.read.outputs.items()
-                }
-                list(checked(outputs, self.returned))  # here: the folder of a failed row is kept
-                return outputs
-            except Exception as error:
-                error.args = (f"{error}; see {kept}",)
-                raise
+                    break
+            else:
+                self._run(folder, row)
+            outputs = {
+                name: value_in(folder, name, output) for name, output in self.read.outputs.items()
+            }
+            list(checked(outputs, self.returned))  # here: the folder of a failed row is kept
+            return outputs
 
     def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
         machine = self.read.machine
@@ -206,7 +200,8 @@ class _Program:
         try:
             while not ended_within(process, min(until - time.monotonic(), _LOOK_SECONDS)):
                 if time.monotonic() >= until:
-                    fault = OverdueError(f"did not end within {self.limit:g} s")
+                    message = f"did not end within {self.limit:g} s"
+                    fault = RowError(message, Status.TIMED_OUT)
                 elif size_of(folder) > largest:
                     message = f"was ended, as it wrote files of more than {largest:.2g} bytes"
                     fault = ProgramError(message)

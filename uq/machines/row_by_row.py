@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
 from uq.errors import InputError, described
-from uq.machines.returned import NonFiniteError, Returned, WrongReturnError, checked, dimensions
+from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit
 
@@ -129,10 +129,6 @@ class _NoSettings:
     """There are none."""
 
 
-class OverdueError(Exception):
-    """A row that was stopped as its time was over, in a sentence."""
-
-
 @dataclass(frozen=True)
 class RowByRow:
     """A batch that computes rows one after the other, each with its own end.
@@ -190,12 +186,8 @@ class RowByRow:
                     columns[name][i] = numbers
                     if self.returned[name].life:
                         columns[censored_name(name)][i] = cut
-            except WrongReturnError as error:
-                status[i], messages[i] = Status.BAD_SHAPE, str(error)
-            except NonFiniteError as error:
-                status[i], messages[i] = Status.NON_FINITE, str(error)
-            except OverdueError as error:
-                status[i], messages[i] = Status.TIMED_OUT, str(error)
+            except RowError as error:
+                status[i], messages[i] = error.status, str(error)
             except BaseException as error:  # Ctrl-C reaches another thread or process
                 status[i], messages[i] = Status.RAISED, described(error)
                 if self.wants_seed and _is_too_long(error):

@@ -65,7 +65,7 @@ class Folders:
 
     @contextmanager
     def row(self, numbers: Sequence[float | int]) -> Iterator[Path]:
-        """Yield the folder of a row, empty; if the block raises, it is kept under the row's name.
+        """Yield the folder of a row, empty; if the block raises, it is kept, and the error says so.
 
         Parameters
         ----------
@@ -78,8 +78,9 @@ class Folders:
         folder = self._new(numbers)
         try:
             yield folder
-        except Exception:
+        except Exception as error:
             self._keep(folder, numbers)
+            error.args = (f"{error}; see {self.kept(numbers)}",)
             raise
         else:
             shutil.rmtree(self.kept(numbers), ignore_errors=True)  # of an earlier run

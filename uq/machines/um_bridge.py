@@ -18,8 +18,9 @@ from threading import Timer
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
+from uq.contract import Status
 from uq.errors import InputError, one_line
-from uq.machines.row_by_row import OverdueError
+from uq.machines.returned import RowError
 from uq.text.literals import read_number
 
 VERSION = 1.0
@@ -93,7 +94,7 @@ def call(
 
     Raises
     ------
-    ServerError, OverdueError
+    ServerError, RowError
     """
     began, rounds = time.monotonic(), 0
     until = began + limit
@@ -109,7 +110,8 @@ def call(
             except (OSError, http.client.HTTPException) as error:
                 now, reason = time.monotonic(), one_line(error) or type(error).__name__
                 if now > until:
-                    raise OverdueError(f"{address} did not answer within {limit:g} s") from None
+                    message = f"{address} did not answer within {limit:g} s"
+                    raise RowError(message, Status.TIMED_OUT) from None
                 _out[address] = now
         longest = _PATIENCE if patience is None else patience
         if _silent.issuperset(servers) or now - began > longest:

@@ -125,6 +125,9 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
     )
 
 
+_STATUS = np.zeros((), np.int8)
+
+
 def _call(
     model: Model,
     settings: Any,
@@ -146,7 +149,7 @@ def _call(
     ]
     if faults:
         raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
-    for name, column in (*expected.items(), ("status", np.int8(0))):
+    for name, column in (*expected.items(), ("status", _STATUS)):
         array = status if name == "status" else outputs[name]
         if not isinstance(array, np.ndarray):
             raise KernelError(
@@ -179,13 +182,11 @@ def _check_values(
             if np.any((values < -1) | (values >= len(output.categories))):
                 raise KernelError(f"model '{model.name}': '{name}' has an undeclared category")
             continue
-        legal = ~output.is_absent(values)
-        if output.may_be_undefined:
-            legal |= np.isnan(values)
-        guilty = (status == Status.OK) & ~legal.all(axis=1)
+        invalid = output.is_invalid(values)
+        guilty = (status == Status.OK) & invalid.any(axis=1)
         status[guilty] = Status.NON_FINITE
         for row in np.flatnonzero(guilty)[:1]:
-            messages[row] = f"'{name}' {output.absence(values[row][~legal[row]][0])}"
+            messages[row] = f"'{name}' {output.absence(values[row][invalid[row]][0])}"
 
 
 def _first_failures(
