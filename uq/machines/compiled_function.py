@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, censored_name
-from uq.machines.returned import Returned
+from uq.contract import Floats
 from uq.machines.row_by_row import SEED, RowByRow
 
 
@@ -37,16 +36,14 @@ class Compiled(RowByRow):
         loop = _loop_of(self.function, self.names, shapes)
         if loop is None:
             return super().__call__(x, seed, settings)
-        columns = {
-            n: np.empty((len(x), *declaration.shape)) for n, declaration in self.returned.items()
-        }
+        columns = self.blank(len(x))
         bad = np.zeros(len(x), dtype=bool)
-        loop(x, seed, bad, tuple(columns.values()))
+        loop(x, seed, bad, tuple(columns[name] for name in self.returned))
         for name, declaration in self.returned.items():
-            bad |= _illegal(declaration, columns[name].reshape(len(x), -1)).any(axis=1)
-        for name, declaration in self.returned.items():
-            if declaration.life:
-                columns[censored_name(name)] = np.zeros((len(x), *declaration.shape), dtype=bool)
+            values = columns[name].reshape(len(x), -1)
+            bad |= declaration.output(name).is_invalid(values).any(axis=1)
+            if not declaration.life:
+                bad |= np.isposinf(values).any(axis=1)
         status, messages = np.zeros(len(x), np.int8), dict[int, str]()
         if bad.any():
             places = np.flatnonzero(bad)
@@ -59,11 +56,6 @@ class Compiled(RowByRow):
     def row(self, row: list[float], seed: int) -> Any:
         """Return what the function returns on a row, given a seed of the type of the loop."""
         return super().row(row, np.uint64(seed))  # type: ignore[arg-type]
-
-
-def _illegal(declaration: Returned, values: Floats) -> NDArray[np.bool_]:
-    invalid = declaration.output("").is_invalid(values)
-    return invalid if declaration.life else invalid | np.isposinf(values)
 
 
 @cache

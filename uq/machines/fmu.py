@@ -22,8 +22,8 @@ from uq.machines.fmu_description import (
     unit_of_variable,
     variables_of,
 )
-from uq.machines.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable, read_fmu_file
-from uq.machines.machine_file import content_of, refuse
+from uq.machines.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable
+from uq.machines.machine_file import content_of, read_as, refuse
 from uq.machines.returned import Censored, Returned, RowError, censored, checked
 from uq.machines.row_by_row import RowByRow, model_from
 from uq.machines.row_folders import Folders
@@ -82,7 +82,7 @@ def code_of_fmu(path: Path) -> str:
 
 def _file(path: Path) -> FmuFile:
     if path.suffix == ".toml":
-        return read_fmu_file(path)
+        return read_as(FmuFile, path)
     description = description_of(path)
     table = FmuTable(
         name=_as_name(description.modelName), fmu=path.name, version=f"FMI {description.fmiVersion}"

@@ -9,6 +9,7 @@ import math
 import re
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import ip_address
@@ -61,7 +62,6 @@ def json_server(
     class Server(ThreadingHTTPServer):
         address_family = family
         request_queue_size = 128
-        daemon_threads = True
 
         def handle_error(self, request: Any, client_address: Any) -> None:
             """Say nothing of a client that has left."""
@@ -86,10 +86,8 @@ def json_server(
                 self._patience.cancel()
 
         def _hang_up(self) -> None:
-            try:
+            with suppress(OSError):
                 self.connection.shutdown(socket.SHUT_RD)
-            except OSError:
-                pass
 
         def _answer(self, has_body: bool) -> None:
             try:

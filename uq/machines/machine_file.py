@@ -5,6 +5,7 @@ import re
 import shutil
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from math import inf, isfinite
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -82,26 +83,23 @@ def read_as(kind: type[T], path: Path) -> T:
     InputError
         One line for each mistake.
     """
-
-    def allowed_at(place: Sequence[Any]) -> list[str]:
-        """Return what may stand in the place of an unknown key."""
-        if len(place) == 1:
-            return list(kind.model_fields)
-        return _keys(kind.model_fields[place[0]].annotation)
-
+    data = data_of(path)
     try:
-        return kind.model_validate(data_of(path))
+        return kind.model_validate(data)
     except ValidationError as invalid:
-        refuse(
-            path, (fault_of(dict(error), allowed_at) for error in invalid.errors(include_url=False))
-        )
+        errors = map(dict, invalid.errors(include_url=False))
+        refuse(path, (fault_of(error, partial(_keys, kind)) for error in errors))
         raise
 
 
-def _keys(annotation: Any) -> list[str]:
-    """Return the keys of a table, or of those in a dict of tables."""
-    table: Any = annotation if isinstance(annotation, type) else annotation.__args__[-1]
-    return [field.alias or name for name, field in table.model_fields.items()]
+def _keys(file: type[BaseModel], place: Sequence[Any]) -> tuple[str, list[str]]:
+    """Return the allowed keys in place of an unknown key: kind and names."""
+    table: Any = file
+    if len(place) > 1:
+        table = file.model_fields[place[0]].annotation
+        table = table if isinstance(table, type) else table.__args__[-1]
+    names = [field.alias or name for name, field in table.model_fields.items()]
+    return "key" if len(place) > 1 else "table", names
 
 
 def refuse(path: Path, faults: Iterable[InputFault]) -> None:

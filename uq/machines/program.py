@@ -10,7 +10,7 @@ import time
 from codecs import BOM_UTF8
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, fields, replace
 from math import inf
 from pathlib import Path
 from typing import Any, Self
@@ -28,7 +28,7 @@ from uq.machines.machine_file import (
     template_of,
 )
 from uq.machines.program_outputs import STDERR_FILE, STDOUT_FILE, value_in
-from uq.machines.returned import Returned, RowError, checked
+from uq.machines.returned import Returned, RowError, checked, from_plain
 from uq.machines.row_by_row import SEED, RowByRow, model_from
 from uq.machines.row_folders import Folders, size_of
 
@@ -60,21 +60,13 @@ def program_of(path: Path) -> Model:
         When the file cannot be used.
     """
     read = read_machine(path)
-    returned = {
-        name: Returned(
-            output.unit,
-            output.meaning,
-            output.life,
-            tuple(output.shape),
-            output.may_be_undefined,
-            output.scales,
-        )
-        for name, output in read.outputs.items()
-    }
+    declared = {field.name for field in fields(Returned)}
+    tables = {name: table.model_dump(include=declared) for name, table in read.outputs.items()}
+    returned = from_plain(tables)
     folder = path.absolute().parent
     folders = Folders(folder / f"{read.machine.name}.rows")
-    runner = _Program(read, returned, folder, folders)
-    fields = {
+    runner = _Program(read, returned, folder, folders, template_of(read.machine, folder))
+    inputs = {
         name: (
             Parameter(
                 name, parameter.unit, parameter.meaning or name, parameter.span, parameter.source
@@ -85,9 +77,9 @@ def program_of(path: Path) -> Model:
     }
     machine = read.machine
     random = _takes_seed(machine, folder)
-    batch = RowByRow(runner, tuple(fields), returned, True, folders.leave, folders.keep)
+    batch = RowByRow(runner, tuple(inputs), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
-    return model_from(machine.name, title, machine.version, fields, returned, batch, random)
+    return model_from(machine.name, title, machine.version, inputs, returned, batch, random)
 
 
 def code_of_program(path: Path) -> str:
@@ -128,11 +120,8 @@ class _Program:
     returned: Mapping[str, Returned]
     folder: Path
     folders: Folders
+    template: str
     limit: float = inf  # time for a row [s]
-    template: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "template", template_of(self.read.machine, self.folder))
 
     def limited(self, seconds: float) -> Self:
         """Return a runner that stops rows after a time."""

@@ -93,8 +93,9 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
         return {}
     if not isinstance(returns, Mapping):
         raise InputError(f"{label}: returns: must be a dict of outputs, not {returns!r}")
-    wrong = [
-        f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {declaration!r}"
+    tables = {name: table for name, table in returns.items() if isinstance(table, Returned)}
+    faults = [
+        f"{name!r} must be a unit or a uq.Returned, not {declaration!r}"
         for name, declaration in returns.items()
         if not (
             isinstance(declaration, str | Returned)
@@ -102,20 +103,20 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
             and name.isidentifier()
         )
     ]
-    wrong += [
-        f"{label}: returns: shape of '{name}' must be a tuple of numbers above 0,"
-        f" not {declaration.shape!r}"
-        for name, declaration in returns.items()
-        if isinstance(declaration, Returned) and not _is_shape(declaration.shape)
+    faults += [
+        f"shape of '{name}' must be a tuple of numbers above 0, not {table.shape!r}"
+        for name, table in tables.items()
+        if not _is_shape(table.shape)
     ]
-    wrong += [
-        f"{label}: returns: unit and meaning of '{name}' must be text"
-        for name, declaration in returns.items()
-        if isinstance(declaration, Returned)
-        and not (isinstance(declaration.unit, str) and isinstance(declaration.meaning, str))
+    faults += [
+        f"unit and meaning of '{name}' must be text"
+        for name, table in tables.items()
+        if not (isinstance(table.unit, str) and isinstance(table.meaning, str))
     ]
-    if wrong or not returns:
-        raise InputError(*(wrong or [f"{label}: returns: name at least one output"]))
+    if not returns:
+        faults = ["name at least one output"]
+    if faults:
+        raise InputError(*(f"{label}: returns: {fault}" for fault in faults))
     return {
         n: Returned(declaration) if isinstance(declaration, str) else declaration
         for n, declaration in returns.items()

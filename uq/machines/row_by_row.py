@@ -2,11 +2,12 @@
 
 import keyword
 import os
+from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,16 +45,12 @@ def model_from(
     InputError
         When a nominal value, a name or a unit cannot be used.
     """
-    faults = [*_nominal_faults(fields), *_name_faults(fields, returned)]
-    if faults := [*faults, *_unit_faults(fields, returned), *_scale_faults(fields, returned)]:
+    checks = _nominal_faults, _name_faults, _unit_faults, _scale_faults
+    if faults := [fault for check in checks for fault in check(fields, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
-    hints = [
-        (field_name, Annotated[float, parameter]) for field_name, (parameter, _) in fields.items()
-    ]
-    made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
-    made._field_defaults.update(
-        {field_name: nominal for field_name, (_, nominal) in fields.items()}
-    )
+    nominal = [value for _, value in fields.values()]
+    made: Any = namedtuple("Parameters", fields, defaults=nominal)  # type: ignore[misc]
+    made.__annotations__ = {field: Annotated[float, fields[field][0]] for field in fields}
     axes: dict[str, list[int]] = {}
     for output, declaration in returned.items():
         axes |= dimensions(output, declaration.shape)
@@ -70,7 +67,7 @@ def model_from(
     )
 
 
-def _nominal_faults(fields: Fields) -> Iterator[str]:
+def _nominal_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
     for name, (parameter, nominal) in fields.items():
         low, high = parameter.bounds
         if not low < high:
@@ -173,13 +170,8 @@ class RowByRow:
         self, x: Floats, seed: NDArray[np.uint64], settings: object
     ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
         """Compute rows; see `uq.contract.Batch`."""
-        n = len(x)
-        columns: dict[str, NDArray[Any]] = {}
-        for name, declaration in self.returned.items():
-            columns[name] = np.full((n, *declaration.shape), np.nan)
-            if declaration.life:
-                columns[censored_name(name)] = np.zeros((n, *declaration.shape), dtype=bool)
-        status, messages = np.zeros(n, np.int8), dict[int, str]()
+        columns = self.blank(len(x))
+        status, messages = np.zeros(len(x), np.int8), dict[int, str]()
         for i, row in enumerate(x.tolist()):
             try:
                 for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
@@ -194,6 +186,15 @@ class RowByRow:
                     messages[i] += "; the seed of a row has 64 bits: shorten it to seed % 2**32"
         self.leave()
         return columns, status, messages
+
+    def blank(self, rows: int) -> dict[str, NDArray[Any]]:
+        """Return the columns of rows that are not computed yet."""
+        columns: dict[str, NDArray[Any]] = {}
+        for name, declaration in self.returned.items():
+            columns[name] = np.full((rows, *declaration.shape), np.nan)
+            if declaration.life:
+                columns[censored_name(name)] = np.full(columns[name].shape, False)
+        return columns
 
     def kept(self, row: list[float], seed: int) -> str:
         """Return where the files of a row that was lost with its process are, for its message."""

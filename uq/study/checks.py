@@ -51,22 +51,19 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     output_faults = partial(_output_faults, model, settings)
     for name in analysis.get("outputs", ()):
         yield from output_faults(name, ("analysis", "outputs"), name)
-    for name, value in analysis.get("thresholds", {}).items():
-        path, no_number = ("analysis", "thresholds", name), "it has shares, not thresholds"
-        faults = list(output_faults(name, path, value, no_number))
-        yield from faults
-        for threshold in (value if isinstance(value, list) else [value]) * (not faults):
-            yield from _unit_faults(model, name, path, threshold)
-    for name, side in analysis.get("joint_bounds", {}).items():
-        path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
-        yield from output_faults(name, path, side, no_number)
-    for name, side in analysis.get("wanted", {}).items():
-        path = ("analysis", "wanted", name)
-        faults = list(output_faults(name, path, side, "it has shares, not sides"))
-        yield from faults
-        if not faults and model.outputs and model.outputs[name].is_lifetime:
-            problem = "is a lifetime, whose model states if its end is wanted; leave it out"
-            yield InputFault(path, problem, side)
+    for key, nouns in _OF_NUMBERS.items():
+        for name, value in analysis.get(key, {}).items():
+            path = ("analysis", key, name)
+            faults = list(output_faults(name, path, value, f"it has shares, not {nouns}"))
+            yield from faults
+            if faults:
+                continue
+            if key == "thresholds":
+                for threshold in value if isinstance(value, list) else [value]:
+                    yield from _unit_faults(model, name, path, threshold)
+            elif key == "wanted" and model.outputs and model.outputs[name].is_lifetime:
+                problem = "is a lifetime, whose model states if its end is wanted; leave it out"
+                yield InputFault(path, problem, value)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
@@ -76,6 +73,10 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         if not faults and model.outputs:
             yield from _until_faults(model, name, until)
             yield from _element_faults(model, name, until, settings)
+
+
+_OF_NUMBERS = {"thresholds": "thresholds", "joint_bounds": "bounds", "wanted": "sides"}
+"""Keys of [analysis] that name outputs with numbers, and what is stated of these."""
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[InputFault]:

@@ -141,32 +141,32 @@ def _call(
     except Exception as error:
         return RowFailure(Status.RAISED, described(error))
     if not isinstance(returned, tuple) or len(returned) not in (2, 3):
-        raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
+        raise _violation(model, "batch must return (outputs, status)")
     outputs, status, messages = (*returned, {})[:3]
     faults = [
         *(f"returned no output '{name}'" for name in expected if name not in outputs),
         *(f"returned '{name}', which is not declared" for name in outputs if name not in expected),
     ]
     if faults:
-        raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
+        raise _violation(model, *faults)
     for name, column in (*expected.items(), ("status", _STATUS)):
         array = status if name == "status" else outputs[name]
         if not isinstance(array, np.ndarray):
-            raise KernelError(
-                f"model '{model.name}': '{name}' is a {type(array).__name__}, "
-                f"expected an array of {column.dtype}"
-            )
+            kind = type(array).__name__
+            raise _violation(model, f"'{name}' is a {kind}, expected an array of {column.dtype}")
         if array.dtype != column.dtype:
-            raise KernelError(
-                f"model '{model.name}': '{name}' is {array.dtype}, expected {column.dtype}"
-            )
+            raise _violation(model, f"'{name}' is {array.dtype}, expected {column.dtype}")
         if array.shape != (len(x), *column.shape):
             wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
             return RowFailure(Status.BAD_SHAPE, wrong)
     unknown = np.setdiff1d(status, list(Status))
     if unknown.size:
-        raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")
+        raise _violation(model, f"no such status: {unknown[0]}")
     return outputs, status, messages
+
+
+def _violation(model: Model, *faults: str) -> KernelError:
+    return KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
 
 
 def _check_values(
@@ -180,7 +180,7 @@ def _check_values(
         values = columns[name].reshape(len(status), -1)
         if output.is_category:
             if np.any((values < -1) | (values >= len(output.categories))):
-                raise KernelError(f"model '{model.name}': '{name}' has an undeclared category")
+                raise _violation(model, f"'{name}' has an undeclared category")
             continue
         invalid = output.is_invalid(values)
         guilty = (status == Status.OK) & invalid.any(axis=1)
