@@ -54,7 +54,7 @@ class Compiled(RowByRow):
         return columns, status, messages
 
     def row(self, row: list[float], seed: int) -> Any:
-        """Return what the function returns on a row, given a seed of the type of the loop."""
+        """Call the function on a row, with a seed of the type that the loop uses."""
         return super().row(row, np.uint64(seed))  # type: ignore[arg-type]
 
 
@@ -91,7 +91,7 @@ def _loop_of(
     try:  # on no rows
         columns = tuple(np.empty((0,) * (1 + n)) for n in dims)
         loop(np.empty((0, len(names))), np.empty(0, np.uint64), np.empty(0, np.bool_), columns)
-    except Exception:  # by itself, each row says what is wrong
+    except Exception:  # computed by itself, each row has an error message
         return None
     return loop
 

@@ -46,8 +46,7 @@ def fmu_of(path: Path) -> Model:
     InputError
         When FMPy is not installed, or one of the files cannot be used.
     """
-    file = _file(path)
-    fmu = _fmu(path, file)
+    file, fmu = _read(path)
     description = description_of(fmu)
     reals = variables_of(description)
     settable = variables_of(description, "parameter")
@@ -76,22 +75,21 @@ def code_of_fmu(path: Path) -> str:
     whole = hashlib.sha256(fmpy.__version__.encode())
     if path.suffix == ".toml":
         whole.update(content_of(path))
-    whole.update(_fmu(path, _file(path)).read_bytes())
+    _, fmu = _read(path)
+    whole.update(fmu.read_bytes())
     return whole.hexdigest()[:16]
 
 
-def _file(path: Path) -> FmuFile:
+def _read(path: Path) -> tuple[FmuFile, Path]:
+    """Return a machine file, by default that of an FMU without one, and the path of the FMU."""
     if path.suffix == ".toml":
-        return read_as(FmuFile, path)
+        file = read_as(FmuFile, path)
+        return file, path.absolute().parent / file.machine.fmu
     description = description_of(path)
     table = FmuTable(
         name=_as_name(description.modelName), fmu=path.name, version=f"FMI {description.fmiVersion}"
     )
-    return FmuFile(machine=table)
-
-
-def _fmu(path: Path, file: FmuFile) -> Path:
-    return path.absolute().parent / file.machine.fmu
+    return FmuFile(machine=table), path.absolute()
 
 
 def _as_name(variable: str) -> str:

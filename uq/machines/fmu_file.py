@@ -1,4 +1,4 @@
-"""A machine file that names an FMU: what of it is varied, and what is made of its variables."""
+"""A machine file that names an FMU: its varied parameters, and outputs from its variables."""
 
 from typing import Annotated, Literal
 

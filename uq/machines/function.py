@@ -118,7 +118,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function as it was written, without what wraps or compiles it."""
+    """Return the function as it was written, without wrappers and compiler."""
     return inspect.unwrap(getattr(function, "py_func", function))
 
 
@@ -131,21 +131,11 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]
         raise InputError(f"{label}: annotations: {error}") from None
     signature = inspect.signature(function)
     for name, argument in signature.parameters.items():
-        if name == SEED:
-            continue
-        if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
-            faults.append(f"{label}: argument '{argument}': only named floats can be parameters")
-            continue
-        if not isinstance(argument.default, Real):
-            was = "no default" if argument.default is argument.empty else f"{argument.default!r}"
-            faults.append(f"{label}: argument '{name}' has {was}; its nominal value is needed")
-            continue
-        try:
-            parameter = _parameter(name, hints.get(name, float))
-        except InputError as error:
-            faults += [f"{label}: argument '{name}': {error}"]
-            continue
-        fields[name] = parameter, float(argument.default)
+        if name != SEED:
+            try:
+                fields[name] = _field(argument, hints.get(name, float))
+            except InputError as error:
+                faults.append(f"{label}: {error}")
     if not fields and not faults:
         faults.append(f"{label}: has no arguments, so nothing to study")
     if faults:
@@ -153,12 +143,19 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]
     return fields, SEED in signature.parameters
 
 
-def _parameter(name: str, hint: Any) -> Parameter:
+def _field(argument: inspect.Parameter, hint: Any) -> tuple[Parameter, float]:
+    """Return the parameter and the nominal value that an argument declares."""
+    name, default = argument.name, argument.default
+    if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
+        raise InputError(f"argument '{argument}': only named floats can be parameters")
+    if not isinstance(default, Real):
+        given = "no default" if default is argument.empty else f"{default!r}"
+        raise InputError(f"argument '{name}' has {given}; its nominal value is needed")
     unit, bounds, meaning = "1", (-inf, inf), name.replace("_", " ")
     words = iter(("unit", "meaning"))
     for extra in get_args(hint)[1:] if hint is not float else ():
         if isinstance(extra, Parameter):
-            return extra
+            return extra, float(default)
         if isinstance(extra, tuple) and [isinstance(bound, Real) for bound in extra] == [True] * 2:
             bounds = (float(extra[0]), float(extra[1]))
         elif isinstance(extra, str):
@@ -167,7 +164,7 @@ def _parameter(name: str, hint: Any) -> Parameter:
             else:
                 meaning = extra
         else:
-            raise InputError(
-                f"annotation {extra!r}: a unit, a pair of bounds or a meaning is expected"
-            )
-    return Parameter(name, unit, meaning, bounds, "assumed: the default of the function")
+            problem = "a unit, a pair of bounds or a meaning is expected"
+            raise InputError(f"argument '{name}': annotation {extra!r}: {problem}")
+    source = "assumed: the default of the function"
+    return Parameter(name, unit, meaning, bounds, source), float(default)

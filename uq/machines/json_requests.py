@@ -1,4 +1,4 @@
-"""Requests with JSON over HTTP: what is wrong with one is answered in one line, never computed.
+"""Requests with JSON over HTTP: an invalid one is answered in one line, never computed.
 
 A page on the web can make a browser send requests to a server on loopback, under a name of its own
 that leads there; so the host, the origin and the type of the content are checked.
@@ -9,14 +9,13 @@ import math
 import re
 import socket
 from collections.abc import Callable
-from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import ip_address
-from threading import Timer
 from typing import Any
 from urllib.parse import urlsplit
 
+from uq.machines.um_bridge import cut_after
 from uq.text.literals import plain_line
 
 LONGEST = 1_000_000
@@ -77,17 +76,8 @@ def json_server(
 
         def handle_one_request(self) -> None:
             """Handle a request, unless it takes too long to come."""
-            self._patience = Timer(_SECONDS, self._hang_up)
-            self._patience.daemon = True
-            self._patience.start()
-            try:
+            with cut_after(_SECONDS, self.connection, socket.SHUT_RD) as self._patience:
                 super().handle_one_request()
-            finally:
-                self._patience.cancel()
-
-        def _hang_up(self) -> None:
-            with suppress(OSError):
-                self.connection.shutdown(socket.SHUT_RD)
 
         def _answer(self, has_body: bool) -> None:
             try:
@@ -135,7 +125,7 @@ def json_server(
             return body
 
         def send_error(self, code: int, message: Any = None, explain: Any = None) -> None:
-            """Answer what is no request of HTTP, in JSON too."""
+            """Answer a request that is not HTTP in JSON too."""
             self.request_version = self.protocol_version  # with a head, as an answer to HTTP 0.9
             self._send(*invalid(message or HTTPStatus(code).phrase, code).answer)
 
@@ -162,7 +152,7 @@ def finite(values: Any) -> Any:
 
 
 def _is_this(host: str, listening: str) -> bool:
-    """Return whether a Host is an address, the name that was given, or that of this machine."""
+    """Return whether a Host is an address, the name listened at, or the name of this computer."""
     try:
         name = urlsplit(f"//{host}").hostname or ""
     except ValueError:

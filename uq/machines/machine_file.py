@@ -52,7 +52,7 @@ def file_there(path: Path) -> None:
 
 
 def data_of(path: Path) -> dict[str, Any]:
-    """Return what a machine file says, unchecked.
+    """Return the parsed content of a machine file, unchecked.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def template_of(machine: MachineTable, folder: Path) -> str:
 
 
 def code_files(machine: MachineTable, folder: Path) -> list[Path]:
-    """Return the files whose content is part of a machine, but for its file and its program.
+    """Return the files that determine the rows of a machine, besides its file and its program.
 
     They are its template, the files that it names, and those among the arguments.
     """

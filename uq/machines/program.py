@@ -32,11 +32,11 @@ from uq.machines.returned import Returned, RowError, checked, from_plain
 from uq.machines.row_by_row import SEED, RowByRow, model_from
 from uq.machines.row_folders import Folders, size_of
 
-_LAST = 300  # characters of what a failed program said
+_LAST = 300  # characters of the last line of a failed program
 _LOOK_SECONDS = 1.0  # between looks at the size of a folder
 _TRIES = 3  # of a program that is killed, before it is blamed
 _SEEDS = 2**31 - 1  # many programs take more for the largest of 32 bits, and 0 for the clock
-_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
+_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # the program, or the last command of a shell
 _REMEDIES = {
     errno.EACCES: "; make it executable: chmod +x",
     errno.ENOEXEC: "; a script begins with a line such as #!/bin/sh",

@@ -25,10 +25,10 @@ LONGEST = 100_000_000
 
 _SEARCH_SECONDS = 10.0  # some patterns try more ways than there is time
 
-_SHOWN = 60  # characters of what is no number
+_SHOWN = 60  # characters of a text that is no number
 
 STDOUT_FILE, STDERR_FILE = "stdout.txt", "stderr.txt"
-"""Names, in the folder of a row, of what its program printed."""
+"""Names of the files in the folder of a row with the output of its program."""
 
 
 def value_in(folder: Path, name: str, output: OutputTable) -> Any:

@@ -16,7 +16,7 @@ _MOST_NAMES = 5  # that a message lists
 
 @dataclass(frozen=True)
 class Censored:
-    """A life of which only a lower bound is known; see `censored`."""
+    """A right-censored life: only a lower bound is known; see `censored`."""
 
     time: float
 
@@ -83,7 +83,7 @@ def dimensions(name: str, shape: Sequence[int]) -> dict[str, list[int]]:
 
 
 def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> dict[str, Returned]:
-    """Return what a machine declares that it returns, units as strings.
+    """Return the declared outputs of a machine, a unit alone as a `Returned`.
 
     Raises
     ------

@@ -101,7 +101,7 @@ def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[
 
 
 def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
-    """Yield faults of names, all of which share the variables of a result."""
+    """Yield faults of names: parameters and outputs share the variables of a result."""
     reserved = "of one of a result's own variables"
     taken = dict.fromkeys(fields, "of a parameter") | dict.fromkeys(_TAKEN, reserved)
     for name in fields:
@@ -202,7 +202,7 @@ class RowByRow:
         return f"; see {folder}" if folder else ""
 
     def row(self, row: list[float], seed: int) -> Any:
-        """Return what the function returns on a row; the current folder stays as it was."""
+        """Call the function on a row; the current folder stays as it was."""
         given: dict[str, Any] = dict(zip(self.names, row, strict=True))
         if self.wants_seed:
             given[SEED] = seed

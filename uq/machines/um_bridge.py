@@ -130,7 +130,7 @@ def _answer(server: str, request: str, body: Any, until: float) -> Any:
     connection = kind(parts.hostname or "", parts.port, timeout=_left(until))
     with closing(connection):
         connection.connect()
-        with _cut(connection.sock, _left(until)):
+        with cut_after(_left(until), connection.sock):
             data = None if body is None else json.dumps(body)
             headers = {"Content-Type": "application/json", "Connection": "close"}
             connection.request("GET" if body is None else "POST", f"/{request}", data, headers)
@@ -148,19 +148,35 @@ def _answer(server: str, request: str, body: Any, until: float) -> Any:
 
 
 @contextmanager
-def _cut(connection: socket.socket, seconds: float | None) -> Iterator[None]:
-    """Cut a connection after some seconds, however little comes through it at a time."""
+def cut_after(
+    seconds: float | None, connection: socket.socket, how: int = socket.SHUT_RDWR
+) -> Iterator[Timer]:
+    """Cut a connection after some seconds, however little comes through it at a time.
+
+    Parameters
+    ----------
+    seconds : float or None
+        None for never.
+    connection : socket
+    how : int
+        Which of its directions are cut.
+
+    Yields
+    ------
+    Timer
+        To be cancelled if the connection is to stay.
+    """
 
     def cut() -> None:
         with suppress(OSError):
-            connection.shutdown(socket.SHUT_RDWR)
+            connection.shutdown(how)
 
     timer = Timer(seconds or 0.0, cut)
     timer.daemon = True
     if seconds:
         timer.start()
     try:
-        yield
+        yield timer
     finally:
         timer.cancel()
 

@@ -76,7 +76,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
 
 
 _OF_NUMBERS = {"thresholds": "thresholds", "joint_bounds": "bounds", "wanted": "sides"}
-"""Keys of [analysis] that name outputs with numbers, and what is stated of these."""
+"""Keys of [analysis] for numeric outputs -> the nouns of their values."""
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[InputFault]:

@@ -50,7 +50,7 @@ def _install() -> None:
 
 @cache
 def _fresh_folder() -> Path:
-    """Make a folder for this process alone: numba unpickles what lies there."""
+    """Make a folder for this process alone: numba unpickles its files."""
     folder = tempfile.mkdtemp(prefix=f"{DISTRIBUTION}-numba-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)

@@ -223,7 +223,7 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
 
 
 def _remedy_of_missing(package: str) -> str:
-    """Return the advice for a package of which a module is missing."""
+    """Return the advice where a module of a package is missing."""
     if clash := namesake(package):
         return clash
     if place := found_at(package):
