@@ -10,10 +10,10 @@ import time
 from codecs import BOM_UTF8
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from math import inf
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from uq.contract import Model, Parameter, Status
 from uq.machines.child_processes import bound_files, end_descendants, ended_within
@@ -121,11 +121,7 @@ class _Program:
     folder: Path
     folders: Folders
     template: str
-    limit: float = inf  # time for a row [s]
-
-    def limited(self, seconds: float) -> Self:
-        """Return a runner that stops rows after a time."""
-        return replace(self, limit=seconds)
+    row_limit: float = inf  # time for a row [s]
 
     def __call__(self, **row: float | int) -> Mapping[str, Any]:
         """Run the program on a row; return its outputs.
@@ -185,11 +181,11 @@ class _Program:
     def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
         """Return the exit code of a program, once it and all that descends from it has ended."""
         fault: Exception | None = None
-        until = time.monotonic() + self.limit
+        until = time.monotonic() + self.row_limit
         try:
             while not ended_within(process, min(until - time.monotonic(), _LOOK_SECONDS)):
                 if time.monotonic() >= until:
-                    message = f"did not end within {self.limit:g} s"
+                    message = f"did not end within {self.row_limit:g} s"
                     fault = RowError(message, Status.TIMED_OUT)
                 elif size_of(folder) > largest:
                     message = f"was ended, as it wrote files of more than {largest:.2g} bytes"

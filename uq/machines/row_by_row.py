@@ -133,7 +133,8 @@ class RowByRow:
     Attributes
     ----------
     function : callable
-        Takes the parameters of a row as keywords, and returns a dict of outputs.
+        Takes the parameters of a row as keywords, and returns a dict of outputs. A dataclass with a
+        field ``row_limit`` stops a row after this time [s].
     names : tuple of str
         Of the parameters, in order.
     returned : dict of str to Returned
@@ -159,12 +160,12 @@ class RowByRow:
     @property
     def stops_rows(self) -> bool:
         """Whether it can stop a row whose time is over."""
-        return hasattr(self.function, "limited")
+        return hasattr(self.function, "row_limit")
 
     def limited(self, seconds: float) -> Self:
         """Return a batch that stops rows after a time [s]; only one that `stops_rows` can."""
         function: Any = self.function
-        return replace(self, function=function.limited(seconds))
+        return replace(self, function=replace(function, row_limit=seconds))
 
     def __call__(
         self, x: Floats, seed: NDArray[np.uint64], settings: object

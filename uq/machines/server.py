@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from itertools import count, islice
 from math import inf, nan
-from typing import Any, Self
+from typing import Any
 
 from uq.contract import Model, Parameter, censored_name
 from uq.errors import InputError
@@ -34,16 +34,12 @@ class _RemoteModel:
     inputs: tuple[int, ...]
     outputs: tuple[int, ...]
     information: Mapping[str, Any]
-    limit: float = inf  # time for a row [s]
+    row_limit: float = inf  # time for a row [s]
 
     @property
     def described(self) -> Mapping[str, Any]:
         """Names, units and bounds, as `uq.machines.serving` tells them; empty of other servers."""
         return self.information.get(DESCRIBED) or {}
-
-    def limited(self, seconds: float) -> Self:
-        """Return one that stops waiting for a row after a time."""
-        return replace(self, limit=seconds)
 
     def __call__(self, **row: float | int) -> dict[str, Any]:
         """Return the outputs of a row.
@@ -59,7 +55,7 @@ class _RemoteModel:
         turn = next(_turns) % len(self.servers)
         servers = self.servers[turn:] + self.servers[:turn]
         try:
-            answer = call(servers, "Evaluate", body, limit=self.limit)
+            answer = call(servers, "Evaluate", body, limit=self.row_limit)
         except ServerError as error:
             if self.described or any(map(any, vectors)):
                 raise

@@ -100,6 +100,7 @@ def _positive(value: float) -> float:
     return value
 
 
+_Count = Annotated[int, Field(ge=1, le=MAX_ROWS_OF_A_SAMPLE)]
 _B_LIFE = r"^B(\d{1,2}(\.\d{1,9})?)$"
 
 
@@ -205,18 +206,8 @@ class DesignTable(_Table):
         le=10_000,
         description="independent scrambles of the design: the source of confidence intervals",
     )
-    units: int = Field(
-        1,
-        ge=1,
-        le=MAX_ROWS_OF_A_SAMPLE,
-        description="of each sample: they have its shared inputs",
-    )
-    repeats: int = Field(
-        1,
-        ge=1,
-        le=MAX_ROWS_OF_A_SAMPLE,
-        description="of each unit: they differ by chance",
-    )
+    units: _Count = Field(1, description="of each sample: they have its shared inputs")
+    repeats: _Count = Field(1, description="of each unit: they differ by chance")
     second_order: bool = Field(False, description="saltelli only: also pairs of parameters")
     seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
     file: str | None = Field(
