@@ -1,7 +1,4 @@
-"""A function compiled by numba as a machine: rows are computed by one compiled loop.
-
-A row that raises, or returns what it must not, is computed once more by itself, which says why.
-"""
+"""A function compiled by numba as a machine: rows are computed by one compiled loop."""
 
 import sys
 from collections.abc import Callable
@@ -26,7 +23,10 @@ def is_compiled(function: Callable[..., Any]) -> bool:
 
 
 class Compiled(RowByRow):
-    """A batch that computes rows by a compiled loop; see `RowByRow`."""
+    """A batch that computes rows by a compiled loop; see `RowByRow`.
+
+    A row that raises, or returns an invalid value, is computed once more by itself for its message.
+    """
 
     def __call__(
         self, x: Floats, seed: NDArray[np.uint64], settings: object

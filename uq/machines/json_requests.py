@@ -1,17 +1,13 @@
-"""Requests with JSON over HTTP: an invalid one is answered in one line, never computed.
-
-A page on the web can make a browser send requests to a server on loopback, under a name of its own
-that leads there; so the host, the origin and the type of the content are checked.
-"""
+"""Requests with JSON over HTTP: an invalid one is answered in one line, never computed."""
 
 import json
-import math
 import re
 import socket
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import ip_address
+from math import isfinite
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -40,7 +36,10 @@ def invalid(message: object, status: int = HTTPStatus.BAD_REQUEST) -> RequestErr
 def json_server(
     place: Any, family: int, answer: Callable[[str, dict[str, Any]], Any]
 ) -> ThreadingHTTPServer:
-    """Return a server of JSON, not yet serving.
+    """Return a server of JSON, not yet serving; it answers an invalid request in one line.
+
+    A page on the web can make a browser send requests to a server on loopback, under a name of its
+    own that leads there; so the host, the origin and the type of the content are checked.
 
     Parameters
     ----------
@@ -148,7 +147,7 @@ def finite(values: Any) -> Any:
     """Return numbers in nested lists with None for those that JSON has no number for."""
     if isinstance(values, list | tuple):
         return [finite(value) for value in values]
-    return values if math.isfinite(values) else None
+    return values if isfinite(values) else None
 
 
 def _is_this(host: str, listening: str) -> bool:

@@ -1,9 +1,4 @@
-"""numba's cache on disk, with a separate folder for each state of the sources.
-
-numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it calls
-into, it would load stale code. Here the name of the folder is a hash of all sources on which a
-function can depend.
-"""
+"""numba's cache on disk, with a separate folder for each state of the sources."""
 
 import atexit
 import os
@@ -23,7 +18,7 @@ _models: set[str] = set()
 
 
 def keep_apart(module: str) -> None:
-    """Have numba cache compiled code in this way from now on in this process.
+    """Have numba cache compiled code by `SourcesLocator` from now on in this process.
 
     Parameters
     ----------
@@ -58,6 +53,10 @@ def _fresh_folder() -> Path:
 
 class SourcesLocator:
     """The place of the compiled code of one function, as numba asks for it.
+
+    numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it
+    calls into, it would load stale code. Here the name of the folder is a hash of all sources on
+    which a function can depend.
 
     Parameters
     ----------

@@ -1,7 +1,4 @@
-"""Other packages that bear the name of one of ours, such as a file ``models.py`` beside a script.
-
-Python takes the first that it finds.
-"""
+"""Other packages that bear the name of one of ours, such as a file ``models.py`` beside a script."""
 
 import os
 from pathlib import Path
