@@ -1,4 +1,4 @@
-"""Other packages that bear the name of one of ours, such as a file ``models.py`` beside a script."""
+"""Other packages that bear the name of one of ours, such as a file ``models.py`` of a user."""
 
 import os
 from pathlib import Path
