@@ -1,4 +1,4 @@
-"""Processes that a program leaves behind, ended with it."""
+"""End of the processes that a program leaves behind."""
 
 import ctypes
 import os

@@ -179,7 +179,7 @@ class _Program:
             raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
 
     def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
-        """Return the exit code of a program, once it and all that descends from it has ended."""
+        """Return the exit code of a program, once it and all its descendants have ended."""
         fault: Exception | None = None
         until = time.monotonic() + self.row_limit
         try:

@@ -132,7 +132,7 @@ class Folders:
 
 
 def _running_on_this() -> str:
-    """Return how the names of folders of running rows begin on this computer."""
+    """Return the beginning of the names of folders of running rows on this computer."""
     return f"{_RUNNING}-{socket.gethostname()}-"
 
 

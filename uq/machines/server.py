@@ -38,7 +38,7 @@ class _RemoteModel:
 
     @property
     def described(self) -> Mapping[str, Any]:
-        """Names, units and bounds, as `uq.machines.serving` tells them; empty of other servers."""
+        """Names, units and bounds, if its server states them as `uq.machines.serving` does."""
         return self.information.get(DESCRIBED) or {}
 
     def __call__(self, **row: float | int) -> dict[str, Any]:

@@ -101,7 +101,7 @@ def evaluate(
 
 
 def lost_rows(model: Model, settings: Any, rows: int, fault: RowFailure, start: int = 0) -> Chunk:
-    """Return blank rows that one fault has cost; `start` as in `evaluate`."""
+    """Return blank rows, all lost by one fault; `start` as in `evaluate`."""
     status = np.full(rows, fault.status, dtype=np.int8)
     columns = _blank_rows(columns_of(model, settings), rows)
     return Chunk(columns, status, {fault.status.label: (start, fault.message)})

@@ -9,7 +9,7 @@ _HOUSE = Path(__file__).parents[2]  # our packages lie beside each other, howeve
 
 
 def namesake(package: str) -> str:
-    """Return that Python finds another package under the name of one of our models'; "" if not.
+    """Return a message if Python finds another package under the name of one of our models'.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ def namesake(package: str) -> str:
     Returns
     -------
     str
-        A sentence with both places.
+        A sentence with both places; "" if Python finds ours.
     """
     first, ours = found_at(package), _HOUSE / package
     if package not in own_packages() or not ours.is_dir() or first is None or _is_same(first, ours):

@@ -78,7 +78,7 @@ def shape_faults(data: dict[str, Any]) -> list[InputFault]:
 
 
 def _is_meant(missing: InputFault, other: InputFault) -> bool:
-    """Return whether a missing key is the one that another fault suggests."""
+    """Return whether the misspelt key of another fault stands for a missing key."""
     *table, key = missing.path
     beside = missing.problem.startswith(MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
