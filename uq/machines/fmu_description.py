@@ -15,7 +15,7 @@ from xml.etree.ElementTree import iterparse
 from zipfile import ZipFile
 
 from uq.errors import InputError, described
-from uq.machines.machine_file import file_there
+from uq.files.paths import file_there
 
 _VERSION = "2.0"
 _UNBOUNDED = 1e300  # written by tools for no bound at all

@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from uq.errors import InputError, nearest, one_line
-from uq.files.paths import node
+from uq.files.paths import file_there, node
 from uq.machines.row_by_row import SEED
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
@@ -33,22 +33,6 @@ class TomlTable(BaseModel):
 
 
 T = TypeVar("T", bound=TomlTable)
-
-
-def file_there(path: Path) -> None:
-    """Refuse a path without a file.
-
-    Raises
-    ------
-    InputError
-    """
-    if kind := node(path):
-        raise InputError(f"{path}: is {kind}, not a file")
-    if not path.is_file():
-        others = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else []
-        raise InputError(
-            f"{path}: no such file{nearest(path.name, [other.name for other in others])}"
-        )
 
 
 def data_of(path: Path) -> dict[str, Any]:

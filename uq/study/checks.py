@@ -214,7 +214,7 @@ def design_faults(tables: Tables) -> Iterator[InputFault]:
             )
     for key, problem in problems.items():
         yield InputFault(("design", key), problem, None if key == "until" else table[key])
-    several = _rows_of_a_sample(table) > 1
+    several = table.get("units", 1) * table.get("repeats", 1) > 1
     for key in [bound for bound in ("tolerance", "joint_bounds") if bound in asks]:
         why = ""
         if several:
@@ -270,11 +270,6 @@ def _index_faults(
 
 
 _SEVERAL = "and the units and repeats of one sample are not; set both to 1, or leave it out"
-
-
-def _rows_of_a_sample(table: Mapping[str, Any]) -> int:
-    """Return units times repeats of a [design]."""
-    return int(table.get("units", 1) * table.get("repeats", 1))
 
 
 def _nesting_problems(

@@ -20,7 +20,7 @@ from typing import Any
 
 from uq.contract import Model
 from uq.errors import InputError, choices, described, nearest
-from uq.files.paths import node
+from uq.files.paths import file_there
 from uq.machines.function import is_machine, model_of
 from uq.machines.returned import Returned, as_plain, from_plain
 from uq.study.compiled_cache import keep_apart
@@ -163,13 +163,7 @@ def _installed(name: str, folder: Path | None = None) -> EntryPoint:
 
 def _module_in(file: Path) -> str:
     """Return the name by which the module in a file can be imported."""
-    if kind := node(file):
-        raise InputError(f"{file}: is {kind}, not a file")
-    if not file.is_file():
-        neighbours = (
-            [path.name for path in file.parent.glob("*.py")] if file.parent.is_dir() else []
-        )
-        raise InputError(f"{file}: no such file{nearest(file.name, neighbours)}")
+    file_there(file)
     folder, name = str(file.absolute().parent), file.stem
     if folder not in sys.path:
         sys.path.append(folder)
